@@ -1,0 +1,37 @@
+// pair_query: where two bodies touch, as up to four points.
+//
+//   p_W  halfway between the two surfaces, n_W the unit normal out of shape b towards a, phi the gap there [m] (negative: overlap)
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "contact/math.h"
+#include "contact/shape/shape.h"
+
+namespace pincer::contact {
+
+struct PairPoint {
+  Vec3 p_W = Vec3::Zero();
+  Vec3 n_W = Vec3::UnitZ();
+  double phi = 0;
+  std::uint32_t feature = 0;  // which corner, end or rim point of the pair this is: the same from tick to tick, so that solvers warm-start
+};
+
+constexpr int kMaxPairPoints = 4;
+struct PairPoints {
+  std::array<PairPoint, kMaxPairPoints> points;
+  int count = 0;
+};
+
+// Whether collideShapes answers for this pair, in this order or the other: anything against a half-space or a dish, a sphere against
+// anything. (Other pairs: issue "contact/", body-body manifolds.)
+bool pairIsSupported(const Shape& a, const Shape& b);
+
+// The points of a and b that are closer than `margin` >= 0 [m], written to `out` (sorted by feature). With more than four candidates the
+// four that carry best are kept: the deepest, then those that span the largest area. Unsupported pairs give no point. Allocates nothing.
+void collideShapes(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin, PairPoints& out);
+
+// Radius of the smallest sphere about the shape's own origin that holds it [m]; infinity for HalfSpace and Dish.
+double boundingRadius(const Shape& shape);
+
+}  // namespace pincer::contact

@@ -1,0 +1,45 @@
+// cascade: solves a ContactProblem, cheapest method first.
+//
+//   warm start's residual -> semi-smooth Newton (Alart-Curnier) -> projected Gauss-Seidel with exact local solves -> best iterate, flagged
+//
+// Never throws, allocates or prints; deterministic.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "engine/solve/contact_problem.h"
+
+namespace pincer::engine {
+
+struct SolverOptions {
+  double tolerance = 1e-10;     // on the residual, see contactResidual [-]; range [1e-14, 1e-2]
+  int newton_iterations = 12;
+  int gauss_seidel_sweeps = 300;
+};
+
+enum class SolveMethod : std::uint8_t { kNoContact, kWarmStart, kNewton, kGaussSeidel, kNotConverged };
+
+struct SolveResult {
+  SolveMethod method = SolveMethod::kNoContact;
+  int iterations = 0;     // of all methods together
+  double residual = 0;    // of the returned impulses [-]
+  bool converged = true;  // false: the returned r is the best iterate in the cones, scaled so that it adds no energy
+};
+
+// Working memory, sized once for at most `max_contacts`.
+struct SolverScratch {
+  explicit SolverScratch(int max_contacts);
+  int max_contacts;
+  std::vector<double> doubles;
+  std::vector<int> ints;
+};
+
+// Relative natural-map residual: max_i w_i |r_i - P_K(r_i - u~_i / w_i)| / max(|q|_inf, kVelocityFloor), with u~_i = u_i + mu_i |u_iT| e_n and
+// w_i the mean of W_ii's diagonal. Infinite if anything is not finite (a NaN never passes). `u` receives W r + q.
+double contactResidual(const ContactProblem& problem, const Eigen::Ref<const Eigen::VectorXd>& r, Eigen::Ref<Eigen::VectorXd> u);
+
+// Solves `problem`. `r` holds the warm start on entry (zeros are fine) and the impulses on return: in the cones to 1e-12 relative, whatever
+// happened. `u` receives the contact velocities.
+SolveResult solveContacts(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch, VectorMap r, VectorMap u);
+
+}  // namespace pincer::engine
