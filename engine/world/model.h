@@ -1,0 +1,100 @@
+// model: what a world is made of. Built once by WorldBuilder, checked once, then constant; many states may step one model in parallel.
+//
+// Frames: B as the shape's author chose it; I the body's inertial frame, at its centre of mass, axes principal. Dynamics works in I,
+// people read B (bodyPose, world/state.h).
+#pragma once
+#include <string>
+#include <vector>
+
+#include "contact/error.h"
+#include "contact/shape/shape.h"
+#include "engine/motion/free_motion.h"
+#include "engine/motion/mass.h"
+#include "engine/solve/cascade.h"
+
+namespace pincer::engine {
+
+// Surface of a body. Between two bodies: friction and restitution are the geometric means, the torsion radius the larger one's.
+// A finger takes the body's values: skin on plastic is a property of the pair.
+struct Material {
+  double mu_s = 0.5;            // static friction [-], >= 0
+  double mu_d = 0.5;            // dynamic friction [-], 0 <= mu_d <= mu_s
+  double restitution = 0;       // of the normal velocity [-], 0 .. 1
+  double torsion_radius = 0;    // e_t [m]: the contact carries a torsional moment up to e_t mu f_n; 0 for a point contact
+};
+
+struct BodyModel {
+  std::string name;
+  contact::Shape shape;
+  bool dynamic = true;            // false: never moves
+  double mass = 0;                // [kg]; 0 for static bodies
+  double inverse_mass = 0;        // [1/kg]
+  Vec3 moments = Vec3::Zero();    // principal moments of inertia [kg m^2]
+  Pose X_BI;                      // inertial frame in B; identity for static bodies
+  Pose X_IB;
+  FreeRotation rotation;
+  Material material;
+  double bounding_radius = 0;     // about the centre of mass [m]; infinite for half-spaces
+};
+
+// A point that a spring and a damper pull towards a moving target, along each world axis on its own: a fingertip, or a probe.
+//
+//   m a = -k (p - p_target) - d (v - v_target) + f + contact forces
+//
+// mass 0 gives Colgate's virtual coupling (a massless tip behind a spring-damper); an axis may be locked to the target.
+// Source: J. E. Colgate, M. C. Stanley, J. M. Brown, "Issues in the haptic display of tool use", IROS 1995, 140-145.
+struct DrivenPointModel {
+  std::string name;
+  double mass = 0;                      // [kg], >= 0
+  Vec3 stiffness = Vec3::Constant(1000);  // k [N/m], >= 0; mass + stiffness must be positive on every free axis
+  Vec3 damping = Vec3::Constant(5);     // d [N s/m], >= 0
+  Eigen::Array<bool, 3, 1> locked = Eigen::Array<bool, 3, 1>::Constant(false);  // this axis follows its target exactly
+};
+
+// A pair of bodies that may touch: all that is constant about it.
+struct PairModel {
+  int a = 0, b = 0;                     // bodies, a < b
+  Material material;                    // combined
+};
+
+struct WorldOptions {
+  double h = 1e-3;                             // tick [s], 1e-5 .. 1e-2
+  Vec3 gravity_W = Vec3(0, 0, -9.81);          // [m/s^2]
+  double contact_margin = 1e-3;                // pairs closer than this make contacts [m], > 0
+  int max_contacts = 64;                       // 4 .. 256; more are dropped, deepest kept, and StepStatus says so
+  SolverOptions solver;
+};
+
+struct WorldModel {
+  WorldOptions options;
+  std::vector<BodyModel> bodies;
+  std::vector<DrivenPointModel> points;
+  std::vector<PairModel> pairs;                // only those that can touch: at least one dynamic, shapes supported
+};
+
+// What the builder is told about a body; B's pose and velocity at the start live in BodyStart.
+struct BodySpec {
+  std::string name;
+  contact::Shape shape;
+  bool dynamic = true;
+  double mass = 0;                 // [kg], > 0 for dynamic bodies
+  Material material;
+};
+
+// Collects bodies and points, checks them, and builds the model. Every error names the body, the value, its range and a remedy (InputError).
+class WorldBuilder {
+ public:
+  explicit WorldBuilder(const WorldOptions& options);
+  int addBody(const BodySpec& spec);                   // returns the body's index
+  int addPoint(const DrivenPointModel& point);         // returns the point's index
+  void excludePair(int a, int b);                      // these two never touch
+  WorldModel build() const;
+
+ private:
+  WorldModel model_;
+  std::vector<std::pair<int, int>> excluded_;
+};
+
+Material combine(const Material& a, const Material& b);
+
+}  // namespace pincer::engine

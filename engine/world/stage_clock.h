@@ -1,0 +1,26 @@
+// stage_clock: time of each stage of a tick, for `pincer plan` and the recorder. Off unless somebody asks.
+#pragma once
+#include <array>
+#include <chrono>
+#include <cstdint>
+
+namespace pincer::engine {
+
+enum class Stage : std::uint8_t { kPredict, kCollideBodies, kFingerContacts, kSolve, kAdvance, kFingerReport, kCount };
+constexpr int kStageCount = static_cast<int>(Stage::kCount);
+constexpr std::array<const char*, kStageCount> kStageNames = {"predict", "body contacts", "finger contacts", "solve", "advance", "pad places"};
+
+struct StageClock {
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point last = Clock::now();
+  std::array<double, kStageCount> seconds{};   // of the last tick
+
+  void start() { last = Clock::now(); }
+  void mark(Stage stage) {
+    const auto now = Clock::now();
+    seconds[static_cast<std::size_t>(stage)] = std::chrono::duration<double>(now - last).count();
+    last = now;
+  }
+};
+
+}  // namespace pincer::engine

@@ -1,0 +1,66 @@
+// tick: where devices and physics meet. A pure function: the same model, state and samples give the same bits, in a live session, in a batch
+// and in a replay.
+//
+//   device samples -> finger poses -> grasp step -> last gate -> forces for the arms, places for the CLDs
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "devices/arm/arm.h"
+#include "devices/cld/pad_policy.h"
+#include "devices/cld/tactile_display.h"
+#include "devices/gate/force_gate.h"
+#include "grasp/step.h"
+
+namespace pincer::tasks {
+
+// One hand's finger on its arm.
+struct FingerMount {
+  Pose X_WD;                                    // arm base in the world (calibration data)
+  devices::GateLimits gate;
+  devices::PadPolicyOptions pad;
+  bool display_tactile = true;                  // false: the force-only condition, the tactor stays parked
+};
+
+struct TickModel {
+  grasp::GraspModel grasp;
+  std::vector<FingerMount> mounts;              // one per finger
+  double velocity_cutoff = 60;                  // of the low-pass on finger velocity [Hz]
+};
+
+struct FingerInputs {
+  devices::ArmSample arm;
+  devices::TactileSample tactile;
+};
+
+// Per finger: what the device side of the tick remembers.
+struct MountState {
+  bool seen = false;                            // a valid sample has come
+  Vec3 p_WF = Vec3::Zero(), v_WF = Vec3::Zero();   // last finger pose, filtered velocity
+  double sample_time = 0;
+  devices::GateState gate;
+  devices::PadPolicyState pad;
+};
+
+struct TickState {
+  grasp::GraspState grasp;
+  std::vector<MountState> mounts;
+};
+
+struct FingerOutputs {
+  Vec3 f_D = Vec3::Zero();                      // gated force for the arm [N]
+  devices::TactileCommand tactile;
+};
+
+struct TickScratch {
+  explicit TickScratch(const TickModel& model);
+  grasp::GraspScratch grasp;
+  std::vector<grasp::FingerInput> inputs;
+  std::vector<FingerOutputs> outputs;           // the tick's result, one per finger
+};
+
+// One tick at time `now` [s, the clock of the samples]. Results in scratch.outputs and scratch.grasp.fingers. Allocates nothing, throws nothing.
+engine::StepReport tick(const TickModel& model, TickState& state, TickScratch& scratch, const std::vector<FingerInputs>& inputs, double now);
+
+}  // namespace pincer::tasks
