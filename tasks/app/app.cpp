@@ -1,0 +1,56 @@
+#include "tasks/app/app.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <cstdio>
+
+#include "contact/error.h"
+#include "tasks/app/commands.h"
+
+namespace pincer::tasks {
+namespace {
+
+using AddCommand = void (*)(CLI::App&, int&);
+
+// The program's table of contents, in the order in which --help shows it.
+constexpr std::array<AddCommand, 0> kCommands = {};
+
+constexpr const char* kExamples = R"(
+Examples:
+  pincer run sphere-pickup --seed 1 --out session.db     a simulated participant picks up spheres
+  pincer report session.db                               the session as a page with plots
+  pincer sim tasks/scenes/s4_pinch.json                  plain physics of a scene, its expectations checked
+  pincer plan tasks/scenes/s4_pinch.json                 what runs in a tick, and what it costs
+  pincer mesh info bunny.obj --units m                   what a mesh is, and what is wrong with it
+
+Exit codes: 0 ok, 1 a check failed, 2 usage, 3 bad input, 4 device, 5 interrupted.)";
+
+int reportUsage(const CLI::App& app, const CLI::ParseError& error) {
+  if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+  fmt::print(stderr, "pincer: {}. See `pincer --help`.\n", error.what());
+  return kExitUsage;
+}
+
+}  // namespace
+
+int runApp(int argc, char** argv) {
+  CLI::App app("pincer: multi-finger manipulation physics", "pincer");
+  app.set_version_flag("--version", "pincer " PINCER_VERSION);
+  app.footer(kExamples);
+  app.require_subcommand(1);
+  int exit_code = kExitOk;
+  for (AddCommand add : kCommands) add(app, exit_code);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return reportUsage(app, error);
+  } catch (const InputError& error) {
+    fmt::print(stderr, "pincer: {}\n", error.what());
+    return kExitBadInput;
+  }
+  return exit_code;
+}
+
+}  // namespace pincer::tasks

@@ -1,0 +1,18 @@
+// commands: the subcommands of the program, one source file each (`sim_command.cpp`, ...). Each adds itself to `app`; when the user asks
+// for it, its callback does the work and leaves an ExitCode (tasks/app/app.h) in `exit_code`, or throws InputError (exit code 3).
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+namespace pincer::tasks {
+
+void addSimCommand(CLI::App& app, int& exit_code);
+void addPlanCommand(CLI::App& app, int& exit_code);
+void addMeshCommand(CLI::App& app, int& exit_code);
+void addRunCommand(CLI::App& app, int& exit_code);
+void addReportCommand(CLI::App& app, int& exit_code);
+void addExportCommand(CLI::App& app, int& exit_code);
+
+}  // namespace pincer::tasks
