@@ -16,11 +16,11 @@ std::string nameOf(DeviceState state);
 
 // What the device can do; constants of a type of device.
 struct ArmCapabilities {
-  double peak_force = 0;         // [N]
-  double continuous_force = 0;   // [N], bearable for ever
-  double resolution = 0;         // of position at the tip [m]
-  double stiffness_limit = 0;    // that the arm renders stably [N/m]
-  double rate = 1000;            // of samples [Hz]
+  double peak_force = 0;                                                // [N]
+  double continuous_force = 0;                                          // [N], bearable for ever
+  double resolution = 0;                                                // of position at the tip [m]
+  double stiffness_limit = 0;                                           // that the arm renders stably [N/m]
+  double rate = 1000;                                                   // of samples [Hz]
   Vec3 workspace_min_D = Vec3::Zero(), workspace_max_D = Vec3::Zero();  // [m]
 };
 
@@ -37,7 +37,7 @@ struct ArmSample {
 class Arm {
  public:
   virtual ~Arm() = default;
-  virtual std::string identity() const = 0;             // make, model, serial number
+  virtual std::string identity() const = 0;  // make, model, serial number
   virtual const ArmCapabilities& capabilities() const = 0;
   virtual DeviceState state() const = 0;
   // The latest sample; never blocks. Real time only through the caller's clock.

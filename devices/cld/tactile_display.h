@@ -12,22 +12,22 @@
 namespace pincer::devices {
 
 struct TactileCapabilities {
-  double resolution = 0;                    // at the tactor [m]
-  double speed = 0;                         // largest tactor speed [m/s]
-  double rate = 500;                        // of position commands [Hz]
-  Vec2 reach = Vec2::Zero();                // largest |place| per axis [m]
+  double resolution = 0;      // at the tactor [m]
+  double speed = 0;           // largest tactor speed [m/s]
+  double rate = 500;          // of position commands [Hz]
+  Vec2 reach = Vec2::Zero();  // largest |place| per axis [m]
 };
 
 struct TactileSample {
-  double time = 0;               // device clock [s]
+  double time = 0;  // device clock [s]
   bool valid = false;
-  std::optional<Vec2> place_L;   // measured tactor place [m]; absent where the device doesn't measure it
+  std::optional<Vec2> place_L;  // measured tactor place [m]; absent where the device doesn't measure it
 };
 
 // What the tactor is asked to do.
 struct TactileCommand {
-  bool parked = false;           // true: hold still at the centre, whatever place_L says (the force-only condition)
-  Vec2 place_L = Vec2::Zero();   // [m]
+  bool parked = false;          // true: hold still at the centre, whatever place_L says (the force-only condition)
+  Vec2 place_L = Vec2::Zero();  // [m]
 };
 
 class TactileDisplay {

@@ -1,9 +1,18 @@
 // force_gate: the last stage before a motor. Whatever comes in, what goes out is finite, bounded and slow enough; any doubt is zero, latched.
 //
-// In this order: finiteness, peak (vector clamp that keeps the direction), slew, ramp after arming, thermal i^2 t to the continuous force,
-// over-speed, watchdog. (Passivity joins the order with grasp/'s observer; joint torques with the arms that report theirs.)
+//   trips      not finite, fault before, invalid sample, over-speed, missed deadline, stale sample: zero at once, until an operator arms
+//   peak       |f| <= peak_force, direction kept
+//   ramp       f min(1, t_armed / ramp_time)
+//   thermal    |f|^2 <= f_cont^2 + (H - heat) / tau,   d heat / dt = |f|^2 - f_cont^2, heat >= 0,   tau = thermal_time / 10,
+//              H = (f_peak^2 - f_cont^2) (thermal_time + tau): peak_force from cold lasts thermal_time, then sinks smoothly to f_cont
+//   slew       |f - f_last| <= slew dt
+//
+// in this order. Slew comes last of all, because its bound is one on what the motor gets: a stage behind it could break it. It can delay
+// the thermal stage by peak_force / slew at most. (Passivity joins the order with grasp/'s observer; joint torques with the arms that
+// report theirs.) The stages and their order are ours.
 #pragma once
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -13,39 +22,43 @@
 namespace pincer::devices {
 
 struct GateLimits {
-  double peak_force = 8.5;         // [N], > 0
-  double continuous_force = 1.4;   // [N], > 0
-  double thermal_time = 10;        // the time that peak_force may last from cold [s], > 0
-  double slew = 1000;              // [N/s], > 0
-  double ramp_time = 2;            // from arming to full force [s], >= 0
-  double top_speed = 2.0;          // of the fingertip [m/s], > 0
-  double watchdog_time = 3e-3;     // oldest sample that is still trusted [s], > 0
+  double peak_force = 8.5;        // [N], > 0
+  double continuous_force = 1.4;  // [N], > 0
+  double thermal_time = 10;       // the time that peak_force may last from cold [s], > 0
+  double slew = 1000;             // [N/s], > 0
+  double ramp_time = 2;           // from arming to full force [s], >= 0
+  double top_speed = 2.0;         // of the fingertip [m/s], > 0
+  double watchdog_time = 3e-3;    // oldest sample that is still trusted, longest time between two calls [s], > 0
 };
 
+// What is wrong with `limits`, as a sentence with field, value and range; absent if nothing is.
+std::optional<std::string> problemWith(const GateLimits& limits);
+
 enum class Trip : std::uint8_t { kNone, kNotFinite, kOverSpeed, kStaleSample, kInvalidSample, kMissedDeadline, kException, kOperator };
-std::string describe(Trip trip);   // one sentence: what happened, what it means, what to do
+std::string describe(Trip trip);  // one sentence: what happened, what it means, what to do
 
 // State of the gate of one arm; a plain value.
 struct GateState {
   bool armed = false;
-  Trip trip = Trip::kNone;         // why it is latched; kNone while armed or never armed
-  double armed_for = 0;            // [s]
-  double heat = 0;                 // integral of (f^2 - f_cont^2), >= 0 [N^2 s]
-  Vec3 f_D = Vec3::Zero();         // last force let through [N]
+  Trip trip = Trip::kNone;                                        // why it is latched; kNone while armed or never armed
+  double armed_for = 0;                                           // [s]
+  double heat = 0;                                                // integral of (f^2 - f_cont^2), >= 0 [N^2 s]
+  Vec3 f_D = Vec3::Zero();                                        // last force let through [N]
+  double sample_time = -std::numeric_limits<double>::infinity();  // of the last sample trusted since arming [s]
 };
 
 struct GateInput {
-  Vec3 f_D = Vec3::Zero();         // wanted force [N]
-  ArmSample sample;                // the sample that it answers
-  Vec3 v_DF = Vec3::Zero();        // best estimate of the fingertip's velocity [m/s]
-  double now = 0;                  // on the sample's clock [s]
-  double dt = 1e-3;                // since the last call [s], > 0
-  bool physics_ok = true;          // false when a stage before reported a fault
+  Vec3 f_D = Vec3::Zero();   // wanted force [N]
+  ArmSample sample;          // the sample that it answers
+  Vec3 v_DF = Vec3::Zero();  // best estimate of the fingertip's velocity [m/s]
+  double now = 0;            // on the sample's clock [s]
+  double dt = 1e-3;          // since the last call [s], > 0
+  bool physics_ok = true;    // false when a stage before reported a fault
 };
 
-// Only an operator arms. Clears the latch; the ramp starts anew.
+// Only an operator arms. Clears the latch; the ramp starts anew. The heat stays: motors don't cool by being armed.
 void arm(GateState& state);
-// Latches zero force with a cause.
+// Latches zero force with a cause. The first cause stays until the next arm().
 void trip(GateState& state, Trip cause);
 // The force that may go to the motor [N]. |result| <= peak, |change| <= slew dt (but for trips: those cut to zero at once).
 Vec3 gateForce(const GateLimits& limits, const GateInput& in, GateState& state);
