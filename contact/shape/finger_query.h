@@ -16,14 +16,15 @@ namespace pincer::contact {
 // world's state, copied with snapshots. A default one means "search the whole mesh".
 struct SurfaceTracker {
   std::int32_t triangle = -1;
-  double u = 0, v = 0;        // barycentric coordinates of corners 1 and 2 of the triangle [-]
-  std::uint32_t status = 0;   // bits of QueryStatus of the last query
+  double u = 0, v = 0;       // barycentric coordinates of corners 1 and 2 of the triangle [-]
+  std::uint32_t status = 0;  // bits of QueryStatus of the last query
 };
 
 enum QueryStatus : std::uint32_t {
   kQueryOk = 0,
-  kQueryReseeded = 1u << 0,      // the warm start failed; the answer came from the tree (nothing was lost)
-  kQueryHeldDirection = 1u << 1, // no solution found: the last contact was kept. Remedy: refine or smooth the mesh there (`pincer mesh info`)
+  kQueryReseeded = 1u << 0,  // the warm start failed; the answer came from the tree (nothing was lost)
+  kQueryHeldDirection =
+      1u << 1,  // no solution found: the last contact was kept. Remedy: refine or smooth the mesh there (`pincer mesh info`)
 };
 
 struct SurfaceContact {

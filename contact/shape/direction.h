@@ -1,0 +1,26 @@
+// direction: a vector's length and unit direction, with a fixed choice where it has none.
+//
+//   v = length * n,  |n| = 1;  for |v| below 1e-100 (its square would leave the range of doubles): length = 0, n = the choice
+//
+// That choice is what makes the closed forms total and deterministic on medial axes. A non-finite `v` gives a non-finite result.
+#pragma once
+#include <Eigen/Core>
+#include <cmath>
+
+namespace pincer::contact {
+
+template <class Vector>
+struct Direction {
+  Vector n;
+  double length;
+};
+
+template <class Vector>
+Direction<Vector> directionOf(const Vector& v, const Vector& choice) {
+  constexpr double kShortest = 1e-100;
+  const double length = std::sqrt(v.squaredNorm());
+  if (length < kShortest) return {choice, 0};
+  return {v / length, length};
+}
+
+}  // namespace pincer::contact

@@ -1,0 +1,82 @@
+#include "contact/shape/pair_query.h"
+
+#include <limits>
+
+#include "contact/shape/extreme_points.h"
+#include "contact/shape/finger_query.h"
+#include "contact/shape/point_choice.h"
+#include "contact/shape/support.h"
+#include "contact/surface/smooth_mesh.h"
+
+namespace pincer::contact {
+namespace {
+
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+
+double radiusOf(const Sphere& s) { return s.radius; }
+double radiusOf(const Box& b) { return b.half.norm(); }
+double radiusOf(const Capsule& c) { return c.radius + c.half_length; }
+double radiusOf(const Cylinder& c) { return std::sqrt(c.radius * c.radius + c.half_length * c.half_length); }
+double radiusOf(const CylinderWithFlat& c) { return radiusOf(Cylinder{c.radius, c.half_length}); }  // the round part reaches as far
+double radiusOf(const HalfSpace&) { return kUnbounded; }
+double radiusOf(const Dish&) { return kUnbounded; }
+double radiusOf(const Mesh& m) { return m.surface->boundingRadius(); }
+
+bool isSphere(const Shape& shape) { return std::holds_alternative<Sphere>(shape); }
+bool isSupport(const Shape& shape) { return std::holds_alternative<HalfSpace>(shape) || std::holds_alternative<Dish>(shape); }
+
+void addPoint(const PairPoint& point, PairPoints& out) { out.points[out.count++] = point; }
+
+// n out of the support.
+template <class Support>
+void collideWithSupport(const Shape& solid, const SolidFrame& A, const Support& support, double margin, PairPoints& out) {
+  if (!(support.gap(Vec3::Zero()) - boundingRadius(solid) < margin)) return;
+  ExtremePointStore store;
+  const ExtremePoints extreme = extremePoints(solid, support.steepest(), store);
+  const PointChoice choice(extreme, support, margin);
+  for (int k = 0; k < choice.count(); ++k) {
+    const int i = choice[k];
+    const double phi = choice.gapOf(i);
+    const Vec3 n_A = support.normal(extreme.points[i]);
+    const Vec3 p_A = extreme.points[i] - (extreme.rounding + 0.5 * phi) * n_A;
+    addPoint({A.pointToWorld(p_A), A.R_WA * n_A, phi, extreme.featureOf(i)}, out);
+  }
+}
+
+void collideWithSupport(const Shape& solid, const Pose& X_WA, const Shape& support, const Pose& X_WB, double margin, PairPoints& out) {
+  const SolidFrame A(X_WA);
+  if (const auto* dish = std::get_if<Dish>(&support)) return collideWithSupport(solid, A, BowlSupport(*dish, X_WB, A), margin, out);
+  collideWithSupport(solid, A, PlaneSupport(HalfSpace{}, X_WB, A), margin, out);
+}
+
+// n out of b.
+void collideSphere(const Sphere& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin, PairPoints& out) {
+  const Vec3 p_BC = X_WB.q.conjugate() * (X_WA.p - X_WB.p);
+  if (!(lowerBoundOfGap(b, p_BC, a.radius) < margin)) return;
+  SurfaceTracker whole_mesh;
+  const SurfaceContact s = querySphere(b, p_BC, a.radius, whole_mesh);
+  if (s.phi < margin) addPoint({X_WB * (s.p_BS + 0.5 * s.phi * s.n_B), X_WB.q * s.n_B, s.phi, 0}, out);
+}
+
+void flip(PairPoints& points) {
+  for (int i = 0; i < points.count; ++i) points.points[i].n_W = -points.points[i].n_W;
+}
+
+}  // namespace
+
+double boundingRadius(const Shape& shape) {
+  return std::visit([](const auto& s) { return radiusOf(s); }, shape);
+}
+
+bool pairIsSupported(const Shape& a, const Shape& b) { return isSphere(a) || isSphere(b) || isSupport(a) != isSupport(b); }
+
+void collideShapes(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin, PairPoints& out) {
+  out.count = 0;
+  if (!pairIsSupported(a, b)) return;
+  if (isSphere(a)) return collideSphere(std::get<Sphere>(a), X_WA, b, X_WB, margin, out);
+  if (isSupport(b)) return collideWithSupport(a, X_WA, b, X_WB, margin, out);
+  collideShapes(b, X_WB, a, X_WA, margin, out);
+  flip(out);
+}
+
+}  // namespace pincer::contact

@@ -1,0 +1,56 @@
+// support: the two static surfaces on which solids rest, seen from the solid's frame A.
+//
+//   plane  gap(p) = n . p - d                         n_A unit normal out of the support, d [m]
+//   bowl   gap(p) = R - |p - m|,  n = (m - p)/|m - p|  m_A centre of curvature [m], R radius [m]
+//
+// Both gaps are concave and fall by at most 1 m per m: a convex solid is nearest to either at one of its extreme points (vertices, rims,
+// ends), and no nearer than gap(origin) - bounding radius.
+//   steepest()  the direction in A's xy-plane in which the gap falls fastest, times that rate (at the solid's axis; bowl: seen from m) [-];
+//               of a circle about A's z axis the point in that direction is the deepest, exactly, for both
+#pragma once
+#include "contact/math.h"
+#include "contact/shape/direction.h"
+#include "contact/shape/shape.h"
+
+namespace pincer::contact {
+
+// Frame A with the rotation as a matrix: it turns more than two vectors per pair, where a matrix is cheaper than the quaternion.
+struct SolidFrame {
+  Mat3 R_WA;
+  Vec3 p_WA;
+
+  explicit SolidFrame(const Pose& X_WA) : R_WA(X_WA.q.toRotationMatrix()), p_WA(X_WA.p) {}
+  Vec3 pointToWorld(const Vec3& p_AC) const { return R_WA * p_AC + p_WA; }
+  Vec3 pointFromWorld(const Vec3& p_WC) const { return R_WA.transpose() * (p_WC - p_WA); }
+};
+
+class PlaneSupport {
+ public:
+  PlaneSupport(const HalfSpace&, const Pose& X_WB, const SolidFrame& A) {
+    const Vec3 n_W = X_WB.q * Vec3::UnitZ();
+    n_A_ = A.R_WA.transpose() * n_W;
+    d_ = n_W.dot(X_WB.p - A.p_WA);
+  }
+  double gap(const Vec3& p_A) const { return n_A_.dot(p_A) - d_; }
+  Vec3 normal(const Vec3&) const { return n_A_; }
+  Vec2 steepest() const { return -n_A_.head<2>(); }
+
+ private:
+  Vec3 n_A_;
+  double d_;
+};
+
+class BowlSupport {
+ public:
+  BowlSupport(const Dish& dish, const Pose& X_WB, const SolidFrame& A)
+      : m_A_(A.pointFromWorld(X_WB * Vec3(0, 0, dish.radius))), radius_(dish.radius) {}
+  double gap(const Vec3& p_A) const { return radius_ - (p_A - m_A_).norm(); }
+  Vec3 normal(const Vec3& p_A) const { return directionOf<Vec3>(m_A_ - p_A, Vec3::UnitZ()).n; }
+  Vec2 steepest() const { return -m_A_.head<2>() / radius_; }
+
+ private:
+  Vec3 m_A_;
+  double radius_;
+};
+
+}  // namespace pincer::contact
