@@ -4,6 +4,7 @@
 //
 // Never throws, allocates or prints; deterministic.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -12,7 +13,7 @@
 namespace pincer::engine {
 
 struct SolverOptions {
-  double tolerance = 1e-10;     // on the residual, see contactResidual [-]; range [1e-14, 1e-2]
+  double tolerance = 1e-10;  // on the residual, see contactResidual [-]; range [1e-14, 1e-2]
   int newton_iterations = 12;
   int gauss_seidel_sweeps = 300;
 };
@@ -26,13 +27,19 @@ struct SolveResult {
   bool converged = true;  // false: the returned r is the best iterate in the cones, scaled so that it adds no energy
 };
 
-// Working memory, sized once for at most `max_contacts`.
+// Working memory, sized once for at most `max_contacts`; what it holds means nothing between calls.
 struct SolverScratch {
   explicit SolverScratch(int max_contacts);
+
   int max_contacts;
-  std::vector<double> doubles;
-  std::vector<int> ints;
+  std::vector<double> W, q, scale;                          // the scaled problem (scaled_problem.h)
+  std::vector<double> jacobian, step;                       // of Newton's equations (newton.h)
+  std::array<std::vector<double>, 3> impulses, velocities;  // current, trial and best iterate
+  std::vector<int> active;                                  // contacts in Newton's equations
 };
+
+// The slowest motion that counts as motion; residuals are relative to the speeds of the problem, but never to less [m/s].
+constexpr double kVelocityFloor = 1e-6;
 
 // Relative natural-map residual: max_i w_i |r_i - P_K(r_i - u~_i / w_i)| / max(|q|_inf, kVelocityFloor), with u~_i = u_i + mu_i |u_iT| e_n and
 // w_i the mean of W_ii's diagonal. Infinite if anything is not finite (a NaN never passes). `u` receives W r + q.

@@ -33,6 +33,9 @@ struct ContactProblem {
 
   int contactCount() const { return static_cast<int>(mu.size()); }
   int rowCount() const { return static_cast<int>(q.size()); }
+  int firstRow(int contact) const { return first_row[static_cast<std::size_t>(contact)]; }
+  int rows(int contact) const { return firstRow(contact + 1) - firstRow(contact); }
+  double friction(int contact) const { return mu[static_cast<std::size_t>(contact)]; }
 };
 
 }  // namespace pincer::engine

@@ -1,0 +1,127 @@
+#include "engine/solve/cascade.h"
+
+#include <algorithm>
+
+#include "engine/solve/gauss_seidel.h"
+#include "engine/solve/newton.h"
+#include "engine/solve/residual.h"
+
+namespace pincer::engine {
+namespace {
+
+constexpr int kSweepsPerRound = 15;  // enough to leave the basin in which Newton's method failed
+
+// Puts `r` into the cones; a contact whose impulse isn't finite gets none.
+void project(const ContactProblem& problem, double* r) {
+  for (int i = 0; i < problem.contactCount(); ++i) {
+    const int rows = problem.rows(i);
+    double* const r_i = r + problem.firstRow(i);
+    if (isInCone(r_i, rows, problem.friction(i))) continue;
+    projectOntoCone(r_i, rows, problem.friction(i), r_i);
+    double check = 0;
+    for (int k = 0; k < rows; ++k) check += r_i[k];
+    if (!std::isfinite(check)) std::fill(r_i, r_i + rows, 0.0);
+  }
+}
+
+// The iterates of one solve, in scaled variables.
+class Search {
+ public:
+  Search(const ContactProblem& problem, SolverScratch& scratch, const double* r)
+      : problem_(scaleProblem(problem, scratch)), scratch_(scratch) {
+    Iterate* const iterates[] = {&current_, &trial_, &best_};
+    for (std::size_t k = 0; k < 3; ++k) *iterates[k] = {scratch.impulses[k].data(), scratch.velocities[k].data()};
+    for (int i = 0; i < problem.contactCount(); ++i)
+      for (int row = problem.firstRow(i); row < problem.firstRow(i + 1); ++row) current_.r[row] = r[row] * problem_.scale[i];
+    evaluate(problem_, current_);
+    std::fill(best_.r, best_.r + problem_.rowCount(), 0.0);
+    best_.residual = std::numeric_limits<double>::infinity();
+  }
+
+  SolveMethod run(const SolverOptions& options) {
+    const double tolerance = 0.5 * options.tolerance;  // leaves room for the round-off of scaling back
+    if (newton(tolerance, options.newton_iterations)) return SolveMethod::kNewton;
+    for (int sweeps = 0; sweeps < options.gauss_seidel_sweeps; sweeps += kSweepsPerRound) {
+      restartFromBest();
+      sweepGaussSeidel(problem_, kSweepsPerRound, current_);
+      iterations_ += kSweepsPerRound;
+      if (newton(tolerance, options.newton_iterations)) return SolveMethod::kGaussSeidel;
+    }
+    return SolveMethod::kNotConverged;
+  }
+
+  // The best impulses, in the caller's variables; none if nothing finite was found.
+  void write(double* r) const {
+    const bool found = std::isfinite(best_.residual);
+    for (int i = 0; i < problem_.contactCount(); ++i)
+      for (int row = problem_.firstRow(i); row < problem_.firstRow(i + 1); ++row) r[row] = found ? best_.r[row] / problem_.scale[i] : 0;
+  }
+  int iterations() const { return iterations_; }
+
+ private:
+  bool newton(double tolerance, int iterations) {
+    keepBest();
+    iterations_ += iterateNewton(problem_, tolerance, iterations, scratch_, current_, trial_);
+    keepBest();
+    return best_.residual <= tolerance;
+  }
+  void keepBest() {
+    if (!(current_.residual < best_.residual)) return;
+    std::copy(current_.r, current_.r + problem_.rowCount(), best_.r);
+    best_.residual = current_.residual;
+  }
+  void restartFromBest() { std::copy(best_.r, best_.r + problem_.rowCount(), current_.r); }
+
+  ScaledProblem problem_;
+  SolverScratch& scratch_;
+  Iterate current_{}, trial_{}, best_{};
+  int iterations_ = 0;
+};
+
+// Scales r so that  E(r) = r . (q + W r / 2),  the energy that it brings in, isn't positive: to the minimum of E on its ray.
+// The biases within q count as velocities, and compliance within W as inertia: the best that can be said without knowing the bodies, and on
+// the safe side but for work that a bias does on purpose (a penetration pushed out, a restitution).
+void removeAddedEnergy(const ContactProblem& problem, VectorMap r, VectorMap u) {
+  double work = 0;      // r . q
+  double response = 0;  // r . W r
+  for (int row = 0; row < problem.rowCount(); ++row) {
+    work += r.data()[row] * problem.q.data()[row];
+    response += r.data()[row] * (u.data()[row] - problem.q.data()[row]);
+  }
+  if (work + 0.5 * response <= 0) return;
+  const double scale = work < 0 ? -work / response : 0;
+  for (int row = 0; row < problem.rowCount(); ++row) r.data()[row] *= scale;
+}
+
+}  // namespace
+
+SolverScratch::SolverScratch(int contacts) : max_contacts(contacts) {
+  const auto n = static_cast<std::size_t>(contacts);
+  const std::size_t m = kMaxContactRows * n;
+  for (std::vector<double>* matrix : {&W, &jacobian}) matrix->resize(m * m);
+  for (std::vector<double>* vector : {&q, &step}) vector->resize(m);
+  for (std::vector<double>& vector : impulses) vector.resize(m);
+  for (std::vector<double>& vector : velocities) vector.resize(m);
+  scale.resize(n);
+  active.resize(n);
+}
+
+SolveResult solveContacts(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch, VectorMap r, VectorMap u) {
+  if (problem.contactCount() == 0) return {};
+  project(problem, r.data());
+  double residual = contactResidual(problem, r, u);
+  if (residual <= options.tolerance) return {SolveMethod::kWarmStart, 0, residual, true};
+  Search search(problem, scratch, r.data());
+  SolveMethod method = search.run(options);
+  search.write(r.data());
+  project(problem, r.data());
+  residual = contactResidual(problem, r, u);
+  if (!(residual <= options.tolerance)) {
+    method = SolveMethod::kNotConverged;
+    removeAddedEnergy(problem, r, u);
+    residual = contactResidual(problem, r, u);
+  }
+  return {method, search.iterations(), residual, method != SolveMethod::kNotConverged};
+}
+
+}  // namespace pincer::engine

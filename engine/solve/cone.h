@@ -1,0 +1,96 @@
+// cone: the Coulomb cone, for contact vectors of three or four rows.
+//
+//   K_mu = { r : |r_T| <= mu r_n },   r = (r_t1, r_t2, r_n[, r_tau]),   r_T = (r_t1, r_t2[, r_tau])
+//
+//   r    impulse [N s], velocity [m/s] or anything in proportion to them, in the contact frame C, whose third axis is the normal
+//   mu   friction coefficient [-], 0 <= mu < inf; 0 gives the half-line r_T = 0, r_n >= 0
+// Nothing here can fail; what isn't finite on entry isn't finite, or isn't inside, on return.
+// Sources: projection onto a second-order cone: F. Alizadeh, D. Goldfarb, Math. Program. 95 (2003) 3-51. The two coupled projections
+// (normal first, then a disc whose radius follows it): P. Alart, A. Curnier, Comput. Methods Appl. Mech. Engrg. 92 (1991) 353-375.
+#pragma once
+#include <cmath>
+
+#include "engine/solve/contact_problem.h"
+
+namespace pincer::engine {
+
+// The row of the k-th tangential component; k = 0, 1 and, with torsion, 2.
+constexpr int tangentRow(int k) { return k < kNormalRow ? k : k + 1; }
+
+inline double tangentNorm2(const double* v, int rows) {
+  const double planar = v[0] * v[0] + v[1] * v[1];
+  return rows == 4 ? planar + v[3] * v[3] : planar;
+}
+
+inline double tangentDot(const double* a, const double* b, int rows) {
+  const double planar = a[0] * b[0] + a[1] * b[1];
+  return rows == 4 ? planar + a[3] * b[3] : planar;
+}
+
+// |r_T| <= (1 + slack) mu r_n.
+inline bool isInCone(const double* r, int rows, double mu, double slack = 0) {
+  const double radius = (1 + slack) * mu * r[kNormalRow];
+  return r[kNormalRow] >= 0 && tangentNorm2(r, rows) <= radius * radius;
+}
+
+inline void setVector(double* v, int rows, double tangent_scale, const double* direction, double normal) {
+  for (int k = 0; k < rows; ++k) v[k] = tangent_scale * direction[k];
+  v[kNormalRow] = normal;
+}
+
+// p = the point of K_mu closest to y. p may be y itself.
+inline void projectOntoCone(const double* y, int rows, double mu, double* p) {
+  const double yT = std::sqrt(tangentNorm2(y, rows));
+  const double yn = y[kNormalRow];
+  if (yT <= mu * yn) return setVector(p, rows, 1, y, yn);  // inside
+  if (mu * yT <= -yn) return setVector(p, rows, 0, y, 0);  // in the polar cone
+  const double normal = (yn + mu * yT) / (1 + mu * mu);    // yT > 0 here: the cases above cover yT = 0
+  setVector(p, rows, mu * normal / yT, y, normal);
+}
+
+// The three ways in which Alart and Curnier's coupled projections act on y: off (y_n <= 0), inside the disc of radius mu y_n, or onto its rim.
+enum class ContactMode : unsigned char { kOpen, kStick, kSlide };
+
+inline ContactMode contactMode(const double* y, int rows, double mu) {
+  const double yn = y[kNormalRow];
+  if (!(yn > 0)) return ContactMode::kOpen;
+  return tangentNorm2(y, rows) <= mu * mu * yn * yn ? ContactMode::kStick : ContactMode::kSlide;
+}
+
+// Derivative of the coupled projections of a sliding y:  dp_T = s (I - t t^T) dy_T + mu t dy_n,  dp_n = dy_n,  t = y_T / |y_T|,  s = mu y_n / |y_T|.
+struct SlideDerivative {
+  double t[kMaxContactRows];  // [-]; its normal row is 0
+  double s;                   // [-], 0 <= s < 1
+  double mu;                  // [-]
+
+  void apply(const double* dy, int rows, double* dp) const {
+    const double along = tangentDot(t, dy, rows);
+    const double normal = dy[kNormalRow];
+    for (int k = 0; k < rows; ++k) dp[k] = s * (dy[k] - along * t[k]) + mu * normal * t[k];
+    dp[kNormalRow] = normal;
+  }
+};
+
+inline SlideDerivative slideDerivative(const double* y, int rows, double mu) {
+  const double inverse = 1 / std::sqrt(tangentNorm2(y, rows));
+  SlideDerivative d{};
+  setVector(d.t, rows, inverse, y, 0);
+  d.s = mu * y[kNormalRow] * inverse;
+  d.mu = mu;
+  return d;
+}
+
+// Squared natural map |w r - P_K(w r - u~)|^2 of the frictional contact law, u~ = u + mu |u_T| e_n; 0 iff r and u obey it [(m/s)^2].
+//   w  > 0: scale that turns impulses into velocities [1/kg]. K is a cone, so w P_K(y) = P_K(w y): no division.
+inline double naturalMap2(const double* r, const double* u, int rows, double mu, double w) {
+  double y[kMaxContactRows];
+  double p[kMaxContactRows];
+  for (int k = 0; k < rows; ++k) y[k] = w * r[k] - u[k];
+  y[kNormalRow] -= mu * std::sqrt(tangentNorm2(u, rows));
+  projectOntoCone(y, rows, mu, p);
+  double sum = 0;
+  for (int k = 0; k < rows; ++k) sum += (w * r[k] - p[k]) * (w * r[k] - p[k]);
+  return sum;
+}
+
+}  // namespace pincer::engine

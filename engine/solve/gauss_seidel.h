@@ -1,0 +1,13 @@
+// gauss_seidel: projected Gauss-Seidel with an exact solution per contact (local_contact.h).
+//
+// Slow where contacts are redundant or masses differ, but it hardly ever fails to improve: it carries Newton's method to where that converges.
+// Source: M. Jean, Comput. Methods Appl. Mech. Engrg. 177 (1999) 235-257 (non-smooth contact dynamics).
+#pragma once
+#include "engine/solve/scaled_problem.h"
+
+namespace pincer::engine {
+
+// `sweeps` passes over all contacts, in order. `it` is evaluated on return.
+void sweepGaussSeidel(const ScaledProblem& problem, int sweeps, Iterate& it);
+
+}  // namespace pincer::engine

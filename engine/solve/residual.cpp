@@ -1,0 +1,35 @@
+#include "engine/solve/residual.h"
+
+#include "engine/solve/cascade.h"
+
+namespace pincer::engine {
+
+double meanDiagonal(const ContactProblem& problem, int contact) {
+  const int rows = problem.rows(contact);
+  const int next = problem.rowCount() + 1;
+  const double* const diagonal = problem.W.data() + problem.firstRow(contact) * next;
+  const double sum = diagonal[0] + diagonal[next] + diagonal[2 * next];
+  return rows == 4 ? 0.25 * (sum + diagonal[3 * next]) : sum / 3;
+}
+
+double referenceSpeed(const ContactProblem& problem) {
+  double speed = kVelocityFloor;
+  for (int row = 0; row < problem.rowCount(); ++row) speed = std::max(speed, std::abs(problem.q.data()[row]));
+  return speed;
+}
+
+double contactResidual(const ContactProblem& problem, const Eigen::Ref<const Eigen::VectorXd>& r, Eigen::Ref<Eigen::VectorXd> u) {
+  const int m = problem.rowCount();
+  WorstResidual worst;
+  for (int i = 0; i < problem.contactCount(); ++i) {
+    const int first = problem.firstRow(i);
+    const int rows = problem.rows(i);
+    double* const u_i = u.data() + first;
+    contactVelocity(problem.W.data() + first, m, problem.q.data() + first, r.data(), rows, u_i);
+    const double error2 = naturalMap2(r.data() + first, u_i, rows, problem.friction(i), meanDiagonal(problem, i));
+    worst.add(error2, u_i[kNormalRow]);
+  }
+  return worst.relativeTo(referenceSpeed(problem));
+}
+
+}  // namespace pincer::engine

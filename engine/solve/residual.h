@@ -1,0 +1,47 @@
+// residual: how far impulses are from obeying the contact law, in a way that nothing that isn't finite can pass.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/solve/cone.h"
+
+namespace pincer::engine {
+
+// u = W r + q of one contact, its row sums in the order of the columns.
+//   W  the contact's first row in the m x m column-major matrix
+inline void contactVelocity(const double* W, int m, const double* q, const double* r, int rows, double* u) {
+  double sum[kMaxContactRows] = {q[0], q[1], q[2], rows == 4 ? q[3] : 0};
+  if (rows == 3)
+    for (int j = 0; j < m; ++j, W += m)
+      for (int k = 0; k < 3; ++k) sum[k] += W[k] * r[j];
+  else
+    for (int j = 0; j < m; ++j, W += m)
+      for (int k = 0; k < 4; ++k) sum[k] += W[k] * r[j];
+  for (int k = 0; k < rows; ++k) u[k] = sum[k];
+}
+
+// The largest natural map of all contacts.
+class WorstResidual {
+ public:
+  // error2  squared natural map [(m/s)^2];  u_n  normal velocity: where it is infinite the natural map may still be finite
+  void add(double error2, double u_n) {
+    worst2_ = std::max(worst2_, error2);
+    check_ += error2 + u_n;  // a maximum forgets a NaN, a sum doesn't
+  }
+  double relativeTo(double speed) const {
+    return std::isfinite(check_) ? std::sqrt(worst2_) / speed : std::numeric_limits<double>::infinity();
+  }
+
+ private:
+  double worst2_ = 0;
+  double check_ = 0;
+};
+
+// w_i, the mean of W_ii's diagonal [1/kg].
+double meanDiagonal(const ContactProblem& problem, int contact);
+
+// max(|q|_inf, kVelocityFloor) [m/s].
+double referenceSpeed(const ContactProblem& problem);
+
+}  // namespace pincer::engine

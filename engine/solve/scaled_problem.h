@@ -1,0 +1,41 @@
+// scaled_problem: a ContactProblem in variables in which every contact weighs the same.
+//
+//   r^ = s r,   u^ = u / s,   W^_ij = W_ij / (s_i s_j),   q^ = q / s,   s_i = sqrt(w_i),   w_i = mean of W_ii's diagonal
+//
+// s is one number per contact, so the cones and the law are unchanged; r^ and u^ are both in sqrt(J). The diagonal of W^ is about 1, whatever
+// the masses, so Alart-Curnier's rho, the line search's merit and the regularisation need no tuning.
+#pragma once
+#include "engine/solve/cascade.h"
+#include "engine/solve/contact_problem.h"
+
+namespace pincer::engine {
+
+struct ScaledProblem {
+  std::span<const int> first_row;
+  std::span<const double> mu;
+  const double* W = nullptr;      // m x m, column-major [-]
+  const double* q = nullptr;      // [sqrt(J)]
+  const double* scale = nullptr;  // s, one per contact [1/sqrt(kg)]
+  double speed = 1;               // what residuals are relative to [m/s], see contactResidual
+
+  int contactCount() const { return static_cast<int>(mu.size()); }
+  int rowCount() const { return first_row.back(); }
+  int firstRow(int contact) const { return first_row[static_cast<std::size_t>(contact)]; }
+  int rows(int contact) const { return firstRow(contact + 1) - firstRow(contact); }
+  double friction(int contact) const { return mu[static_cast<std::size_t>(contact)]; }
+};
+
+// Scales `problem` into `scratch`. Where some w_i isn't positive and finite, no iterate has a finite residual.
+ScaledProblem scaleProblem(const ContactProblem& problem, SolverScratch& scratch);
+
+// An attempt at a solution, in scaled variables; the arrays belong to SolverScratch.
+struct Iterate {
+  double* r;            // impulses, in the cones
+  double* u;            // velocities W^ r + q^
+  double residual = 0;  // contactResidual of r
+};
+
+// Fills `it.u` and `it.residual` from `it.r`.
+void evaluate(const ScaledProblem& problem, Iterate& it);
+
+}  // namespace pincer::engine
