@@ -14,16 +14,16 @@ namespace pincer::grasp {
 
 struct FingerModel {
   std::string name;
-  double radius = 8e-3;                    // of the fingertip sphere [m], > 0
-  engine::DrivenPointModel coupling;       // proxy mass, stiffness and damping
+  double radius = 8e-3;               // of the fingertip sphere [m], > 0
+  engine::DrivenPointModel coupling;  // proxy mass, stiffness and damping
   // The fingerpad frame L in the finger frame F: pad normal (out of the pad, where a flat touch lands) and distal axis (towards the nail tip).
-  Vec3 pad_normal_F = Vec3(0, 0, -1);      // unit
-  Vec3 distal_F = Vec3(1, 0, 0);           // unit, perpendicular to pad_normal_F
-  double reach = 30e-3;                    // nearer than this to a body, its nearest point is reported (for pre-positioning) [m], >= 0
+  Vec3 pad_normal_F = Vec3(0, 0, -1);  // unit
+  Vec3 distal_F = Vec3(1, 0, 0);       // unit, perpendicular to pad_normal_F
+  double reach = 30e-3;                // nearer than this to a body, its nearest point is reported (for pre-positioning) [m], >= 0
 };
 
 struct GraspModel {
-  engine::WorldModel world;                // its first points are the fingers' proxies, in order
+  engine::WorldModel world;  // its first points are the fingers' proxies, in order
   std::vector<FingerModel> fingers;
 };
 

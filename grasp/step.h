@@ -11,27 +11,27 @@ namespace pincer::grasp {
 
 // Device pose of a finger at the end of the tick.
 struct FingerInput {
-  Vec3 p_WF = Vec3::Zero();            // fingertip centre [m]
-  Vec3 v_WF = Vec3::Zero();            // its velocity [m/s]
-  Quat q_WF = Quat::Identity();        // orientation of the finger frame F
-  Vec3 f_W = Vec3::Zero();             // force on the proxy besides the coupling [N]
+  Vec3 p_WF = Vec3::Zero();      // fingertip centre [m]
+  Vec3 v_WF = Vec3::Zero();      // its velocity [m/s]
+  Quat q_WF = Quat::Identity();  // orientation of the finger frame F
+  Vec3 f_W = Vec3::Zero();       // force on the proxy besides the coupling [N]
 };
 
 struct GraspState {
   engine::WorldState world;
-  std::vector<contact::SurfaceTracker> trackers;   // finger-major: fingers x bodies
+  std::vector<contact::SurfaceTracker> trackers;  // finger-major: fingers x bodies
 };
 
 // What a finger feels after a tick.
 struct FingerReport {
   bool touching = false;
-  int body = -1;                        // that carries the largest force, -1 if none
-  Vec3 p_WC = Vec3::Zero();             // contact point (force-weighted mean of this finger's contacts) [m]
-  Vec3 n_W = Vec3::UnitZ();             // outward normal of the body there
-  Vec3 f_contact_W = Vec3::Zero();      // sum of the contact forces on the finger; the bodies feel exactly the negative of each [N]
-  Vec3 f_user_W = Vec3::Zero();         // to render on the user's finger: the coupling's reaction (equal to f_contact_W for a massless proxy) [N]
-  double normal_force = 0;              // [N], >= 0
-  double tangential_force = 0;          // [N]
+  int body = -1;                    // that carries the largest force, -1 if none
+  Vec3 p_WC = Vec3::Zero();         // contact point (force-weighted mean of this finger's contacts) [m]
+  Vec3 n_W = Vec3::UnitZ();         // outward normal of the body there
+  Vec3 f_contact_W = Vec3::Zero();  // sum of the contact forces on the finger; the bodies feel exactly the negative of each [N]
+  Vec3 f_user_W = Vec3::Zero();  // to render on the user's finger: the coupling's reaction (equal to f_contact_W for a massless proxy) [N]
+  double normal_force = 0;       // [N], >= 0
+  double tangential_force = 0;   // [N]
   bool sliding = false;
   Vec2 place_L = Vec2::Zero();          // contact on the pad: arc length (distal, radial) from the pad's centre [m]
   double gap = 0;                       // to the nearest body [m]; larger than `reach`: a lower bound
@@ -42,8 +42,8 @@ struct GraspScratch {
   explicit GraspScratch(const GraspModel& model);
   engine::WorldScratch world;
   std::vector<engine::PointInput> inputs;
-  std::vector<Vec3> nearest_n_W;        // per finger, of the nearest body
-  std::vector<FingerReport> fingers;    // the tick's result
+  std::vector<Vec3> nearest_n_W;      // per finger, of the nearest body
+  std::vector<FingerReport> fingers;  // the tick's result
 };
 
 // State with every body at `starts` and every finger's device at `fingers` [m].

@@ -3,7 +3,9 @@
 // Frames: B as the shape's author chose it; I the body's inertial frame, at its centre of mass, axes principal. Dynamics works in I,
 // people read B (bodyPose, world/state.h).
 #pragma once
+#include <array>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "contact/error.h"
@@ -17,24 +19,25 @@ namespace pincer::engine {
 // Surface of a body. Between two bodies: friction and restitution are the geometric means, the torsion radius the larger one's.
 // A finger takes the body's values: skin on plastic is a property of the pair.
 struct Material {
-  double mu_s = 0.5;            // static friction [-], >= 0
-  double mu_d = 0.5;            // dynamic friction [-], 0 <= mu_d <= mu_s
-  double restitution = 0;       // of the normal velocity [-], 0 .. 1
-  double torsion_radius = 0;    // e_t [m]: the contact carries a torsional moment up to e_t mu f_n; 0 for a point contact
+  double mu_s = 0.5;          // static friction [-], >= 0
+  double mu_d = 0.5;          // dynamic friction [-], 0 <= mu_d <= mu_s
+  double restitution = 0;     // of the normal velocity [-], 0 .. 1
+  double torsion_radius = 0;  // e_t [m]: the contact carries a torsional moment up to e_t mu f_n; 0 for a point contact
 };
 
 struct BodyModel {
   std::string name;
   contact::Shape shape;
-  bool dynamic = true;            // false: never moves
-  double mass = 0;                // [kg]; 0 for static bodies
-  double inverse_mass = 0;        // [1/kg]
-  Vec3 moments = Vec3::Zero();    // principal moments of inertia [kg m^2]
-  Pose X_BI;                      // inertial frame in B; identity for static bodies
+  bool dynamic = true;          // false: never moves
+  double mass = 0;              // [kg]; 0 for static bodies
+  double inverse_mass = 0;      // [1/kg]
+  Vec3 moments = Vec3::Zero();  // principal moments of inertia [kg m^2]
+  Pose X_BI;                    // inertial frame in B; identity for static bodies
   Pose X_IB;
   FreeRotation rotation;
   Material material;
-  double bounding_radius = 0;     // about the centre of mass [m]; infinite for half-spaces
+  double bounding_radius = 0;  // about the centre of mass [m]; infinite for half-spaces
+  bool may_touch = false;      // some pair or point can touch it; the others move in closed form alone
 };
 
 // A point that a spring and a damper pull towards a moving target, along each world axis on its own: a fingertip, or a probe.
@@ -45,23 +48,30 @@ struct BodyModel {
 // Source: J. E. Colgate, M. C. Stanley, J. M. Brown, "Issues in the haptic display of tool use", IROS 1995, 140-145.
 struct DrivenPointModel {
   std::string name;
-  double mass = 0;                      // [kg], >= 0
+  double mass = 0;                        // [kg], >= 0
   Vec3 stiffness = Vec3::Constant(1000);  // k [N/m], >= 0; mass + stiffness must be positive on every free axis
-  Vec3 damping = Vec3::Constant(5);     // d [N s/m], >= 0
+  Vec3 damping = Vec3::Constant(5);       // d [N s/m], >= 0
   Eigen::Array<bool, 3, 1> locked = Eigen::Array<bool, 3, 1>::Constant(false);  // this axis follows its target exactly
+};
+
+// How the spring-damper of one axis is integrated, chosen once by the builder.
+enum class AxisForm : unsigned char {
+  kLocked,       // follows its target
+  kFourthOrder,  // Fox-Goodwin quadrature of the spring: 4th order in the tick where the coupling is soft for the proxy's mass
+  kImplicit,     // force at the end of the tick: stable for any stiffness and for massless proxies, 1st order
 };
 
 // A pair of bodies that may touch: all that is constant about it.
 struct PairModel {
-  int a = 0, b = 0;                     // bodies, a < b
-  Material material;                    // combined
+  int a = 0, b = 0;   // bodies, a < b
+  Material material;  // combined
 };
 
 struct WorldOptions {
-  double h = 1e-3;                             // tick [s], 1e-5 .. 1e-2
-  Vec3 gravity_W = Vec3(0, 0, -9.81);          // [m/s^2]
-  double contact_margin = 1e-3;                // pairs closer than this make contacts [m], > 0
-  int max_contacts = 64;                       // 4 .. 256; more are dropped, deepest kept, and StepStatus says so
+  double h = 1e-3;                     // tick [s], 1e-5 .. 1e-2
+  Vec3 gravity_W = Vec3(0, 0, -9.81);  // [m/s^2]
+  double contact_margin = 1e-3;        // pairs closer than this make contacts [m], > 0
+  int max_contacts = 64;               // 4 .. 256; more are dropped, deepest kept, and StepStatus says so
   SolverOptions solver;
 };
 
@@ -69,7 +79,8 @@ struct WorldModel {
   WorldOptions options;
   std::vector<BodyModel> bodies;
   std::vector<DrivenPointModel> points;
-  std::vector<PairModel> pairs;                // only those that can touch: at least one dynamic, shapes supported
+  std::vector<std::array<AxisForm, 3>> point_forms;
+  std::vector<PairModel> pairs;  // only those that can touch: at least one dynamic, shapes supported
 };
 
 // What the builder is told about a body; B's pose and velocity at the start live in BodyStart.
@@ -77,7 +88,7 @@ struct BodySpec {
   std::string name;
   contact::Shape shape;
   bool dynamic = true;
-  double mass = 0;                 // [kg], > 0 for dynamic bodies
+  double mass = 0;  // [kg], > 0 for dynamic bodies
   Material material;
 };
 
@@ -85,9 +96,9 @@ struct BodySpec {
 class WorldBuilder {
  public:
   explicit WorldBuilder(const WorldOptions& options);
-  int addBody(const BodySpec& spec);                   // returns the body's index
-  int addPoint(const DrivenPointModel& point);         // returns the point's index
-  void excludePair(int a, int b);                      // these two never touch
+  int addBody(const BodySpec& spec);            // returns the body's index
+  int addPoint(const DrivenPointModel& point);  // returns the point's index
+  void excludePair(int a, int b);               // these two never touch
   WorldModel build() const;
 
  private:

@@ -23,19 +23,20 @@ struct Side {
 struct Contact {
   std::uint64_t id = 0;
   Side a, b;
-  Vec3 p_W = Vec3::Zero();           // where they touch [m]
-  Mat3 R_WC = Mat3::Identity();      // columns (t1, t2, n)
-  double phi = 0;                    // gap [m]
+  Vec3 p_W = Vec3::Zero();       // where they touch [m]
+  Mat3 R_WC = Mat3::Identity();  // columns (t1, t2, n)
+  double phi = 0;                // gap [m]
   Material material;
-  int memory = -1;                   // index in the state's contacts before the step, -1 for a new contact
+  int memory = -1;  // index in the state's contacts before the step, -1 for a new contact
   // filled by the step:
-  double mu = 0;                     // in force in this tick
+  double mu = 0;  // in force in this tick
   Vec3 arm_a_W = Vec3::Zero(), arm_b_W = Vec3::Zero();
-  Vec3 offset_W = Vec3::Zero();      // anchored stick: tangential offset of the points that stuck to each other [m]
-  bool closing = false;              // it closes in this tick, from a positive gap or with an approaching velocity
+  Vec3 offset_W = Vec3::Zero();                 // anchored stick: tangential offset of the points that stuck to each other [m]
+  double twist = 0;                             // torsional offset at the start of the tick [rad]
+  bool closing = false;                         // it closes in this tick, from a positive gap or with an approaching velocity
   Eigen::Vector4d r = Eigen::Vector4d::Zero();  // impulse on a in C, torsion last [N s]
-  Vec3 impulse_W = Vec3::Zero();     // impulse on a at p_W [N s]; b got exactly its negative
-  Vec3 u_C = Vec3::Zero();           // velocity of a relative to b at the end of the tick, biases included [m/s]
+  Vec3 impulse_W = Vec3::Zero();                // impulse on a at p_W [N s]; b got exactly its negative
+  Vec3 u_C = Vec3::Zero();                      // velocity of a relative to b at the end of the tick, biases included [m/s]
   bool sliding = false;
 
   Vec3 n_W() const { return R_WC.col(2); }
@@ -45,24 +46,24 @@ struct Contact {
 // One row of the Jacobian: u_row = lin . (v_a - v_b) + ang_a . w_a - ang_b . w_b.
 struct ContactRow {
   Vec3 lin, ang_a, ang_b;
-  Vec3 mlin_a, mlin_b;    // M^-1 J^T: inverse masses times lin, and
-  Vec3 mang_a, mang_b;    // inverse inertias times ang
+  Vec3 mlin_a, mlin_b;  // M^-1 J^T: inverse masses times lin, and
+  Vec3 mang_a, mang_b;  // inverse inertias times ang
 };
 
 // A body or point in this tick.
 struct BodyScratch {
   Pose X_WI_mid;
-  Mat3 inverse_inertia_W = Mat3::Zero();   // at the middle
+  Mat3 inverse_inertia_W = Mat3::Zero();  // at the middle
   Vec3 v_start_W = Vec3::Zero(), w_start_W = Vec3::Zero();
-  Vec3 v_free_W = Vec3::Zero(), w_free_W = Vec3::Zero();   // at the end of the tick, were there no contact
+  Vec3 v_free_W = Vec3::Zero(), w_free_W = Vec3::Zero();  // at the end of the tick, were there no contact
   Vec3 impulse_W = Vec3::Zero(), angular_impulse_W = Vec3::Zero();
-  bool closing = false;                    // takes part in a contact that closes in this tick
+  bool closing = false;  // takes part in a contact that closes in this tick
 };
 struct PointScratch {
   Vec3 p_mid_W = Vec3::Zero();
-  Vec3 v_free_W = Vec3::Zero();
-  Vec3 inverse_mass = Vec3::Zero();        // effective, per world axis, of the implicit spring-damper [1/kg]
-  Vec3 impulse_W = Vec3::Zero();           // of all contacts [N s]
+  Vec3 v_start_W = Vec3::Zero(), v_free_W = Vec3::Zero();
+  Vec3 inverse_mass = Vec3::Zero();                           // effective, per world axis, of the implicit spring-damper [1/kg]
+  Vec3 impulse_W = Vec3::Zero();                              // of all contacts [N s]
   Vec3 p_target_W = Vec3::Zero(), v_target_W = Vec3::Zero();  // at the end of the tick
   bool input_ok = true;
 };
@@ -72,15 +73,19 @@ struct WorldScratch {
 
   std::vector<BodyScratch> bodies;
   std::vector<PointScratch> points;
-  std::vector<Contact> contacts;           // capacity options.max_contacts
+  std::vector<Contact> contacts;  // capacity options.max_contacts
   bool contacts_dropped = false;
   std::vector<ContactRow> rows;
   std::vector<int> first_row;
   std::vector<double> mu, W, q, r, u;
   SolverScratch solver;
   SolveResult solve;
-  StageClock* clock = nullptr;             // set it to have the stages timed; null costs nothing
+  StageClock* clock = nullptr;  // set it to have the stages timed; null costs nothing
 };
+
+inline void mark(WorldScratch& scratch, Stage stage) {
+  if (scratch.clock) scratch.clock->mark(stage);
+}
 
 // Identity of a contact from tick to tick; contacts are sorted by it.
 //   kind 0: bodies (a, b, feature);  kind 1: point a on body b (feature)

@@ -8,12 +8,13 @@ namespace pincer::engine {
 
 enum class Stage : std::uint8_t { kPredict, kCollideBodies, kFingerContacts, kSolve, kAdvance, kFingerReport, kCount };
 constexpr int kStageCount = static_cast<int>(Stage::kCount);
-constexpr std::array<const char*, kStageCount> kStageNames = {"predict", "body contacts", "finger contacts", "solve", "advance", "pad places"};
+constexpr std::array<const char*, kStageCount> kStageNames = {"predict", "body contacts", "finger contacts",
+                                                              "solve",   "advance",       "pad places"};
 
 struct StageClock {
   using Clock = std::chrono::steady_clock;
   Clock::time_point last = Clock::now();
-  std::array<double, kStageCount> seconds{};   // of the last tick
+  std::array<double, kStageCount> seconds{};  // of the last tick
 
   void start() { last = Clock::now(); }
   void mark(Stage stage) {

@@ -9,55 +9,57 @@
 namespace pincer::engine {
 
 struct BodyState {
-  Pose X_WI;                     // inertial frame in W
-  Vec3 v_W = Vec3::Zero();       // of the centre of mass [m/s]
-  Vec3 L_W = Vec3::Zero();       // angular momentum about the centre of mass [kg m^2/s]
+  Pose X_WI;                // inertial frame in W
+  Vec3 v_W = Vec3::Zero();  // of the centre of mass [m/s]
+  Vec3 L_W = Vec3::Zero();  // angular momentum about the centre of mass [kg m^2/s]
 };
 
 struct PointState {
-  Vec3 p_W = Vec3::Zero();       // [m]
-  Vec3 v_W = Vec3::Zero();       // [m/s]
+  Vec3 p_W = Vec3::Zero();         // [m]
+  Vec3 v_W = Vec3::Zero();         // [m/s]
   Vec3 p_target_W = Vec3::Zero();  // where the target was at the end of the last tick
   Vec3 v_target_W = Vec3::Zero();
-  bool touching = false;         // a contact pushed on it in the last tick
+  bool touching = false;  // a contact pushed on it in the last tick
 };
 
 // What a contact remembers from tick to tick. Sorted by id.
 struct ContactMemory {
-  std::uint64_t id = 0;                          // see contactId
-  Eigen::Vector4d r = Eigen::Vector4d::Zero();   // impulse in C (t1, t2, n, torsion) [N s]; warm start
-  Vec3 t1_W = Vec3::UnitX();                     // first tangent of C, so that r keeps its meaning when n turns
+  std::uint64_t id = 0;                         // see contactId
+  Eigen::Vector4d r = Eigen::Vector4d::Zero();  // impulse in C (t1, t2, n, torsion) [N s]; warm start
+  Vec3 t1_W = Vec3::UnitX();                    // first tangent of C, so that r keeps its meaning when n turns
   Vec3 n_W = Vec3::UnitZ();
-  Vec3 arm_a_W = Vec3::Zero(), arm_b_W = Vec3::Zero();        // contact point from the two centres [m]
-  Vec3 anchor_a = Vec3::Zero(), anchor_b = Vec3::Zero();      // material points that stuck to each other, in I of each side (from the centre for points) [m]
-  double twist = 0;                              // torsional offset about n since it stuck [rad]
-  bool active = false;                           // pushed in the last tick
+  Vec3 arm_a_W = Vec3::Zero(), arm_b_W = Vec3::Zero();  // contact point from the two centres [m]
+  Vec3 anchor_a = Vec3::Zero(),
+       anchor_b = Vec3::Zero();  // material points that stuck to each other, in I of each side (from the centre for points) [m]
+  double twist = 0;              // torsional offset about n since it stuck [rad]
+  bool active = false;           // pushed in the last tick
   bool sliding = false;
 };
 
 struct WorldState {
-  double time = 0;               // [s]
+  double time = 0;  // [s]
   std::int64_t tick = 0;
   std::vector<BodyState> bodies;
   std::vector<PointState> points;
-  std::vector<ContactMemory> contacts;
+  std::vector<ContactMemory> contacts;  // always options.max_contacts of them, so that no tick allocates; the first contact_count count
+  int contact_count = 0;
 };
 
 // Pose X_WB and velocity of a body's own frame B at the start.
 struct BodyStart {
   Pose X_WB;
-  Vec3 v_W = Vec3::Zero();       // of the centre of mass [m/s]
-  Vec3 w_W = Vec3::Zero();       // [rad/s]
+  Vec3 v_W = Vec3::Zero();  // of the centre of mass [m/s]
+  Vec3 w_W = Vec3::Zero();  // [rad/s]
 };
 
 // State with every body at `starts` (one per body) and every point at rest on its target `points` (one per point). Throws InputError when
 // sizes differ or a value isn't finite.
 WorldState makeState(const WorldModel& model, const std::vector<BodyStart>& starts, const std::vector<Vec3>& points);
 
-Pose bodyPose(const WorldModel& model, const WorldState& state, int body);              // X_WB
-Vec3 bodyAngularVelocity(const WorldModel& model, const WorldState& state, int body);   // w_WB [rad/s]
-double kineticEnergy(const WorldModel& model, const WorldState& state);                 // of all bodies [J]
-double potentialEnergy(const WorldModel& model, const WorldState& state);               // in gravity, zero at W's origin [J]
+Pose bodyPose(const WorldModel& model, const WorldState& state, int body);             // X_WB
+Vec3 bodyAngularVelocity(const WorldModel& model, const WorldState& state, int body);  // w_WB [rad/s]
+double kineticEnergy(const WorldModel& model, const WorldState& state);                // of all bodies [J]
+double potentialEnergy(const WorldModel& model, const WorldState& state);              // in gravity, zero at W's origin [J]
 
 // FNV-1a hash over every bit of the state: equal states, equal hashes, on every machine.
 std::uint64_t hashOf(const WorldState& state);

@@ -28,10 +28,11 @@ struct PointInput {
 // What happened that a caller may have to know; each bit says what was dropped and what to change.
 enum StepStatus : std::uint32_t {
   kStepOk = 0,
-  kSolverNotConverged = 1u << 0,  // impulses are the best iterate, energy-safe. Loosen solver.tolerance, or look for contacts that contradict each other
-  kContactsDropped = 1u << 1,     // more contacts than options.max_contacts: the shallowest were dropped. Raise max_contacts
-  kStateNotFinite = 1u << 2,      // a NaN or infinity came out of the tick; the state isn't to be used any more. Restore a snapshot
-  kInputNotFinite = 1u << 3,      // a target or force wasn't finite; the point kept its last target
+  kSolverNotConverged =
+      1u << 0,  // impulses are the best iterate, energy-safe. Loosen solver.tolerance, or look for contacts that contradict each other
+  kContactsDropped = 1u << 1,  // more contacts than options.max_contacts: the shallowest were dropped. Raise max_contacts
+  kStateNotFinite = 1u << 2,   // a NaN or infinity came out of the tick; the state isn't to be used any more. Restore a snapshot
+  kInputNotFinite = 1u << 3,   // a target or force wasn't finite; the point kept its last target
 };
 
 struct StepReport {
@@ -41,7 +42,7 @@ struct StepReport {
 };
 
 void predict(const WorldModel& model, const WorldState& state, std::span<const PointInput> inputs, WorldScratch& scratch);
-void collideBodies(const WorldModel& model, const WorldState& state, WorldScratch& scratch);
+void collideBodies(const WorldModel& model, WorldScratch& scratch);
 void solveContacts(const WorldModel& model, const WorldState& state, WorldScratch& scratch);
 StepReport advance(const WorldModel& model, WorldState& state, WorldScratch& scratch);
 

@@ -1,0 +1,131 @@
+// From impulses to momenta, from momenta to poses, and what each contact remembers of it.
+#include <cmath>
+
+#include "engine/world/contact_rows.h"
+#include "engine/world/step.h"
+
+namespace pincer::engine {
+namespace {
+
+void applyImpulse(WorldScratch& scratch, const Side& side, const Vec3& arm_W, const Vec3& impulse_W, const Vec3& moment_W, bool closing) {
+  if (side.kind == SideKind::kPoint) {
+    scratch.points[side.index].impulse_W += impulse_W;
+    return;
+  }
+  BodyScratch& body = scratch.bodies[side.index];
+  body.impulse_W += impulse_W;
+  body.angular_impulse_W += arm_W.cross(impulse_W) + moment_W;
+  body.closing = body.closing || closing;
+}
+
+// The same impulse, to the last bit, on both sides.
+void distribute(WorldScratch& scratch) {
+  for (Contact& c : scratch.contacts) {
+    if (!c.active()) continue;
+    const Vec3 moment_W = (c.material.torsion_radius * c.r[3]) * c.n_W();
+    applyImpulse(scratch, c.a, c.arm_a_W, c.impulse_W, moment_W, c.closing);
+    applyImpulse(scratch, c.b, c.arm_b_W, -c.impulse_W, -moment_W, c.closing);
+  }
+}
+
+void advanceBody(const BodyModel& body, const BodyScratch& scratch, double h, BodyState& s) {
+  const Vec3 v_old = s.v_W, L_old = s.L_W;
+  s.v_W = scratch.v_free_W + body.inverse_mass * scratch.impulse_W;
+  s.L_W += scratch.angular_impulse_W;
+  s.X_WI.p += scratch.closing ? Vec3(h * s.v_W) : Vec3((0.5 * h) * (v_old + s.v_W));
+  const Vec3 L_mean = scratch.closing ? s.L_W : Vec3(0.5 * (L_old + s.L_W));
+  if (!L_mean.isZero(0)) rotateFreely(body.rotation, L_mean, h, s.X_WI.q);
+}
+
+void advancePoint(const std::array<AxisForm, 3>& forms, const PointScratch& scratch, bool touches, bool closing, double h, PointState& s) {
+  const Vec3 v_old = s.v_W;
+  s.v_W = scratch.v_free_W + scratch.inverse_mass.cwiseProduct(scratch.impulse_W);
+  for (int i = 0; i < 3; ++i) {
+    const bool second_order = !closing && (forms[i] == AxisForm::kFourthOrder || s.touching);
+    if (forms[i] == AxisForm::kLocked) {
+      s.p_W[i] = scratch.p_target_W[i];
+    } else {
+      s.p_W[i] += second_order ? 0.5 * h * (v_old[i] + s.v_W[i]) : h * s.v_W[i];
+    }
+  }
+  s.p_target_W = scratch.p_target_W;
+  s.v_target_W = scratch.v_target_W;
+  s.touching = touches;
+}
+
+Vec3 anchorOf(const WorldScratch& scratch, const Side& side, const Vec3& p_W) {
+  if (side.kind == SideKind::kPoint) return p_W - scratch.points[side.index].p_mid_W;
+  return scratch.bodies[side.index].X_WI_mid.inverse() * p_W;
+}
+
+Vec3 angularVelocityOf(const WorldModel& model, const WorldState& state, const Side& side) {
+  return side.kind == SideKind::kPoint ? Vec3(Vec3::Zero()) : bodyAngularVelocity(model, state, side.index);
+}
+
+// The anchor moves to today's contact point, the offset with it: sticking survives rolling.
+ContactMemory remember(const WorldModel& model, const WorldState& state, const WorldScratch& scratch, const Contact& c) {
+  ContactMemory m;
+  m.id = c.id;
+  m.r = c.r;
+  m.t1_W = c.R_WC.col(0);
+  m.n_W = c.n_W();
+  m.arm_a_W = c.arm_a_W;
+  m.arm_b_W = c.arm_b_W;
+  m.active = c.active();
+  m.sliding = c.sliding;
+  m.anchor_a = anchorOf(scratch, c.a, c.p_W + 0.5 * c.offset_W);
+  m.anchor_b = anchorOf(scratch, c.b, c.p_W - 0.5 * c.offset_W);
+  if (c.material.torsion_radius > 0 && m.active && !m.sliding) {
+    const Vec3 w_rel_W = angularVelocityOf(model, state, c.a) - angularVelocityOf(model, state, c.b);
+    m.twist = c.twist + model.options.h * c.n_W().dot(w_rel_W);
+  }
+  return m;
+}
+
+void rememberContacts(const WorldModel& model, WorldState& state, const WorldScratch& scratch) {
+  state.contact_count = 0;
+  for (const Contact& c : scratch.contacts) state.contacts[state.contact_count++] = remember(model, state, scratch, c);
+}
+
+bool touches(const WorldScratch& scratch, int point, bool closing_only) {
+  for (const Contact& c : scratch.contacts) {
+    const bool mine = (c.a.kind == SideKind::kPoint && c.a.index == point) || (c.b.kind == SideKind::kPoint && c.b.index == point);
+    if (mine && c.active() && (c.closing || !closing_only)) return true;
+  }
+  return false;
+}
+
+bool isFinite(const WorldState& state) {
+  double sum = 0;  // a NaN or infinity anywhere survives the sum
+  for (const BodyState& b : state.bodies) sum += b.X_WI.p.sum() + b.X_WI.q.coeffs().sum() + b.v_W.sum() + b.L_W.sum();
+  for (const PointState& p : state.points) sum += p.p_W.sum() + p.v_W.sum();
+  return std::isfinite(sum);
+}
+
+}  // namespace
+
+StepReport advance(const WorldModel& model, WorldState& state, WorldScratch& scratch) {
+  const double h = model.options.h;
+  distribute(scratch);
+  StepReport report;
+  for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+    if (model.bodies[i].dynamic) advanceBody(model.bodies[i], scratch.bodies[i], h, state.bodies[i]);
+  }
+  for (std::size_t i = 0; i < model.points.size(); ++i) {
+    const int point = static_cast<int>(i);
+    advancePoint(model.point_forms[i], scratch.points[i], touches(scratch, point, false), touches(scratch, point, true), h,
+                 state.points[i]);
+    if (!scratch.points[i].input_ok) report.status |= kInputNotFinite;
+  }
+  rememberContacts(model, state, scratch);
+  ++state.tick;
+  state.time = static_cast<double>(state.tick) * h;
+  report.contacts = static_cast<int>(scratch.contacts.size());
+  report.solve = scratch.solve;
+  if (!scratch.solve.converged) report.status |= kSolverNotConverged;
+  if (scratch.contacts_dropped) report.status |= kContactsDropped;
+  if (!isFinite(state)) report.status |= kStateNotFinite;
+  return report;
+}
+
+}  // namespace pincer::engine

@@ -1,0 +1,131 @@
+#include "engine/world/model.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "contact/shape/pair_query.h"
+
+namespace pincer::engine {
+namespace {
+
+void requireRange(const std::string& what, double value, double low, double high, const char* remedy) {
+  if (value >= low && value <= high) return;
+  throw InputError(fmt::format("{} = {} is out of range [{}, {}]. {}", what, value, low, high, remedy));
+}
+
+constexpr double kInfinity = std::numeric_limits<double>::max();
+
+void checkMaterial(const std::string& body, const Material& m) {
+  requireRange(body + ".material.mu_s", m.mu_s, 0, kInfinity, "A friction coefficient can't be negative; typical: skin on plastic 0.6.");
+  requireRange(body + ".material.mu_d", m.mu_d, 0, m.mu_s, "Dynamic friction lies between 0 and static friction mu_s.");
+  requireRange(body + ".material.restitution", m.restitution, 0, 1, "0 doesn't bounce, 1 keeps all speed.");
+  requireRange(body + ".material.torsion_radius", m.torsion_radius, 0, 1,
+               "It is about two thirds of the contact patch's radius: a few mm.");
+}
+
+bool isSupportOnly(const contact::Shape& shape) {
+  return std::holds_alternative<contact::HalfSpace>(shape) || std::holds_alternative<contact::Dish>(shape);
+}
+
+void setInertia(const BodySpec& spec, BodyModel& body) {
+  requireRange(spec.name + ".mass", spec.mass, 1e-9, 1e9, "A dynamic body needs a positive mass in kilograms.");
+  const PrincipalInertia inertia = principalInertia(massPropertiesOf(spec.shape, spec.mass));
+  body.mass = spec.mass;
+  body.inverse_mass = 1 / spec.mass;
+  body.moments = inertia.moments;
+  body.X_BI = inertia.X_BI;
+  body.X_IB = inertia.X_BI.inverse();
+  body.rotation = FreeRotation(inertia.moments);
+}
+
+// Fox-Goodwin is stable up to omega h = sqrt(6); half of the first axis' own limit leaves room for what the contact adds.
+AxisForm formOf(const DrivenPointModel& point, int axis, double h) {
+  if (point.locked[axis]) return AxisForm::kLocked;
+  const bool soft = point.stiffness[axis] * h * h <= 0.25 * point.mass && point.damping[axis] * h <= 0.5 * point.mass;
+  return point.mass > 0 && soft ? AxisForm::kFourthOrder : AxisForm::kImplicit;
+}
+
+}  // namespace
+
+Material combine(const Material& a, const Material& b) {
+  Material m;
+  m.mu_s = std::sqrt(a.mu_s * b.mu_s);
+  m.mu_d = std::min(m.mu_s, std::sqrt(a.mu_d * b.mu_d));
+  m.restitution = std::sqrt(a.restitution * b.restitution);
+  m.torsion_radius = std::max(a.torsion_radius, b.torsion_radius);
+  return m;
+}
+
+WorldBuilder::WorldBuilder(const WorldOptions& options) {
+  requireRange("tick", options.h, 1e-5, 1e-2, "The tick is in seconds; 0.001 is the usual one.");
+  requireRange("contact_margin", options.contact_margin, 1e-9, 1, "It is in metres; 0.001 suits hand-sized bodies.");
+  requireRange("max_contacts", options.max_contacts, 4, 256, "64 suits hand-sized scenes.");
+  requireRange("solver.tolerance", options.solver.tolerance, 1e-14, 1e-2, "1e-10 is the usual one.");
+  if (!options.gravity_W.allFinite()) throw InputError("gravity isn't finite. Give three numbers in m/s^2, for example [0, 0, -9.81].");
+  model_.options = options;
+}
+
+int WorldBuilder::addBody(const BodySpec& spec) {
+  checkMaterial(spec.name, spec.material);
+  BodyModel body;
+  body.name = spec.name;
+  body.shape = spec.shape;
+  body.dynamic = spec.dynamic;
+  body.material = spec.material;
+  if (spec.dynamic && isSupportOnly(spec.shape)) {
+    throw InputError(fmt::format("body \"{}\": half-spaces and dishes have no mass and can't move. Make it static.", spec.name));
+  }
+  if (spec.dynamic) setInertia(spec, body);
+  body.bounding_radius = contact::boundingRadius(spec.shape) + body.X_BI.p.norm();
+  model_.bodies.push_back(std::move(body));
+  return static_cast<int>(model_.bodies.size()) - 1;
+}
+
+int WorldBuilder::addPoint(const DrivenPointModel& point) {
+  requireRange(point.name + ".mass", point.mass, 0, 1e6, "A proxy's mass is zero or positive, in kilograms.");
+  for (int axis = 0; axis < 3; ++axis) {
+    requireRange(fmt::format("{}.stiffness[{}]", point.name, axis), point.stiffness[axis], 0, 1e9, "In N/m; 1000 suits a fingertip.");
+    requireRange(fmt::format("{}.damping[{}]", point.name, axis), point.damping[axis], 0, 1e6, "In N s/m; 5 suits a fingertip.");
+    if (!point.locked[axis] && point.mass <= 0 && point.stiffness[axis] <= 0) {
+      throw InputError(
+          fmt::format("{}: axis {} has neither mass nor stiffness, so nothing says how it moves. Give it a mass, a stiffness, or lock it.",
+                      point.name, axis));
+    }
+  }
+  model_.points.push_back(point);
+  return static_cast<int>(model_.points.size()) - 1;
+}
+
+void WorldBuilder::excludePair(int a, int b) { excluded_.emplace_back(std::min(a, b), std::max(a, b)); }
+
+WorldModel WorldBuilder::build() const {
+  WorldModel model = model_;
+  for (const DrivenPointModel& point : model.points) {
+    const double h = model.options.h;
+    model.point_forms.push_back({formOf(point, 0, h), formOf(point, 1, h), formOf(point, 2, h)});
+  }
+  const int n = static_cast<int>(model.bodies.size());
+  for (int a = 0; a < n; ++a) {
+    for (int b = a + 1; b < n; ++b) {
+      BodyModel &A = model.bodies[a], &B = model.bodies[b];
+      if (!A.dynamic && !B.dynamic) continue;
+      if (std::find(excluded_.begin(), excluded_.end(), std::pair(a, b)) != excluded_.end()) continue;
+      if (!contact::pairIsSupported(A.shape, B.shape)) {
+        throw InputError(fmt::format(
+            "bodies \"{}\" and \"{}\": this pair of shapes has no contact routine. Exclude the pair, or use a sphere for one of them.",
+            A.name, B.name));
+      }
+      model.pairs.push_back({a, b, combine(A.material, B.material)});
+      A.may_touch = B.may_touch = true;
+    }
+  }
+  if (!model.points.empty()) {
+    for (BodyModel& body : model.bodies) body.may_touch = true;
+  }
+  return model;
+}
+
+}  // namespace pincer::engine

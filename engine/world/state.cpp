@@ -1,0 +1,111 @@
+#include "engine/world/state.h"
+
+#include <fmt/format.h>
+
+#include <bit>
+
+namespace pincer::engine {
+namespace {
+
+class Fnv1a {
+ public:
+  void add(std::uint64_t bits) {
+    for (int byte = 0; byte < 8; ++byte) {
+      hash_ = (hash_ ^ ((bits >> (8 * byte)) & 0xff)) * 1099511628211ull;
+    }
+  }
+  void add(double x) { add(std::bit_cast<std::uint64_t>(x)); }
+  void add(const Vec3& v) {
+    for (int i = 0; i < 3; ++i) add(v[i]);
+  }
+  void add(const Quat& q) {
+    for (int i = 0; i < 4; ++i) add(q.coeffs()[i]);
+  }
+  std::uint64_t value() const { return hash_; }
+
+ private:
+  std::uint64_t hash_ = 14695981039346656037ull;
+};
+
+void add(Fnv1a& hash, const ContactMemory& c) {
+  hash.add(c.id);
+  for (int i = 0; i < 4; ++i) hash.add(c.r[i]);
+  for (const Vec3& v : {c.t1_W, c.n_W, c.arm_a_W, c.arm_b_W, c.anchor_a, c.anchor_b}) hash.add(v);
+  hash.add(c.twist);
+  hash.add(static_cast<std::uint64_t>(c.active) | static_cast<std::uint64_t>(c.sliding) << 1);
+}
+
+bool isFinite(const BodyStart& s) {
+  return s.X_WB.p.allFinite() && s.X_WB.q.coeffs().allFinite() && s.v_W.allFinite() && s.w_W.allFinite();
+}
+
+}  // namespace
+
+WorldState makeState(const WorldModel& model, const std::vector<BodyStart>& starts, const std::vector<Vec3>& points) {
+  if (starts.size() != model.bodies.size() || points.size() != model.points.size()) {
+    throw InputError(fmt::format("{} body starts and {} points given for a world of {} bodies and {} points.", starts.size(), points.size(),
+                                 model.bodies.size(), model.points.size()));
+  }
+  WorldState state;
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    const BodyModel& body = model.bodies[i];
+    if (!isFinite(starts[i])) throw InputError(fmt::format("body \"{}\": its start isn't finite.", body.name));
+    BodyState s;
+    s.X_WI = starts[i].X_WB * body.X_BI;
+    s.X_WI.q.normalize();
+    s.v_W = starts[i].v_W;
+    s.L_W = s.X_WI.q * body.moments.cwiseProduct(s.X_WI.q.conjugate() * starts[i].w_W);
+    state.bodies.push_back(s);
+  }
+  for (const Vec3& p : points) {
+    if (!p.allFinite()) throw InputError("a driven point's start isn't finite.");
+    PointState s;
+    s.p_W = s.p_target_W = p;
+    state.points.push_back(s);
+  }
+  state.contacts.resize(static_cast<std::size_t>(model.options.max_contacts));
+  return state;
+}
+
+Pose bodyPose(const WorldModel& model, const WorldState& state, int body) { return state.bodies[body].X_WI * model.bodies[body].X_IB; }
+
+Vec3 bodyAngularVelocity(const WorldModel& model, const WorldState& state, int body) {
+  if (!model.bodies[body].dynamic) return Vec3::Zero();
+  return angularVelocity(model.bodies[body].rotation, state.bodies[body].X_WI.q, state.bodies[body].L_W);
+}
+
+double kineticEnergy(const WorldModel& model, const WorldState& state) {
+  double energy = 0;
+  for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+    if (!model.bodies[i].dynamic) continue;
+    const BodyState& s = state.bodies[i];
+    energy += 0.5 * (model.bodies[i].mass * s.v_W.squaredNorm() + s.L_W.dot(bodyAngularVelocity(model, state, static_cast<int>(i))));
+  }
+  return energy;
+}
+
+double potentialEnergy(const WorldModel& model, const WorldState& state) {
+  double energy = 0;
+  for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+    energy -= model.bodies[i].mass * model.options.gravity_W.dot(state.bodies[i].X_WI.p);
+  }
+  return energy;
+}
+
+std::uint64_t hashOf(const WorldState& state) {
+  Fnv1a hash;
+  hash.add(state.time);
+  hash.add(static_cast<std::uint64_t>(state.tick));
+  for (const BodyState& b : state.bodies) {
+    hash.add(b.X_WI.q);
+    for (const Vec3& v : {b.X_WI.p, b.v_W, b.L_W}) hash.add(v);
+  }
+  for (const PointState& p : state.points) {
+    for (const Vec3& v : {p.p_W, p.v_W, p.p_target_W, p.v_target_W}) hash.add(v);
+    hash.add(static_cast<std::uint64_t>(p.touching));
+  }
+  for (int i = 0; i < state.contact_count; ++i) add(hash, state.contacts[i]);
+  return hash.value();
+}
+
+}  // namespace pincer::engine

@@ -1,0 +1,51 @@
+#include "engine/world/step.h"
+
+#include <cmath>
+
+#include "engine/world/contact_rows.h"
+
+namespace pincer::engine {
+namespace {
+
+constexpr double kSlidingSpeed = 1e-9;  // slower than this is rest: well above the solver's residual, far below anything felt [m/s]
+constexpr double kOnCone = 1 - 1e-9;    // of mu r_n, from which friction counts as exhausted
+
+void readSolution(const WorldScratch& scratch, int i, Contact& c) {
+  const int first = scratch.first_row[i], count = scratch.first_row[i + 1] - first;
+  c.r.setZero();
+  for (int k = 0; k < count; ++k) c.r[k] = scratch.r[first + k];
+  c.u_C = Eigen::Map<const Vec3>(&scratch.u[first]);
+  c.impulse_W = c.R_WC * c.r.head<3>();
+  const double spin = count > 3 ? scratch.u[first + 3] : 0;
+  const double friction = std::sqrt(c.r[0] * c.r[0] + c.r[1] * c.r[1] + c.r[3] * c.r[3]);
+  const double speed = std::sqrt(c.u_C[0] * c.u_C[0] + c.u_C[1] * c.u_C[1] + spin * spin);
+  c.sliding = c.active() && friction >= kOnCone * c.mu * c.r[2] && speed > kSlidingSpeed;
+}
+
+}  // namespace
+
+void solveContacts(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
+  scratch.solve = {};
+  if (scratch.contacts.empty()) return;
+  recallContacts(state, scratch);
+  const ContactProblem problem = assembleProblem(model, state, scratch);
+  const int m = problem.rowCount();
+  scratch.solve =
+      solveContacts(problem, model.options.solver, scratch.solver, VectorMap(scratch.r.data(), m), VectorMap(scratch.u.data(), m));
+  for (std::size_t i = 0; i < scratch.contacts.size(); ++i) readSolution(scratch, static_cast<int>(i), scratch.contacts[i]);
+}
+
+StepReport step(const WorldModel& model, WorldState& state, WorldScratch& scratch, std::span<const PointInput> inputs) {
+  if (scratch.clock) scratch.clock->start();
+  predict(model, state, inputs, scratch);
+  mark(scratch, Stage::kPredict);
+  collideBodies(model, scratch);
+  mark(scratch, Stage::kCollideBodies);
+  solveContacts(model, state, scratch);
+  mark(scratch, Stage::kSolve);
+  const StepReport report = advance(model, state, scratch);
+  mark(scratch, Stage::kAdvance);
+  return report;
+}
+
+}  // namespace pincer::engine

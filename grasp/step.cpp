@@ -1,0 +1,89 @@
+#include "grasp/step.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "grasp/finger_contacts.h"
+
+namespace pincer::grasp {
+namespace {
+
+void setInputs(std::span<const FingerInput> inputs, GraspScratch& scratch) {
+  for (std::size_t i = 0; i < inputs.size(); ++i) scratch.inputs[i] = {inputs[i].p_WF, inputs[i].v_WF, inputs[i].f_W};
+}
+
+// Sums the contacts of one finger into its report; returns the force-weighted direction from its centre to them.
+Vec3 sumContacts(const GraspScratch& scratch, int finger, double h, FingerReport& report) {
+  Vec3 p_sum = Vec3::Zero(), n_sum = Vec3::Zero(), tangential = Vec3::Zero();
+  double largest = 0;
+  for (const engine::Contact& c : scratch.world.contacts) {
+    if (c.a.kind != engine::SideKind::kPoint || c.a.index != finger || !c.active()) continue;
+    const double f_n = c.r[2] / h;
+    report.f_contact_W += c.impulse_W / h;
+    report.normal_force += f_n;
+    report.sliding = report.sliding || c.sliding;
+    tangential += (c.impulse_W - c.r[2] * c.n_W()) / h;
+    p_sum += f_n * c.p_W;
+    n_sum += f_n * c.n_W();
+    if (f_n > largest) report.body = c.b.index;
+    largest = std::max(largest, f_n);
+  }
+  report.touching = report.normal_force > 0;
+  if (!report.touching) return Vec3::Zero();
+  report.tangential_force = tangential.norm();
+  report.p_WC = p_sum / report.normal_force;
+  if (n_sum.squaredNorm() > 0) report.n_W = n_sum.normalized();
+  return -report.n_W;
+}
+
+void reportFinger(const GraspModel& model, const GraspState& state, const FingerInput& input, int finger, GraspScratch& scratch) {
+  const double h = model.world.options.h;
+  FingerReport& report = scratch.fingers[finger];
+  const Quat q_FW = input.q_WF.conjugate();
+  const Vec3 touch_W = sumContacts(scratch, finger, h, report);
+  if (report.touching) report.place_L = placeOnPad(model.fingers[finger], q_FW * touch_W);
+  const Vec3& n_W = scratch.nearest_n_W[finger];
+  if (!n_W.isZero(0)) report.nearest_place_L = placeOnPad(model.fingers[finger], q_FW * -n_W);
+  const Vec3 a_W = (state.world.points[finger].v_W - scratch.world.points[finger].v_start_W) / h;
+  report.f_user_W = report.f_contact_W + scratch.inputs[finger].f_W - model.fingers[finger].coupling.mass * a_W;
+}
+
+}  // namespace
+
+GraspScratch::GraspScratch(const GraspModel& model)
+    : world(model.world), inputs(model.fingers.size()), nearest_n_W(model.fingers.size()), fingers(model.fingers.size()) {}
+
+GraspState makeState(const GraspModel& model, const std::vector<engine::BodyStart>& starts, const std::vector<Vec3>& fingers) {
+  GraspState state{engine::makeState(model.world, starts, fingers), {}};
+  state.trackers.resize(model.fingers.size() * model.world.bodies.size());
+  return state;
+}
+
+engine::StepReport step(const GraspModel& model, GraspState& state, GraspScratch& scratch, std::span<const FingerInput> inputs) {
+  using engine::Stage;
+  if (scratch.world.clock) scratch.world.clock->start();
+  setInputs(inputs, scratch);
+  engine::predict(model.world, state.world, scratch.inputs, scratch.world);
+  engine::mark(scratch.world, Stage::kPredict);
+  engine::collideBodies(model.world, scratch.world);
+  engine::mark(scratch.world, Stage::kCollideBodies);
+  findFingerContacts(model, state, scratch);
+  engine::mark(scratch.world, Stage::kFingerContacts);
+  engine::solveContacts(model.world, state.world, scratch.world);
+  engine::mark(scratch.world, Stage::kSolve);
+  const engine::StepReport report = engine::advance(model.world, state.world, scratch.world);
+  engine::mark(scratch.world, Stage::kAdvance);
+  for (int i = 0; i < static_cast<int>(inputs.size()); ++i) reportFinger(model, state, inputs[i], i, scratch);
+  engine::mark(scratch.world, Stage::kFingerReport);
+  return report;
+}
+
+Vec2 placeOnPad(const FingerModel& finger, const Vec3& d_F) {
+  const Vec3 radial_F = finger.pad_normal_F.cross(finger.distal_F);
+  const Vec2 tangent(d_F.dot(finger.distal_F), d_F.dot(radial_F));
+  const double sine = tangent.norm();
+  if (sine < 1e-300) return Vec2::Zero();
+  return (finger.radius * std::atan2(sine, d_F.dot(finger.pad_normal_F)) / sine) * tangent;
+}
+
+}  // namespace pincer::grasp
