@@ -39,4 +39,9 @@ MassMatrix massMatrix(const Inertia& inertia, const Vec3& q);
 // c(q, qdot) [N m] for joint speeds `w` [rad/s], at the angles of `m`.
 Vec3 coriolis(const Inertia& inertia, const MassMatrix& m, const Vec3& w);
 
+// Joint speeds after dry friction whose impulse on joint i is at most `most[i]` [N m s]: the w' that minimises the kinetic energy
+// w'^T M w' / 2 over all such impulses (maximal dissipation), so a joint that friction can hold is at rest. Projected Gauss-Seidel on the
+// two coupled joints, at most 12 sweeps; every sweep lowers the energy, so a cut-off one still dissipates.
+Vec3 afterDryFriction(const MassMatrix& m, const Vec3& w, const Vec3& most);
+
 }  // namespace pincer::devices::premium

@@ -51,6 +51,7 @@ class SimCld final : public TactileDisplay {
 
  private:
   void tick();
+  void arrive();
   void moveAxis(int axis);
   void takeSample();
 
@@ -61,7 +62,7 @@ class SimCld final : public TactileDisplay {
   double owed_ = 0;                               // time passed since the last tick of the firmware [s]
   int frame_tick_ = 0;                            // ticks since the last frame
   int delay_ticks_ = 0;                           // that a command travels
-  int travelled_ = 0;                             // ticks that the command in flight has travelled
+  int hops_left_ = 0;                             // of the command in flight [ticks]
   std::optional<Vec2> mailbox_;                   // latest command, not yet fetched
   std::optional<Vec2> in_flight_;                 // fetched, not yet in effect
   Vec2 target_ = Vec2::Zero();                    // u [m]

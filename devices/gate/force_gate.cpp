@@ -1,0 +1,127 @@
+#include "devices/gate/force_gate.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pincer::devices {
+namespace {
+
+// Rounding must not carry a force over its bound.
+constexpr double kJustBelow = 1 - 4 * std::numeric_limits<double>::epsilon();
+
+// `v` shortened to `longest` with its direction kept; safe where |v|^2 overflows.
+Vec3 shortened(const Vec3& v, double longest) {
+  const double largest = v.cwiseAbs().maxCoeff();
+  if (largest <= longest && v.norm() <= longest) return v;
+  return (v / largest).normalized() * (longest * kJustBelow);
+}
+
+bool clockIsSound(const GateLimits& limits, double dt) { return dt > 0 && dt <= limits.watchdog_time; }
+
+bool isFresh(const GateLimits& limits, const GateInput& in, double newest) {
+  return std::abs(in.now - in.sample.time) <= limits.watchdog_time && in.sample.time >= newest;
+}
+
+// Comparisons are written so that NaN trips.
+Trip findTrip(const GateLimits& limits, const GateInput& in, const GateState& state) {
+  if (!in.f_D.allFinite() || !in.v_DF.allFinite()) return Trip::kNotFinite;
+  if (!in.physics_ok) return Trip::kException;
+  if (!in.sample.valid) return Trip::kInvalidSample;
+  if (!in.sample.p_DF.allFinite()) return Trip::kNotFinite;
+  if (!(in.v_DF.norm() <= limits.top_speed)) return Trip::kOverSpeed;
+  if (!clockIsSound(limits, in.dt)) return Trip::kMissedDeadline;
+  if (!isFresh(limits, in, state.sample_time)) return Trip::kStaleSample;
+  return Trip::kNone;
+}
+
+double ramp(const GateLimits& limits, double armed_for) { return armed_for < limits.ramp_time ? armed_for / limits.ramp_time : 1.0; }
+
+// What the motors can bear now [N].
+double thermalForce(const GateLimits& limits, double heat) {
+  const double continuous = limits.continuous_force * limits.continuous_force;
+  const double excess = std::max(0.0, limits.peak_force * limits.peak_force - continuous);
+  const double tau = limits.thermal_time / 10;
+  const double budget = excess * (limits.thermal_time + tau);
+  return std::sqrt(continuous + std::clamp((budget - heat) / tau, 0.0, excess));
+}
+
+double heatAfter(const GateLimits& limits, double heat, const Vec3& f_D, double dt) {
+  return std::max(0.0, heat + (f_D.squaredNorm() - limits.continuous_force * limits.continuous_force) * dt);
+}
+
+Vec3 shaped(const GateLimits& limits, const GateInput& in, const GateState& state) {
+  Vec3 f = shortened(in.f_D, limits.peak_force);
+  f *= ramp(limits, state.armed_for);
+  f = shortened(f, thermalForce(limits, state.heat));
+  return shortened(state.f_D + shortened(f - state.f_D, limits.slew * in.dt), limits.peak_force);
+}
+
+}  // namespace
+
+std::optional<std::string> problemWith(const GateLimits& limits) {
+  const auto wrong = [](const char* field, double value, const char* range) {
+    return std::string(field) + " = " + std::to_string(value) + " is out of range " + range + ". Take the arm's data sheet.";
+  };
+  const auto positive = [](double value) { return value > 0 && std::isfinite(value); };
+  if (!positive(limits.peak_force)) return wrong("peak_force", limits.peak_force, "(0, inf) N");
+  if (!positive(limits.continuous_force)) return wrong("continuous_force", limits.continuous_force, "(0, inf) N");
+  if (!positive(limits.thermal_time)) return wrong("thermal_time", limits.thermal_time, "(0, inf) s");
+  if (!positive(limits.slew)) return wrong("slew", limits.slew, "(0, inf) N/s");
+  if (!(limits.ramp_time >= 0 && std::isfinite(limits.ramp_time))) return wrong("ramp_time", limits.ramp_time, "[0, inf) s");
+  if (!positive(limits.top_speed)) return wrong("top_speed", limits.top_speed, "(0, inf) m/s");
+  if (!positive(limits.watchdog_time)) return wrong("watchdog_time", limits.watchdog_time, "(0, inf) s");
+  return std::nullopt;
+}
+
+std::string describe(Trip trip) {
+  switch (trip) {
+    case Trip::kNone:
+      return "No trip: forces are on, or were never armed; arm the arm to feel forces.";
+    case Trip::kNotFinite:
+      return "A force, velocity or position was not a number; forces stay zero: keep the log, then re-arm.";
+    case Trip::kOverSpeed:
+      return "The fingertip was faster than the limit; forces stay zero: hold the arm, then re-arm.";
+    case Trip::kStaleSample:
+      return "The arm's last sample was too old or its clock ran backward; forces stay zero: check the cable, then re-arm.";
+    case Trip::kInvalidSample:
+      return "The arm's sample was marked unusable; forces stay zero: check cable and power, then re-arm.";
+    case Trip::kMissedDeadline:
+      return "The servo loop stalled; forces stay zero: close other programs or run with real-time priority, then re-arm.";
+    case Trip::kException:
+      return "The simulation reported a fault; forces stay zero: read the log, then re-arm.";
+    case Trip::kOperator:
+      return "The operator switched the forces off; they stay zero until you re-arm.";
+  }
+  return "Unknown trip; forces stay zero until you re-arm.";
+}
+
+void arm(GateState& state) {
+  const double heat = state.heat;
+  state = GateState{};
+  state.armed = true;
+  state.heat = heat;
+}
+
+void trip(GateState& state, Trip cause) {
+  state.armed = false;
+  if (state.trip == Trip::kNone) state.trip = cause;
+  state.f_D = Vec3::Zero();
+}
+
+Vec3 gateForce(const GateLimits& limits, const GateInput& in, GateState& state) {
+  if (state.armed) {
+    const Trip cause = findTrip(limits, in, state);
+    if (cause != Trip::kNone) trip(state, cause);
+  }
+  if (state.armed) {
+    state.sample_time = in.sample.time;
+    state.armed_for += in.dt;
+    state.f_D = shaped(limits, in, state);
+  } else {
+    state.f_D = Vec3::Zero();
+  }
+  if (clockIsSound(limits, in.dt)) state.heat = heatAfter(limits, state.heat, state.f_D, in.dt);
+  return state.f_D;
+}
+
+}  // namespace pincer::devices
