@@ -1,6 +1,11 @@
-// obj_reader: a strict reader of Wavefront OBJ (v, vn, vt, f, g, o, s, usemtl, mtllib; polygons are triangulated).
+// obj_reader: a strict reader of Wavefront OBJ.
+//
+// Read: v (with an optional weight of 1 or a colour), vn, vt, f with corners v, v/vt, v//vn, v/vt/vn, indices from 1 or, negative, back from
+// the last; polygons are triangulated (polygon.h). Accepted without effect: g, o, s, usemtl, mtllib (names and looks), l and p (lines and
+// points have no surface). Refused by name: free-form curves and surfaces, and every keyword that isn't OBJ's.
 //
 // Bounded in time and memory by the file's size. Nothing is repaired silently: every defect throws InputError naming file, line, value and remedy.
+// Vertices and faces keep the file's order; vertices that no face uses stay in the mesh (mesh_report counts them).
 #pragma once
 #include <istream>
 #include <string>

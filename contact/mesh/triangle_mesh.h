@@ -10,11 +10,12 @@
 namespace pincer::contact {
 
 struct TriangleMesh {
-  std::vector<Vec3> vertices;                        // [m]
+  std::vector<Vec3> vertices;                          // [m]
   std::vector<std::array<std::int32_t, 3>> triangles;  // vertex indices, counter-clockwise seen from outside
-  std::vector<Vec3> normals;                         // unit normals as the file gave them; may be empty
-  std::vector<std::array<std::int32_t, 3>> triangle_normals;  // indices into `normals` per corner, -1 where the file has none; empty if none at all
-  std::string source;                                // the file's name, for messages
+  std::vector<Vec3> normals;                           // unit normals as the file gave them; may be empty
+  std::vector<std::array<std::int32_t, 3>>
+      triangle_normals;  // indices into `normals` per corner, -1 where the file has none; empty if none at all
+  std::string source;    // the file's name, for messages
 };
 
 }  // namespace pincer::contact
