@@ -17,16 +17,16 @@ namespace pincer::tasks {
 
 // One hand's finger on its arm.
 struct FingerMount {
-  Pose X_WD;                                    // arm base in the world (calibration data)
+  Pose X_WD;  // arm base in the world (calibration data)
   devices::GateLimits gate;
-  devices::PadPolicyOptions pad;
-  bool display_tactile = true;                  // false: the force-only condition, the tactor stays parked
+  devices::PadPolicy pad;
+  bool display_tactile = true;  // false: the force-only condition, the tactor stays parked
 };
 
 struct TickModel {
   grasp::GraspModel grasp;
-  std::vector<FingerMount> mounts;              // one per finger
-  double velocity_cutoff = 60;                  // of the low-pass on finger velocity [Hz]
+  std::vector<FingerMount> mounts;  // one per finger
+  double velocity_cutoff = 60;      // of the low-pass on finger velocity [Hz]
 };
 
 struct FingerInputs {
@@ -36,11 +36,11 @@ struct FingerInputs {
 
 // Per finger: what the device side of the tick remembers.
 struct MountState {
-  bool seen = false;                            // a valid sample has come
-  Vec3 p_WF = Vec3::Zero(), v_WF = Vec3::Zero();   // last finger pose, filtered velocity
+  bool seen = false;                              // a valid sample has come
+  Vec3 p_WF = Vec3::Zero(), v_WF = Vec3::Zero();  // last finger pose, filtered velocity
   double sample_time = 0;
   devices::GateState gate;
-  devices::PadPolicyState pad;
+  devices::PadState pad;
 };
 
 struct TickState {
@@ -49,7 +49,7 @@ struct TickState {
 };
 
 struct FingerOutputs {
-  Vec3 f_D = Vec3::Zero();                      // gated force for the arm [N]
+  Vec3 f_D = Vec3::Zero();  // gated force for the arm [N]
   devices::TactileCommand tactile;
 };
 
@@ -57,10 +57,11 @@ struct TickScratch {
   explicit TickScratch(const TickModel& model);
   grasp::GraspScratch grasp;
   std::vector<grasp::FingerInput> inputs;
-  std::vector<FingerOutputs> outputs;           // the tick's result, one per finger
+  std::vector<FingerOutputs> outputs;  // the tick's result, one per finger
 };
 
 // One tick at time `now` [s, the clock of the samples]. Results in scratch.outputs and scratch.grasp.fingers. Allocates nothing, throws nothing.
-engine::StepReport tick(const TickModel& model, TickState& state, TickScratch& scratch, const std::vector<FingerInputs>& inputs, double now);
+engine::StepReport tick(const TickModel& model, TickState& state, TickScratch& scratch, const std::vector<FingerInputs>& inputs,
+                        double now);
 
 }  // namespace pincer::tasks

@@ -1,0 +1,141 @@
+#include "tasks/servo/servo.h"
+
+#include <pthread.h>
+#include <sched.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <time.h>
+
+#include <stdexcept>
+#include <thread>
+
+#include "devices/gate/watchdog.h"
+
+namespace pincer::tasks {
+namespace {
+
+std::int64_t nowNs() {
+  timespec t;
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return static_cast<std::int64_t>(t.tv_sec) * 1'000'000'000 + t.tv_nsec;
+}
+
+void sleepUntil(std::int64_t ns) {
+  const timespec t{static_cast<time_t>(ns / 1'000'000'000), static_cast<long>(ns % 1'000'000'000)};
+  while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, nullptr) != 0) {
+  }
+}
+
+// Asks for what real time needs for the time of a session, and gives it back.
+class RealTimePriority {
+ public:
+  RealTimePriority() {
+    const sched_param param{.sched_priority = 80};
+    fifo_ = pthread_setschedparam(pthread_self(), SCHED_FIFO, &param) == 0;
+    locked_ = mlockall(MCL_CURRENT | MCL_FUTURE) == 0;
+    if (!fifo_) prctl(PR_SET_TIMERSLACK, 1UL);
+  }
+  ~RealTimePriority() {
+    const sched_param param{.sched_priority = 0};
+    if (fifo_) pthread_setschedparam(pthread_self(), SCHED_OTHER, &param);
+    if (locked_) munlockall();
+  }
+  RealTimePriority(const RealTimePriority&) = delete;
+  RealTimePriority& operator=(const RealTimePriority&) = delete;
+
+  std::string note() const {
+    std::string text;
+    if (!fifo_) text += "No SCHED_FIFO: ticks may be late (allow rtprio in limits.conf). ";
+    if (!locked_) text += "Memory isn't locked: a page fault may delay a tick (allow memlock in limits.conf). ";
+    return text;
+  }
+
+ private:
+  bool fifo_ = false, locked_ = false;
+};
+
+// The second thread: cuts the forces when the loop is silent.
+class WatchdogThread {
+ public:
+  WatchdogThread(double limit, ServoCycle& cycle) : dog_(static_cast<std::int64_t>(1e9 * limit)), cycle_(cycle) {
+    dog_.arm(nowNs());
+    thread_ = std::thread([this, period = static_cast<std::int64_t>(0.25e9 * limit)] { watch(period); });
+  }
+  ~WatchdogThread() {
+    stop_ = true;
+    thread_.join();
+  }
+  WatchdogThread(const WatchdogThread&) = delete;
+  WatchdogThread& operator=(const WatchdogThread&) = delete;
+
+  void feed() { dog_.feed(nowNs()); }
+  bool expired() const { return dog_.expired(); }
+
+ private:
+  void watch(std::int64_t period_ns) {
+    for (std::int64_t next = nowNs() + period_ns; !stop_; next += period_ns) {
+      sleepUntil(next);
+      if (dog_.check(nowNs())) cycle_.cutForces();
+    }
+  }
+  devices::Watchdog dog_;
+  ServoCycle& cycle_;
+  std::atomic<bool> stop_{false};
+  std::thread thread_;
+};
+
+bool timedTick(ServoCycle& cycle, double now, ServoReport& report) {
+  const std::int64_t start = nowNs();
+  const bool more = cycle.tick(now);
+  report.duration.add(1e-9 * static_cast<double>(nowNs() - start));
+  ++report.ticks;
+  return more;
+}
+
+void runVirtual(const ServoOptions& options, ServoCycle& cycle, const std::atomic<bool>& interrupted, ServoReport& report) {
+  while (!interrupted && timedTick(cycle, static_cast<double>(report.ticks) / options.rate, report)) {
+  }
+}
+
+void runReal(const ServoOptions& options, ServoCycle& cycle, const std::atomic<bool>& interrupted, ServoReport& report) {
+  const RealTimePriority priority;
+  report.note = priority.note();
+  WatchdogThread dog(options.watchdog, cycle);
+  const auto period = static_cast<std::int64_t>(1e9 / options.rate);
+  const std::int64_t start = nowNs();
+  bool more = true;
+  for (std::int64_t tick = 0; more && !interrupted; ++tick) {
+    sleepUntil(start + tick * period);
+    const std::int64_t late = nowNs() - (start + tick * period);
+    report.lateness.add(1e-9 * static_cast<double>(late));
+    report.missed += late / period;
+    tick += late / period;
+    more = timedTick(cycle, 1e-9 * static_cast<double>(tick * period), report);
+    dog.feed();
+  }
+  report.watchdog_tripped = dog.expired();
+}
+
+}  // namespace
+
+ServoReport runServo(const ServoOptions& options, ServoCycle& cycle, const std::atomic<bool>& interrupted) {
+  if (!(options.rate >= 100 && options.rate <= 4000)) throw std::invalid_argument("servo rate out of range [100, 4000] Hz");
+  if (!(options.watchdog > 0)) throw std::invalid_argument("servo watchdog must be positive");
+  ServoReport report;
+  const std::int64_t start = nowNs();
+  try {
+    if (options.real_time) {
+      runReal(options, cycle, interrupted, report);
+    } else {
+      runVirtual(options, cycle, interrupted, report);
+    }
+  } catch (...) {
+    cycle.cutForces();
+    throw;
+  }
+  report.interrupted = interrupted;
+  report.wall = 1e-9 * static_cast<double>(nowNs() - start);
+  return report;
+}
+
+}  // namespace pincer::tasks

@@ -1,0 +1,45 @@
+// servo: the clock of a session. In virtual time ticks follow each other as fast as they go; in real time they start every 1/rate, on the
+// system's monotonic clock. The cycle that it drives can't tell which.
+//
+// Real time: clock_nanosleep to absolute times, SCHED_FIFO and mlockall when permitted (a note says so when not). A tick whose time has passed
+// is skipped and counted, never caught up. A second thread watches: no finished tick for `watchdog` seconds cuts the forces, latched.
+#pragma once
+#include <atomic>
+#include <cstdint>
+#include <string>
+
+#include "tasks/servo/histogram.h"
+
+namespace pincer::tasks {
+
+class ServoCycle {
+ public:
+  virtual ~ServoCycle() = default;
+  // One tick at time `now` [s since the servo's start]. Returns false when there is no more to do.
+  virtual bool tick(double now) = 0;
+  // Zero force at every motor, latched until an operator arms again. Called from any thread.
+  virtual void cutForces() noexcept = 0;
+};
+
+struct ServoOptions {
+  bool real_time = false;
+  double rate = 1000;      // [Hz], 100 .. 4000
+  double watchdog = 5e-3;  // [s]; real time only
+};
+
+struct ServoReport {
+  std::int64_t ticks = 0;
+  std::int64_t missed = 0;  // skipped ticks; always 0 in virtual time
+  Histogram lateness;       // of a tick's start [s]; real time only
+  Histogram duration;       // of a tick [s]
+  double wall = 0;          // [s]
+  bool watchdog_tripped = false;
+  bool interrupted = false;
+  std::string note;  // what the system didn't permit; empty when all is well
+};
+
+// Runs `cycle` until it is done or `interrupted` becomes true. An exception from a tick cuts the forces and is passed on. Throws
+// std::invalid_argument for options out of range.
+ServoReport runServo(const ServoOptions& options, ServoCycle& cycle, const std::atomic<bool>& interrupted);
+
+}  // namespace pincer::tasks

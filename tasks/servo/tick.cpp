@@ -1,0 +1,82 @@
+#include "tasks/servo/tick.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace pincer::tasks {
+namespace {
+
+// Low-pass of the measured or differenced velocity; first order, so that it never overshoots.
+Vec3 filteredVelocity(const TickModel& model, const MountState& mount, const devices::ArmSample& sample, const Vec3& p_WF,
+                      const Mat3& R_WD) {
+  const double dt = sample.time - mount.sample_time;
+  if (!mount.seen || !(dt > 0)) return mount.v_WF;
+  const Vec3 raw_W = sample.v_DF ? Vec3(R_WD * *sample.v_DF) : Vec3((p_WF - mount.p_WF) / dt);
+  const double share = -std::expm1(-2 * std::numbers::pi * model.velocity_cutoff * dt);
+  return mount.v_WF + share * (raw_W - mount.v_WF);
+}
+
+// D -> W. A sample that can't be used leaves the finger where it was; the gate trips on it.
+void locateFinger(const TickModel& model, TickState& state, int i, const devices::ArmSample& sample, grasp::FingerInput& input) {
+  MountState& mount = state.mounts[i];
+  const Pose& X_WD = model.mounts[i].X_WD;
+  if (sample.valid && sample.p_DF.allFinite()) {
+    const Vec3 p_WF = X_WD * sample.p_DF;
+    mount.v_WF = filteredVelocity(model, mount, sample, p_WF, X_WD.q.toRotationMatrix());
+    if (!mount.seen) {  // the proxy starts where the finger is
+      engine::PointState& proxy = state.grasp.world.points[i];
+      proxy.p_W = proxy.p_target_W = p_WF;
+    }
+    mount.p_WF = p_WF;
+    mount.sample_time = sample.time;
+    mount.seen = true;
+  } else {
+    mount.v_WF.setZero();
+    if (!mount.seen) mount.p_WF = state.grasp.world.points[i].p_W;
+  }
+  input = {mount.p_WF, mount.v_WF, sample.q_DF ? X_WD.q * *sample.q_DF : X_WD.q, Vec3::Zero()};
+}
+
+Vec3 gatedForce(const TickModel& model, MountState& mount, const FingerMount& config, const devices::ArmSample& sample,
+                const Vec3& f_user_W, double now, std::uint32_t status) {
+  devices::GateInput in;
+  in.f_D = config.X_WD.q.conjugate() * f_user_W;
+  in.sample = sample;
+  in.v_DF = config.X_WD.q.conjugate() * mount.v_WF;
+  in.now = now;
+  in.dt = model.grasp.world.options.h;
+  // Impulses that didn't converge are still energy-safe; only what makes the numbers meaningless is a fault.
+  in.physics_ok = (status & (engine::kStateNotFinite | engine::kInputNotFinite)) == 0;
+  return devices::gateForce(config.gate, in, mount.gate);
+}
+
+devices::TactileCommand tactorTarget(const TickModel& model, MountState& mount, const FingerMount& config,
+                                     const grasp::FingerReport& finger) {
+  devices::PadInput in;
+  in.parked = !config.display_tactile;
+  if (finger.touching) {
+    in.contacts[0] = {finger.place_L, finger.normal_force};
+    in.contact_count = 1;
+  }
+  in.nearest = devices::NearestPoint{finger.nearest_place_L, finger.gap};
+  return devices::padCommand(config.pad, in, model.grasp.world.options.h, mount.pad);
+}
+
+}  // namespace
+
+TickScratch::TickScratch(const TickModel& model) : grasp(model.grasp), inputs(model.mounts.size()), outputs(model.mounts.size()) {}
+
+engine::StepReport tick(const TickModel& model, TickState& state, TickScratch& scratch, const std::vector<FingerInputs>& inputs,
+                        double now) {
+  const int n = static_cast<int>(model.mounts.size());
+  for (int i = 0; i < n; ++i) locateFinger(model, state, i, inputs[i].arm, scratch.inputs[i]);
+  const engine::StepReport report = grasp::step(model.grasp, state.grasp, scratch.grasp, scratch.inputs);
+  for (int i = 0; i < n; ++i) {
+    const grasp::FingerReport& finger = scratch.grasp.fingers[i];
+    scratch.outputs[i].f_D = gatedForce(model, state.mounts[i], model.mounts[i], inputs[i].arm, finger.f_user_W, now, report.status);
+    scratch.outputs[i].tactile = tactorTarget(model, state.mounts[i], model.mounts[i], finger);
+  }
+  return report;
+}
+
+}  // namespace pincer::tasks
