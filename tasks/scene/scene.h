@@ -1,0 +1,57 @@
+// scene: a world, the fingers in it and what is expected to happen, as read from a JSON file and checked (format: docs/scenes.md,
+// docs/scene.schema.json). The same files serve tests, benchmarks, demonstrations and users.
+#pragma once
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "grasp/step.h"
+#include "tasks/scene/expectation.h"
+#include "tasks/scene/quantity.h"
+#include "tasks/scene/trajectory.h"
+
+namespace pincer::tasks {
+
+struct SceneFinger {
+  grasp::FingerModel model;
+  Trajectory trajectory;    // of the device; a single point when the finger rests
+  Vec3 f_W = Vec3::Zero();  // constant force on the proxy, besides the coupling [N]
+};
+
+struct Recording {
+  std::int64_t every = 1;            // ticks between two rows
+  std::vector<Quantity> quantities;  // may be empty: nothing is recorded
+};
+
+struct Scene {
+  std::string file;  // for messages
+  std::string description;
+  engine::WorldOptions options;  // tick, gravity, solver
+  double duration = 0;           // [s], a whole number of ticks
+  std::vector<engine::BodySpec> bodies;
+  std::vector<engine::BodyStart> starts;  // one per body
+  std::vector<SceneFinger> fingers;
+  Recording record;
+  std::vector<Expectation> expectations;
+
+  std::int64_t ticks() const;  // in `duration`
+};
+
+constexpr int kSceneVersion = 1;
+
+// Throws InputError: file, line, path, value, range, remedy.
+Scene readScene(const std::string& path);
+// The same from text; files that it names are relative to the folder of `name`.
+Scene parseScene(std::string_view json, const std::string& name);
+
+grasp::GraspModel buildWorld(const Scene& scene);
+grasp::GraspState startState(const Scene& scene, const grasp::GraspModel& model);
+
+// Where every finger's device is at `time`, the end of a tick. One entry per finger.
+void fingerInputs(const Scene& scene, double time, std::span<grasp::FingerInput> inputs);
+
+// How many whole ticks `seconds` is, or -1 when it is none (to a millionth of a tick).
+std::int64_t wholeTicks(double seconds, double tick);
+
+}  // namespace pincer::tasks

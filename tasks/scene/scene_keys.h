@@ -1,0 +1,34 @@
+// scene_keys: the words of the scene format, for its reader and for the test that compares them with docs/scene.schema.json.
+#pragma once
+#include <array>
+#include <string_view>
+
+namespace pincer::tasks::keys {
+
+using Word = std::string_view;
+
+inline constexpr std::array<Word, 10> kScene = {"version", "description", "gravity", "tick",   "duration",
+                                                "solver",  "bodies",      "fingers", "record", "expect"};
+inline constexpr std::array<Word, 3> kSolver = {"tolerance", "max_contacts", "contact_margin"};
+inline constexpr std::array<Word, 10> kBody = {"name",     "shape",    "static",           "mass",    "density", "position",
+                                               "rotation", "velocity", "angular_velocity", "material"};
+inline constexpr std::array<Word, 4> kMaterial = {"mu_s", "mu_d", "restitution", "torsion_radius"};
+inline constexpr std::array<Word, 9> kFinger = {"name",   "radius", "mass",     "stiffness", "damping",
+                                                "locked", "force",  "position", "trajectory"};
+inline constexpr std::array<Word, 2> kTrajectory = {"keyframes", "csv"};
+inline constexpr std::array<Word, 2> kKeyframe = {"time", "position"};
+inline constexpr std::array<Word, 2> kRecord = {"interval", "quantities"};
+inline constexpr std::array<Word, 6> kExpectation = {"quantity", "time", "relation", "value", "tolerance", "because"};
+
+inline constexpr std::array<Word, 8> kShapeTypes = {"sphere",     "box",  "capsule", "cylinder", "cylinder_with_flat",
+                                                    "half_space", "dish", "mesh"};
+inline constexpr std::array<Word, 2> kSphere = {"type", "radius"};
+inline constexpr std::array<Word, 2> kBox = {"type", "size"};
+inline constexpr std::array<Word, 3> kCapsule = {"type", "radius", "length"};
+inline constexpr std::array<Word, 3> kCylinder = {"type", "radius", "length"};
+inline constexpr std::array<Word, 4> kCylinderWithFlat = {"type", "radius", "length", "flat_distance"};
+inline constexpr std::array<Word, 3> kHalfSpace = {"type", "normal", "point"};
+inline constexpr std::array<Word, 2> kDish = {"type", "radius"};
+inline constexpr std::array<Word, 5> kMesh = {"type", "file", "units", "scale", "crease_angle"};
+
+}  // namespace pincer::tasks::keys

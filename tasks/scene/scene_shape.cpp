@@ -1,0 +1,91 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "contact/mesh/mesh_report.h"
+#include "contact/mesh/obj_reader.h"
+#include "contact/surface/smooth_mesh.h"
+#include "tasks/scene/scene_keys.h"
+#include "tasks/scene/scene_parts.h"
+
+namespace pincer::tasks {
+namespace {
+
+constexpr NumberRule kCreaseAngle = {.min = 0, .max = std::numbers::pi, .min_open = true, .remedy = "In radians; 40 degrees are 0.698."};
+constexpr NumberRule kScale = {
+    .min = 0, .max = 1e6, .min_open = true, .remedy = "The shape is made this many times larger; 1 keeps its size."};
+
+double length(const JsonValue& json, std::string_view key) { return json.at(key, "In metres.").number(kLength); }
+
+contact::Shape readCapsule(const JsonValue& json) {
+  constexpr NumberRule straight = {
+      .min = 0, .max = kLongestLength, .remedy = "Of the straight part between the caps, in metres; 0 gives a sphere."};
+  return contact::Capsule{length(json, "radius"), json.at("length", "In metres.").number(straight) / 2};
+}
+
+contact::Shape readCylinderWithFlat(const JsonValue& json) {
+  const double radius = length(json, "radius");
+  const JsonValue& flat = json.at("flat_distance", "From the axis to the flat, in metres.");
+  const double distance = flat.number(kLength);
+  if (distance >= radius)
+    flat.reject(fmt::format("isn't smaller than the radius {}: nothing would be cut off. Use the type \"cylinder\".", radius));
+  return contact::CylinderWithFlat{radius, length(json, "length") / 2, distance};
+}
+
+contact::TriangleMesh readTriangles(const JsonValue& json, const std::string& scene_file) {
+  const std::string& units = json.at("units", "The unit of the file's coordinates: \"m\", \"cm\", \"mm\" or \"in\".").text();
+  const std::string path = besideScene(scene_file, json.at("file", "An OBJ file, relative to the scene's folder.").text());
+  const JsonValue* scale = json.find("scale");
+  return contact::readObj(path, contact::metresPerUnit(units) * (scale ? scale->number(kScale) : 1));
+}
+
+contact::Shape readMesh(const JsonValue& json, const std::string& scene_file) {
+  contact::SurfaceOptions options;
+  if (const JsonValue* angle = json.find("crease_angle")) {
+    options.crease_angle = angle->number(kCreaseAngle);
+    options.use_file_normals = false;
+  }
+  try {
+    contact::TriangleMesh triangles = readTriangles(json, scene_file);
+    contact::requireClosed(triangles);
+    return contact::Mesh{contact::SmoothMesh::build(std::move(triangles), options)};
+  } catch (const InputError& error) {
+    json.reject(fmt::format("can't be used: {}", error.what()));
+  }
+}
+
+std::span<const std::string_view> keysOf(std::size_t type) {
+  constexpr std::array<std::span<const std::string_view>, keys::kShapeTypes.size()> all = {
+      keys::kSphere, keys::kBox, keys::kCapsule, keys::kCylinder, keys::kCylinderWithFlat, keys::kHalfSpace, keys::kDish, keys::kMesh};
+  return all[type];
+}
+
+}  // namespace
+
+contact::Shape readShape(const JsonValue& json, const std::string& file) {
+  const std::size_t type = json.at("type", "One of the shapes in docs/scenes.md.").oneOf(keys::kShapeTypes);
+  json.allowOnly(keysOf(type));
+  const std::string_view name = keys::kShapeTypes[type];
+  if (name == "sphere") return contact::Sphere{length(json, "radius")};
+  if (name == "box") return contact::Box{json.at("size", "Edge lengths [x, y, z] in metres.").vector(kLength) / 2};
+  if (name == "capsule") return readCapsule(json);
+  if (name == "cylinder") return contact::Cylinder{length(json, "radius"), length(json, "length") / 2};
+  if (name == "cylinder_with_flat") return readCylinderWithFlat(json);
+  if (name == "dish") return contact::Dish{length(json, "radius")};
+  if (name == "mesh") return readMesh(json, file);
+  return contact::HalfSpace{};
+}
+
+Pose readHalfSpacePose(const JsonValue& shape) {
+  Pose X_WB;
+  if (const JsonValue* point = shape.find("point")) X_WB.p = point->vector(kCoordinate);
+  const JsonValue* normal = shape.find("normal");
+  if (!normal) return X_WB;
+  const Vec3 n = normal->vector({.min = -1e6, .max = 1e6});
+  if (!(n.norm() > 1e-6)) normal->reject("has no length, so it has no direction. It points out of the solid: [0, 0, 1] for a floor.");
+  X_WB.q = Quat(frameFromNormal(n.normalized())).normalized();
+  return X_WB;
+}
+
+}  // namespace pincer::tasks

@@ -1,0 +1,19 @@
+// spelling: the word that somebody probably meant.
+#pragma once
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace pincer::tasks {
+
+// Least number of letters to insert, delete or replace that turns `a` into `b`.
+// Source: V. I. Levenshtein, Soviet Physics Doklady 10(8) (1966) 707-710; table by rows after R. Wagner, M. Fischer, J. ACM 21(1) (1974).
+int editDistance(std::string_view a, std::string_view b);
+
+// The closest of `candidates`, empty if none is within a third of the word's length (at least 1, at most 3 edits).
+std::string_view closestWord(std::string_view word, std::span<const std::string_view> candidates);
+
+// " Did you mean "mass"?", or the list of candidates when none is close.
+std::string suggestion(std::string_view word, std::span<const std::string_view> candidates);
+
+}  // namespace pincer::tasks
