@@ -1,0 +1,113 @@
+// columns: the one list of what a stored record's columns are called and which number stands in each. The schema, the writer, the reader
+// and the CSV export all follow it.
+//
+//   forEachColumn(record, visit)   calls visit(ColumnName, field) for each column in order
+//
+// A name is [finger_]quantity[_axis][_unit]: `f0_normal_N`, `f1_place_shown_L_x_m`, `duration_s`. Units are SI, as in records.h; frames and
+// symbols too. Fields are std::int64_t, std::int32_t, std::uint32_t, std::uint64_t, double or std::string.
+#pragma once
+#include <array>
+#include <concepts>
+#include <string>
+#include <string_view>
+
+#include "tasks/session/records.h"
+
+namespace pincer::tasks {
+
+struct ColumnName {
+  std::string_view finger, quantity, axis, unit;  // empty parts are left out
+  std::string text() const {
+    std::string name;
+    for (const std::string_view part : {finger, quantity, axis, unit}) {
+      if (part.empty()) continue;
+      if (!name.empty()) name += '_';
+      name += part;
+    }
+    return name;
+  }
+};
+
+template <class R, class Record>
+concept RecordOf = std::same_as<std::remove_const_t<R>, Record>;
+
+namespace columns {
+constexpr std::array<std::string_view, 4> kAxes{"x", "y", "z", ""};
+
+template <class Visit, class Array>
+void axes(Visit& visit, std::string_view finger, std::string_view quantity, std::string_view unit, Array& values) {
+  for (std::size_t i = 0; i < values.size(); ++i) visit(ColumnName{finger, quantity, kAxes[i], unit}, values[i]);
+}
+
+template <RecordOf<FingerRecord> R, class Visit>
+void finger(std::string_view f, R& r, Visit& visit) {
+  axes(visit, f, "p_WF", "m", r.p_WF);
+  axes(visit, f, "p_WP", "m", r.p_WP);
+  axes(visit, f, "f_contact_W", "N", r.f_contact_W);
+  axes(visit, f, "f_arm_D", "N", r.f_arm_D);
+  visit(ColumnName{f, "normal", "", "N"}, r.normal_force);
+  visit(ColumnName{f, "tangential", "", "N"}, r.tangential_force);
+  visit(ColumnName{f, "gap", "", "m"}, r.gap);
+  axes(visit, f, "place_wanted_L", "m", r.place_wanted_L);
+  axes(visit, f, "place_shown_L", "m", r.place_shown_L);
+  visit(ColumnName{f, "flags", "", ""}, r.flags);
+}
+}  // namespace columns
+
+template <RecordOf<SampleRecord> R, class Visit>
+void forEachColumn(R& r, Visit&& visit) {
+  constexpr std::array<std::string_view, 4> kQuaternion{"w", "x", "y", "z"};
+  constexpr std::array<std::string_view, kRecordedFingers> kFingers{"f0", "f1"};
+  visit(ColumnName{"", "trial", "", ""}, r.trial);
+  visit(ColumnName{"", "tick", "", ""}, r.tick);
+  visit(ColumnName{"", "time", "", "s"}, r.time);
+  columns::axes(visit, "", "p_WB", "m", r.p_WB);
+  for (std::size_t i = 0; i < r.q_WB.size(); ++i) visit(ColumnName{"", "q_WB", kQuaternion[i], ""}, r.q_WB[i]);
+  columns::axes(visit, "", "v_WB", "m_per_s", r.v_WB);
+  for (std::size_t i = 0; i < r.fingers.size(); ++i) columns::finger(kFingers[i], r.fingers[i], visit);
+  visit(ColumnName{"", "tick", "", "us"}, r.tick_us);
+  visit(ColumnName{"", "status", "", ""}, r.status);
+}
+
+template <RecordOf<EventRecord> R, class Visit>
+void forEachColumn(R& r, Visit&& visit) {
+  visit(ColumnName{"", "trial", "", ""}, r.trial);
+  visit(ColumnName{"", "time", "", "s"}, r.time);
+  visit(ColumnName{"", "kind", "", ""}, r.kind);
+  visit(ColumnName{"", "detail", "", ""}, r.detail);
+}
+
+template <RecordOf<TrialRecord> R, class Visit>
+void forEachColumn(R& r, Visit&& visit) {
+  visit(ColumnName{"", "trial", "", ""}, r.trial);
+  visit(ColumnName{"", "participant", "", ""}, r.participant);
+  visit(ColumnName{"", "condition", "", ""}, r.condition);
+  visit(ColumnName{"", "place_in_order", "", ""}, r.index);
+  visit(ColumnName{"", "mu_s", "", ""}, r.mu_s);
+  visit(ColumnName{"", "mu_d", "", ""}, r.mu_d);
+  visit(ColumnName{"", "outcome", "", ""}, r.outcome);
+  visit(ColumnName{"", "duration", "", "s"}, r.duration);
+  visit(ColumnName{"", "squeezes", "", ""}, r.squeezes);
+  visit(ColumnName{"", "lifts", "", ""}, r.lifts);
+  visit(ColumnName{"", "tries_5mm", "", ""}, r.tries_5mm);
+  visit(ColumnName{"", "slips", "", ""}, r.slips);
+  visit(ColumnName{"", "drops", "", ""}, r.drops);
+  visit(ColumnName{"", "peak_grip", "", "N"}, r.peak_grip);
+  visit(ColumnName{"", "grip_ratio", "", ""}, r.grip_ratio);
+  visit(ColumnName{"", "offset_at_squeeze", "", "m"}, r.offset_at_squeeze);
+  visit(ColumnName{"", "tick_median", "", "us"}, r.tick_us_median);
+  visit(ColumnName{"", "tick_p999", "", "us"}, r.tick_us_p999);
+}
+
+template <RecordOf<SessionInfo> R, class Visit>
+void forEachColumn(R& r, Visit&& visit) {
+  visit(ColumnName{"", "task", "", ""}, r.task);
+  visit(ColumnName{"", "seed", "", ""}, r.seed);
+  visit(ColumnName{"", "version", "", ""}, r.version);
+  visit(ColumnName{"", "build", "", ""}, r.build);
+  visit(ColumnName{"", "scene_json", "", ""}, r.scene_json);
+  visit(ColumnName{"", "protocol_json", "", ""}, r.protocol_json);
+  visit(ColumnName{"", "devices_json", "", ""}, r.devices_json);
+}
+
+}  // namespace pincer::tasks

@@ -1,0 +1,71 @@
+#include "tasks/session/csv_export.h"
+
+#include "tasks/session/atomic_file.h"
+#include "tasks/session/columns.h"
+#include "tasks/session/csv.h"
+
+namespace pincer::tasks {
+
+namespace {
+
+template <class Record>
+void addNames(CsvTable& table) {
+  const Record record{};
+  forEachColumn(record, [&](const ColumnName& name, const auto&) { table.add(name.text()); });
+}
+
+template <class Record>
+void addValues(CsvTable& table, const Record& record) {
+  forEachColumn(record, [&](const ColumnName&, const auto& field) { table.add(field); });
+}
+
+template <class Record>
+std::string asCsv(const std::vector<Record>& records) {
+  CsvTable table;
+  addNames<Record>(table);
+  table.endRow();
+  for (const Record& record : records) {
+    addValues(table, record);
+    table.endRow();
+  }
+  return table.take();
+}
+
+std::string sessionCsv(const SessionReader& session) {
+  CsvTable table;
+  addNames<SessionInfo>(table);
+  table.row("started_utc", "state", "samples_dropped");
+  addValues(table, session.info());
+  table.row(session.startedUtc(), session.state(), session.samplesDropped());
+  return table.take();
+}
+
+// Streamed: a session of an hour holds millions of samples.
+void writeSamples(const SessionReader& session, const SampleFilter& filter, const std::string& path) {
+  AtomicFile file(path);
+  CsvTable table;
+  addNames<SampleRecord>(table);
+  table.endRow();
+  session.forEachSample(filter, [&](const SampleRecord& sample) {
+    addValues(table, sample);
+    table.endRow();
+    file.write(table.take());
+  });
+  file.write(table.take());
+  file.commit();
+}
+
+}  // namespace
+
+std::vector<std::string> exportCsv(const SessionReader& session, const std::string& directory, const SampleFilter& filter) {
+  makeDirectory(directory);
+  const std::vector<std::string> paths{directory + "/session.csv", directory + "/trial.csv", directory + "/sample.csv",
+                                       directory + "/event.csv"};
+  writeAtomically(paths[0], sessionCsv(session));
+  writeAtomically(paths[1], asCsv(session.trials()));
+  writeSamples(session, filter, paths[2]);
+  writeAtomically(paths[3], asCsv(session.events()));
+  return paths;
+}
+
+}  // namespace pincer::tasks

@@ -1,0 +1,67 @@
+// database: an SQLite file behind a wall. The only file that speaks to SQLite is database_sqlite.cpp; this header knows none of its types.
+//
+// Every failure throws InputError that names the file, what was being done, SQLite's reason and what a person can do about it.
+// A Database and its Statements belong to one thread at a time.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+
+struct sqlite3;
+struct sqlite3_stmt;
+
+namespace pincer::tasks {
+
+class Database;
+
+// A prepared statement. Parameters and columns count from 0.
+class Statement {
+ public:
+  Statement(const Database& database, std::string_view sql);
+  Statement(Statement&&) noexcept = default;
+  Statement& operator=(Statement&&) noexcept = default;
+
+  // NaN is stored as NULL, and NULL is read as NaN.
+  void bind(int parameter, double value);
+  void bind(int parameter, std::int64_t value);
+  void bind(int parameter, std::string_view value);  // copied
+
+  bool step();  // true: a row is there; false: done, and ready to run again
+  double real(int column) const;
+  std::int64_t integer(int column) const;
+  std::string text(int column) const;
+
+ private:
+  struct Finalize {
+    void operator()(sqlite3_stmt* s) const noexcept;
+  };
+  const Database* database_;
+  std::unique_ptr<sqlite3_stmt, Finalize> statement_;
+};
+
+class Database {
+ public:
+  enum class Mode { kRead, kWrite };
+  Database(std::string path, Mode mode);  // the file must exist
+  Database(Database&&) = delete;
+
+  void run(const std::string& sql);                    // one or several statements without parameters or wanted rows
+  std::int64_t integer(const std::string& sql) const;  // the first column of the first row; 0 if there is no row
+  std::string text(const std::string& sql) const;
+  void rollBack() noexcept;  // of a transaction that may have failed already
+  void close();              // throws if SQLite can't
+
+  const std::string& path() const { return path_; }
+  sqlite3* handle() const { return database_.get(); }
+  [[noreturn]] void fail(int code, std::string_view doing) const;
+
+ private:
+  struct Close {
+    void operator()(sqlite3* d) const noexcept;
+  };
+  std::string path_;
+  std::unique_ptr<sqlite3, Close> database_;
+};
+
+}  // namespace pincer::tasks

@@ -1,0 +1,87 @@
+// session_store: one SQLite file per session, safe against a kill at any moment.
+//
+//   tick --pushSample--> ring --> writer thread --a transaction at least every 50 ms--> file (write-ahead log)
+//
+// A finished trial is committed and synchronised to the disk before finishTrial() returns; samples and events reach the file within 50 ms and
+// so survive a kill of the process (after a power cut the last ones may be missing). The column `state` of table `session` reads "running"
+// until close() writes "complete" or a failure "aborted: <why>"; a killed session therefore stays "running", and a reader says so.
+//
+// Errors: InputError with path, cause and remedy. What fails in the writer thread is thrown by the next call and by close().
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tasks/session/records.h"
+
+namespace pincer::tasks {
+
+class Database;
+
+struct SessionOptions {
+  bool block_when_full = false;      // virtual time: pushSample waits for space, so that no sample is lost
+  std::size_t ring_capacity = 4096;  // [samples], a power of two; 4 s at 1 kHz
+  std::int64_t max_pages = 0;        // for tests of a full disk: largest file [pages of 4096 bytes]; 0: no limit
+};
+
+class SessionWriter {
+ public:
+  // Makes a new file; refuses to overwrite one. Leaves nothing behind if it throws.
+  static SessionWriter create(const std::string& path, const SessionInfo& info, const SessionOptions& options = {});
+  SessionWriter(SessionWriter&&) noexcept;
+  SessionWriter& operator=(SessionWriter&&) = delete;
+  ~SessionWriter();  // without close(): state "aborted: ..."
+
+  // From one thread, the tick's. Never throws; without block_when_full also never waits. False: the sample is lost, because the ring is full
+  // (counted) or the store has failed or is closed.
+  bool pushSample(const SampleRecord& sample) noexcept;
+  std::uint64_t droppedSamples() const noexcept;
+
+  // From one thread, outside of the real-time tick.
+  void addEvent(const EventRecord& event);
+  void finishTrial(const TrialRecord& trial);   // returns once the trial and all that was pushed before are durable
+  void close();                                 // final flush, state "complete", one plain file without a log beside it
+  void abort(const std::string& why) noexcept;  // final flush, state "aborted: <why>"
+
+ private:
+  class Impl;
+  explicit SessionWriter(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+struct SampleFilter {
+  std::optional<std::int64_t> trial{};  // only this trial's
+  std::int64_t stride = 1;            // every stride-th of those, the first included; >= 1
+};
+
+// Reads a finished, a killed or even a still running session.
+class SessionReader {
+ public:
+  explicit SessionReader(const std::string& path);
+  SessionReader(SessionReader&&) noexcept;
+  SessionReader& operator=(SessionReader&&) = delete;
+  ~SessionReader();
+
+  const std::string& path() const;
+  const SessionInfo& info() const { return info_; }
+  const std::string& state() const { return state_; }             // "running", "complete", "aborted: <why>"
+  const std::string& startedUtc() const { return started_utc_; }  // ISO 8601
+  std::int64_t samplesDropped() const { return samples_dropped_; }
+  bool complete() const;
+  std::string warning() const;  // a sentence for a person if the session isn't complete or lost samples; else empty
+
+  std::vector<TrialRecord> trials() const;  // in order of time
+  std::vector<EventRecord> events(std::optional<std::int64_t> trial = {}) const;
+  void forEachSample(const SampleFilter& filter, const std::function<void(const SampleRecord&)>& take) const;
+
+ private:
+  std::unique_ptr<Database> database_;
+  SessionInfo info_;
+  std::string state_, started_utc_;
+  std::int64_t samples_dropped_ = 0;
+};
+
+}  // namespace pincer::tasks

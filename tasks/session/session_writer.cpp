@@ -1,0 +1,274 @@
+#include <fcntl.h>
+#include <fmt/chrono.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <chrono>
+#include <condition_variable>
+#include <cstring>
+#include <filesystem>
+#include <mutex>
+#include <stdexcept>
+#include <thread>
+#include <utility>
+
+#include "contact/error.h"
+#include "tasks/session/ring.h"
+#include "tasks/session/session_store.h"
+#include "tasks/session/table.h"
+
+namespace pincer::tasks {
+
+namespace {
+
+constexpr auto kBatchPeriod = std::chrono::milliseconds(20);  // leaves 30 of the promised 50 ms for the transaction itself
+constexpr int kCheckpointPages = 16384;  // 64 MB of log: a trial never gets there, so the log is folded in between trials
+
+const char* remedyForCreating(int error) {
+  switch (error) {
+    case EEXIST:
+      return "A session is never overwritten. Choose another name, or move the old file away.";
+    case ENOENT:
+      return "Make its directory first, or choose another one.";
+    case EACCES:
+    case EPERM:
+      return "Choose a directory that you may write, or change its permissions.";
+    case EROFS:
+      return "The file system is read-only. Choose another directory.";
+    case ENOSPC:
+    case EDQUOT:
+      return "Free some space or choose another disk.";
+    default:
+      return "Choose another path.";
+  }
+}
+
+// O_EXCL decides between two programs that want the same name.
+void createEmptyFile(const std::string& path) {
+  const int file = ::open(path.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0644);
+  if (file < 0) {
+    const int error = errno;
+    throw InputError(fmt::format("{}: can't create the session: {}. {}", path, std::strerror(error), remedyForCreating(error)));
+  }
+  ::close(file);
+}
+
+void removeSession(const std::string& path) noexcept {
+  std::error_code ignored;
+  for (const char* suffix : {"", "-wal", "-shm", "-journal"}) std::filesystem::remove(path + suffix, ignored);
+}
+
+void makeTables(Database& d, const SessionOptions& options) {
+  if (options.max_pages > 0) d.text(fmt::format("PRAGMA max_page_count = {}", options.max_pages));
+  d.run(fmt::format("PRAGMA application_id = {}; PRAGMA user_version = {}", kApplicationId, kFormat));
+  if (d.text("PRAGMA journal_mode = WAL") != "wal") {
+    throw InputError(d.path() + ": this file system has no shared memory for SQLite's log. Keep sessions on a local disk.");
+  }
+  d.run(fmt::format("PRAGMA wal_autocheckpoint = {}; PRAGMA synchronous = NORMAL", kCheckpointPages));
+  d.run("BEGIN");
+  d.run(fmt::format("CREATE TABLE session ({}, started_utc TEXT, state TEXT, samples_dropped INTEGER)", columnList<SessionInfo>(true)));
+  d.run(fmt::format("CREATE TABLE trial ({})", columnList<TrialRecord>(true)));
+  d.run(fmt::format("CREATE TABLE sample ({})", columnList<SampleRecord>(true)));
+  d.run(fmt::format("CREATE TABLE event ({})", columnList<EventRecord>(true)));
+  d.run("CREATE INDEX sample_of_trial ON sample (trial)");
+}
+
+std::string nowUtc() {
+  const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
+  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::to_time_t(now)));
+}
+
+}  // namespace
+
+class SessionWriter::Impl {
+ public:
+  Impl(const std::string& path, const SessionInfo& info, const SessionOptions& options)
+      : options_(options), ring_(options.ring_capacity), database_(path, Database::Mode::kWrite) {
+    makeTables(database_, options);
+    Statement insert(database_, insertSql<SessionInfo>());
+    insertRow(insert, info);
+    database_.run(fmt::format("UPDATE session SET started_utc = '{}', state = '{}', samples_dropped = 0; COMMIT", nowUtc(), kStateRunning));
+    statements_.emplace(database_);
+    thread_ = std::thread([this] { work(); });
+  }
+  ~Impl() { abort("the program left without closing the session"); }
+
+  bool push(const SampleRecord& sample) noexcept {
+    if (ended_.load(std::memory_order_relaxed)) return false;
+    if (options_.block_when_full && ring_.full()) awaitSpace();
+    return ring_.push(sample);
+  }
+  std::uint64_t dropped() const noexcept { return ring_.dropped(); }
+
+  void addEvent(const EventRecord& event) {
+    const std::lock_guard lock(mutex_);
+    throwIfEnded();
+    events_.push_back(event);
+  }
+
+  void finishTrial(const TrialRecord& trial) {
+    std::unique_lock lock(mutex_);
+    throwIfEnded();
+    trial_ = trial;
+    wake_.notify_one();
+    done_.wait(lock, [this] { return !trial_ || ended_; });
+    throwIfEnded();
+  }
+
+  void close() {
+    join();
+    if (!failure_.empty()) throw InputError(failure_);
+    if (closed_) return;
+    try {
+      endWith(std::string(kStateComplete));
+      database_.text("PRAGMA journal_mode = DELETE");
+      database_.close();
+    } catch (const InputError& e) {
+      giveUp(e.what());
+      throw InputError(failure_);
+    }
+    closed_ = true;
+  }
+
+  void abort(const std::string& why) noexcept {
+    join();
+    if (closed_ || !failure_.empty()) return;
+    giveUp(why);
+  }
+
+ private:
+  struct Statements {
+    explicit Statements(const Database& d)
+        : sample(d, insertSql<SampleRecord>()), event(d, insertSql<EventRecord>()), trial(d, insertSql<TrialRecord>()) {}
+    Statement sample, event, trial;
+  };
+  struct Batch {
+    std::vector<EventRecord> events;
+    std::optional<TrialRecord> trial;
+    bool last = false;
+  };
+
+  void work() {
+    for (bool last = false; !last && !ended_;) {
+      const Batch batch = awaitBatch();
+      last = batch.last;
+      try {
+        write(batch);
+      } catch (const std::exception& e) {
+        giveUp(e.what());
+      }
+      settle(batch);
+    }
+  }
+
+  Batch awaitBatch() {
+    std::unique_lock lock(mutex_);
+    wake_.wait_for(lock, kBatchPeriod, [this] { return trial_ || stopping_ || space_wanted_; });
+    space_wanted_ = false;
+    return {std::exchange(events_, {}), trial_, stopping_};
+  }
+
+  void write(const Batch& batch) {
+    if (batch.trial) database_.run("PRAGMA synchronous = FULL");  // the log is flushed to the disk with this commit
+    database_.run("BEGIN");
+    ring_.drain([this](const SampleRecord& sample) { insertRow(statements_->sample, sample); });
+    for (const EventRecord& event : batch.events) insertRow(statements_->event, event);
+    if (batch.trial) {
+      insertRow(statements_->trial, *batch.trial);
+      database_.run(fmt::format("UPDATE session SET samples_dropped = {}", dropped()));
+    }
+    database_.run("COMMIT");
+    if (batch.trial) database_.run("PRAGMA wal_checkpoint(PASSIVE); PRAGMA synchronous = NORMAL");
+  }
+
+  void settle(const Batch& batch) {
+    const std::lock_guard lock(mutex_);
+    if (batch.trial) trial_.reset();
+    done_.notify_all();
+  }
+
+  void awaitSpace() {
+    std::unique_lock lock(mutex_);
+    space_wanted_ = true;
+    wake_.notify_one();
+    done_.wait(lock, [this] { return !ring_.full() || ended_; });
+  }
+
+  // Marks the file; if even that fails, it stays "running", which a reader reports as well.
+  void giveUp(const std::string& why) noexcept {
+    std::string said = "The session is marked as aborted; trials finished before are kept.";
+    try {
+      database_.rollBack();
+      endWith(std::string(kStateAborted) + why);
+    } catch (const std::exception&) {
+      database_.rollBack();
+      said = "The session could not even be marked as aborted and stays \"running\"; trials finished before are kept.";
+    }
+    const std::lock_guard lock(mutex_);
+    failure_ = fmt::format("{}{} {}", why, why.ends_with('.') ? "" : ".", said);
+    ended_ = true;
+    done_.notify_all();
+  }
+
+  void endWith(const std::string& state) {
+    database_.run("PRAGMA synchronous = FULL");
+    Statement update(database_, "UPDATE session SET state = ?, samples_dropped = ?");
+    update.bind(0, std::string_view(state));
+    update.bind(1, static_cast<std::int64_t>(dropped()));
+    update.step();
+    statements_.reset();
+  }
+
+  void join() noexcept {
+    {
+      const std::lock_guard lock(mutex_);
+      stopping_ = true;
+    }
+    wake_.notify_one();
+    if (thread_.joinable()) thread_.join();
+    ended_ = true;
+  }
+
+  void throwIfEnded() const {
+    if (!failure_.empty()) throw InputError(failure_);
+    if (ended_) throw std::logic_error("SessionWriter: used after close() or abort()");
+  }
+
+  SessionOptions options_;
+  SampleRing ring_;
+  Database database_;  // the writer thread's, until it is joined
+  std::optional<Statements> statements_;
+  std::mutex mutex_;  // guards events_ .. failure_
+  std::condition_variable wake_, done_;
+  std::vector<EventRecord> events_;
+  std::optional<TrialRecord> trial_;
+  bool stopping_ = false, space_wanted_ = false;
+  std::string failure_;
+  std::atomic<bool> ended_{false};
+  bool closed_ = false;
+  std::thread thread_;
+};
+
+SessionWriter SessionWriter::create(const std::string& path, const SessionInfo& info, const SessionOptions& options) {
+  createEmptyFile(path);
+  try {
+    return SessionWriter(std::make_unique<Impl>(path, info, options));
+  } catch (...) {
+    removeSession(path);
+    throw;
+  }
+}
+
+SessionWriter::SessionWriter(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+SessionWriter::SessionWriter(SessionWriter&&) noexcept = default;
+SessionWriter::~SessionWriter() = default;
+
+bool SessionWriter::pushSample(const SampleRecord& sample) noexcept { return impl_->push(sample); }
+std::uint64_t SessionWriter::droppedSamples() const noexcept { return impl_->dropped(); }
+void SessionWriter::addEvent(const EventRecord& event) { impl_->addEvent(event); }
+void SessionWriter::finishTrial(const TrialRecord& trial) { impl_->finishTrial(trial); }
+void SessionWriter::close() { impl_->close(); }
+void SessionWriter::abort(const std::string& why) noexcept { impl_->abort(why); }
+
+}  // namespace pincer::tasks

@@ -1,0 +1,100 @@
+// table: rows of the session's tables, made from the column lists in columns.h. Internal to the session store.
+//
+//   table      record         one row per
+//   session    SessionInfo    file (plus started_utc, state, samples_dropped)
+//   trial      TrialRecord    finished trial
+//   sample     SampleRecord   recorded tick
+//   event      EventRecord    event
+#pragma once
+#include <fmt/format.h>
+
+#include <string>
+#include <string_view>
+#include <type_traits>
+
+#include "tasks/session/columns.h"
+#include "tasks/session/database.h"
+
+namespace pincer::tasks {
+
+constexpr std::int64_t kApplicationId = 0x504e4352;  // "PNCR", in SQLite's header
+constexpr std::int64_t kFormat = 1;                  // raised whenever a column changes
+
+constexpr std::string_view kStateRunning = "running", kStateComplete = "complete", kStateAborted = "aborted: ";
+
+template <class Record>
+constexpr std::string_view tableName() {
+  if constexpr (std::is_same_v<Record, SessionInfo>) return "session";
+  if constexpr (std::is_same_v<Record, TrialRecord>) return "trial";
+  if constexpr (std::is_same_v<Record, SampleRecord>) return "sample";
+  if constexpr (std::is_same_v<Record, EventRecord>) return "event";
+}
+
+template <class Field>
+constexpr std::string_view sqlType() {
+  if constexpr (std::is_floating_point_v<Field>) return "REAL";
+  if constexpr (std::is_same_v<Field, std::string> || std::is_same_v<Field, std::uint64_t>) return "TEXT";  // SQLite's integers are signed
+  return "INTEGER";
+}
+
+// `"a", "b"` or, with types, `"a" REAL, "b" TEXT`.
+template <class Record>
+std::string columnList(bool with_types = false) {
+  std::string list;
+  const Record record{};
+  forEachColumn(record, [&]<class Field>(const ColumnName& name, const Field&) {
+    list += fmt::format("{}\"{}\"", list.empty() ? "" : ", ", name.text());
+    if (with_types) list += fmt::format(" {}", sqlType<Field>());
+  });
+  return list;
+}
+
+template <class Record>
+std::string insertSql() {
+  std::string marks;
+  const Record record{};
+  forEachColumn(record, [&](const ColumnName&, const auto&) { marks += marks.empty() ? "?" : ", ?"; });
+  return fmt::format("INSERT INTO {} ({}) VALUES ({})", tableName<Record>(), columnList<Record>(), marks);
+}
+
+template <class Record>
+std::string selectSql() {
+  return fmt::format("SELECT {} FROM {}", columnList<Record>(), tableName<Record>());
+}
+
+template <class Record>
+void insertRow(Statement& insert, const Record& record) {
+  int parameter = 0;
+  forEachColumn(record, [&]<class Field>(const ColumnName&, const Field& field) {
+    if constexpr (std::is_same_v<Field, std::uint64_t>) {
+      insert.bind(parameter++, std::string_view(std::to_string(field)));
+    } else if constexpr (std::is_integral_v<Field>) {
+      insert.bind(parameter++, static_cast<std::int64_t>(field));
+    } else if constexpr (std::is_floating_point_v<Field>) {
+      insert.bind(parameter++, field);
+    } else {
+      insert.bind(parameter++, std::string_view(field));
+    }
+  });
+  insert.step();
+}
+
+template <class Record>
+Record readRow(const Statement& row) {
+  Record record;
+  int column = 0;
+  forEachColumn(record, [&]<class Field>(const ColumnName&, Field& field) {
+    if constexpr (std::is_same_v<Field, std::uint64_t>) {
+      field = std::stoull(row.text(column++));
+    } else if constexpr (std::is_integral_v<Field>) {
+      field = static_cast<Field>(row.integer(column++));
+    } else if constexpr (std::is_floating_point_v<Field>) {
+      field = row.real(column++);
+    } else {
+      field = row.text(column++);
+    }
+  });
+  return record;
+}
+
+}  // namespace pincer::tasks
