@@ -22,9 +22,8 @@ struct SurfaceTracker {
 
 enum QueryStatus : std::uint32_t {
   kQueryOk = 0,
-  kQueryReseeded = 1u << 0,  // the warm start failed; the answer came from the tree (nothing was lost)
-  kQueryHeldDirection =
-      1u << 1,  // no solution found: the last contact was kept. Remedy: refine or smooth the mesh there (`pincer mesh info`)
+  kQueryReseeded = 1u << 0,       // the warm start failed; the answer came from the tree (nothing was lost)
+  kQueryHeldDirection = 1u << 1,  // no solution found: the last contact was kept. Remedy: refine or smooth the mesh there
 };
 
 struct SurfaceContact {
