@@ -40,7 +40,7 @@ struct SimArmSettings {
   double peak_force = 8.5;                           // at the reset place [N]
   double force_slew = 20000;                         // at the reset place [N/s]: 8.5 N in 0.4 ms, the motors' inductance (ours)
   double delay = 0.5e-3;                             // of a command [s], 0..4 ms (ours)
-  premium::JointLimits limits;
+  premium::JointLimits limits = {};
 };
 
 class SimArm final : public Arm {
