@@ -3,13 +3,16 @@
 #include <algorithm>
 
 #include "engine/solve/gauss_seidel.h"
+#include "engine/solve/interior_point.h"
 #include "engine/solve/newton.h"
 #include "engine/solve/residual.h"
 
 namespace pincer::engine {
 namespace {
 
-constexpr int kSweepsPerRound = 15;  // enough to leave the basin in which Newton's method failed
+constexpr double kNearSolution = 1e-8;  // residual from which Newton's method needs a step or two
+constexpr double kShiftedGap = 1e-6;    // of a problem with frozen shift, itself an approximation
+constexpr int kSweepsPerRound = 15;     // enough to leave the basin in which Newton's method failed
 
 // Puts `r` into the cones; a contact whose impulse isn't finite gets none.
 void project(const ContactProblem& problem, double* r) {
@@ -39,13 +42,15 @@ class Search {
   }
 
   SolveMethod run(const SolverOptions& options) {
-    const double tolerance = 0.5 * options.tolerance;  // leaves room for the round-off of scaling back
-    if (newton(tolerance, options.newton_iterations)) return SolveMethod::kNewton;
+    if (finish(options)) return SolveMethod::kNewton;
+    iterations_ += followCentralPath(problem_, nullptr, kNearSolution, options.interior_point_iterations, scratch_, current_);
+    if (finish(options)) return SolveMethod::kInteriorPoint;
+    if (iterateOnShift(options)) return SolveMethod::kInteriorPoint;
     for (int sweeps = 0; sweeps < options.gauss_seidel_sweeps; sweeps += kSweepsPerRound) {
       restartFromBest();
       sweepGaussSeidel(problem_, kSweepsPerRound, current_);
       iterations_ += kSweepsPerRound;
-      if (newton(tolerance, options.newton_iterations)) return SolveMethod::kGaussSeidel;
+      if (finish(options)) return SolveMethod::kGaussSeidel;
     }
     return SolveMethod::kNotConverged;
   }
@@ -59,12 +64,31 @@ class Search {
   int iterations() const { return iterations_; }
 
  private:
-  bool newton(double tolerance, int iterations) {
+  // Newton's method from `current`; true if it converges.
+  bool finish(const SolverOptions& options) {
+    const double tolerance = 0.5 * options.tolerance;  // leaves room for the round-off of scaling back
     keepBest();
-    iterations_ += iterateNewton(problem_, tolerance, iterations, scratch_, current_, trial_);
+    iterations_ += iterateNewton(problem_, tolerance, options.newton_iterations, scratch_, current_, trial_);
     keepBest();
     return best_.residual <= tolerance;
   }
+
+  bool iterateOnShift(const SolverOptions& options) {
+    restartFromBest();
+    evaluate(problem_, current_);
+    takeShift();
+    for (int n = 0; n < options.shift_updates; ++n) {
+      iterations_ += followCentralPath(problem_, scratch_.shift.data(), kShiftedGap, options.interior_point_iterations, scratch_, current_);
+      takeShift();
+      if (finish(options)) return true;
+    }
+    return false;
+  }
+  void takeShift() {
+    for (int i = 0; i < problem_.contactCount(); ++i)
+      scratch_.shift.data()[i] = std::sqrt(tangentNorm2(current_.u + problem_.firstRow(i), problem_.rows(i)));
+  }
+
   void keepBest() {
     if (!(current_.residual < best_.residual)) return;
     std::copy(current_.r, current_.r + problem_.rowCount(), best_.r);
@@ -102,7 +126,10 @@ SolverScratch::SolverScratch(int contacts) : max_contacts(contacts) {
   for (std::vector<double>* vector : {&q, &step}) vector->resize(m);
   for (std::vector<double>& vector : impulses) vector.resize(m);
   for (std::vector<double>& vector : velocities) vector.resize(m);
+  interior.resize(kInteriorPointVectors * m);
+  pivots.resize(m);
   scale.resize(n);
+  shift.resize(n);
   active.resize(n);
 }
 

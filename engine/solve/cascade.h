@@ -1,6 +1,7 @@
 // cascade: solves a ContactProblem, cheapest method first.
 //
-//   warm start's residual -> semi-smooth Newton (Alart-Curnier) -> projected Gauss-Seidel with exact local solves -> best iterate, flagged
+//   warm start's residual -> semi-smooth Newton (Alart-Curnier) -> interior point -> interior point with frozen shift, updated ->
+//   projected Gauss-Seidel with exact local solves -> best iterate, flagged.     Newton's method finishes what the others begin.
 //
 // Never throws, allocates or prints; deterministic.
 #pragma once
@@ -13,12 +14,14 @@
 namespace pincer::engine {
 
 struct SolverOptions {
-  double tolerance = 1e-10;  // on the residual, see contactResidual [-]; range [1e-14, 1e-2]
-  int newton_iterations = 12;
+  double tolerance = 1e-10;            // on the residual, see contactResidual [-]; range [1e-14, 1e-2]
+  int newton_iterations = 20;          // each time that Newton's method is tried
+  int interior_point_iterations = 30;  // each time that the interior-point method is tried
+  int shift_updates = 20;              // of the interior-point method with frozen shift
   int gauss_seidel_sweeps = 300;
 };
 
-enum class SolveMethod : std::uint8_t { kNoContact, kWarmStart, kNewton, kGaussSeidel, kNotConverged };
+enum class SolveMethod : std::uint8_t { kNoContact, kWarmStart, kNewton, kInteriorPoint, kGaussSeidel, kNotConverged };
 
 struct SolveResult {
   SolveMethod method = SolveMethod::kNoContact;
@@ -33,16 +36,18 @@ struct SolverScratch {
 
   int max_contacts;
   std::vector<double> W, q, scale;                          // the scaled problem (scaled_problem.h)
-  std::vector<double> jacobian, step;                       // of Newton's equations (newton.h)
+  std::vector<double> shift;                                // |u_T| at which interior_point.h freezes it
+  std::vector<double> jacobian, step, interior;             // linear equations and vectors of newton.h and interior_point.h
   std::array<std::vector<double>, 3> impulses, velocities;  // current, trial and best iterate
-  std::vector<int> active;                                  // contacts in Newton's equations
+  std::vector<int> active, pivots;                          // contacts in Newton's equations; row swaps
 };
 
 // The slowest motion that counts as motion; residuals are relative to the speeds of the problem, but never to less [m/s].
 constexpr double kVelocityFloor = 1e-6;
 
-// Relative natural-map residual: max_i w_i |r_i - P_K(r_i - u~_i / w_i)| / max(|q|_inf, kVelocityFloor), with u~_i = u_i + mu_i |u_iT| e_n and
-// w_i the mean of W_ii's diagonal. Infinite if anything is not finite (a NaN never passes). `u` receives W r + q.
+// Relative natural-map residual: max_i w_i |r_i - P_K(r_i - u~_i / w_i)| / max(|q|_inf, kVelocityFloor, 1e-4 max_i w_i r_in), with
+// u~_i = u_i + mu_i |u_iT| e_n and w_i the mean of W_ii's diagonal. The last term of the maximum speaks up only where W r cancels to less than
+// 1e-4 of itself (mass ratios above 1e4), and keeps a tolerance of 1e-10 above the round-off of that sum. Infinite if anything is not finite (a NaN never passes). `u` receives W r + q.
 double contactResidual(const ContactProblem& problem, const Eigen::Ref<const Eigen::VectorXd>& r, Eigen::Ref<Eigen::VectorXd> u);
 
 // Solves `problem`. `r` holds the warm start on entry (zeros are fine) and the impulses on return: in the cones to 1e-12 relative, whatever

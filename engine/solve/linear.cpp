@@ -13,39 +13,39 @@ int pivotRow(const double* column, int k, int n) {
   return best;
 }
 
-void swapRows(double* A, int n, double* b, int i, int k) {
+void swapRows(double* A, int n, int i, int k) {
   if (i == k) return;
   for (int j = 0; j < n; ++j) std::swap(A[i + j * n], A[k + j * n]);
-  std::swap(b[i], b[k]);
 }
 
-// y -= a x over rows [from, n)
-void subtractScaled(double* y, double a, const double* x, int from, int n) {
-  for (int i = from; i < n; ++i) y[i] -= a * x[i];
-}
-
-void substituteBack(const double* U, int n, double* b) {
-  for (int k = n - 1; k >= 0; --k) {
-    b[k] /= U[k + k * n];
-    subtractScaled(b, b[k], U + k * n, 0, k);
-  }
+// y -= a x over rows [from, to)
+void subtractScaled(double* y, double a, const double* x, int from, int to) {
+  for (int i = from; i < to; ++i) y[i] -= a * x[i];
 }
 
 }  // namespace
 
-bool solveByLu(double* A, int n, double* b) {
+bool factoriseLu(double* A, int n, int* pivots) {
   for (int k = 0; k < n; ++k) {
     double* const column = A + k * n;
-    swapRows(A, n, b, pivotRow(column, k, n), k);
+    pivots[k] = pivotRow(column, k, n);
+    swapRows(A, n, pivots[k], k);
     const double pivot = column[k];
     if (!(std::abs(pivot) > 0) || !std::isfinite(pivot)) return false;
     const double inverse = 1 / pivot;
     for (int i = k + 1; i < n; ++i) column[i] *= inverse;
     for (int j = k + 1; j < n; ++j) subtractScaled(A + j * n, A[k + j * n], column, k + 1, n);
-    subtractScaled(b, b[k], column, k + 1, n);
   }
-  substituteBack(A, n, b);
   return true;
+}
+
+void solveLu(const double* LU, int n, const int* pivots, double* b) {
+  for (int k = 0; k < n; ++k) std::swap(b[k], b[pivots[k]]);
+  for (int k = 0; k < n; ++k) subtractScaled(b, b[k], LU + k * n, k + 1, n);
+  for (int k = n - 1; k >= 0; --k) {
+    b[k] /= LU[k + k * n];
+    subtractScaled(b, b[k], LU + k * n, 0, k);
+  }
 }
 
 bool solveByLdlt(double* A, int n, double* b) {
@@ -57,12 +57,10 @@ bool solveByLdlt(double* A, int n, double* b) {
     for (int j = k + 1; j < n; ++j) subtractScaled(A + j * n, column[j] * inverse, column, j, n);
     for (int i = k + 1; i < n; ++i) column[i] *= inverse;
     subtractScaled(b, b[k], column, k + 1, n);
+    b[k] *= inverse;
   }
-  for (int k = n - 1; k >= 0; --k) {
-    double sum = b[k] / A[k + k * n];
-    for (int i = k + 1; i < n; ++i) sum -= A[i + k * n] * b[i];
-    b[k] = sum;
-  }
+  for (int k = n - 1; k >= 0; --k)
+    for (int i = k + 1; i < n; ++i) b[k] -= A[i + k * n] * b[i];
   return true;
 }
 

@@ -8,10 +8,15 @@
 
 namespace pincer::engine {
 
-// Solves A x = b in place: A is overwritten by its factors, b by x. False, with b undefined, if a pivot is 0 or not finite.
-bool solveByLu(double* A, int n, double* b);
+// P A = L U in place: U on and above the diagonal, L's multipliers below; row k was swapped with pivots[k] >= k. False if a pivot is 0 or
+// not finite.
+bool factoriseLu(double* A, int n, int* pivots);
 
-// The same for symmetric positive definite A; reads the lower triangle only. False if a pivot isn't positive. Half the work of solveByLu.
+// b becomes the solution of A x = b, from A's factors.
+void solveLu(const double* LU, int n, const int* pivots, double* b);
+
+// Solves A x = b for symmetric positive definite A, half the work of LU: A's lower triangle, all that is read, is overwritten by its factors,
+// b by x. False, with b undefined, if a pivot isn't positive.
 bool solveByLdlt(double* A, int n, double* b);
 
 }  // namespace pincer::engine

@@ -9,10 +9,8 @@
 namespace pincer::engine {
 namespace {
 
-constexpr double kSmallestRegularisation = 1e-11;  // far above round-off, far below the W^ of one contact (1)
-constexpr double kLargestRegularisation = 1e-1;
-constexpr double kRegularisationGrowth = 1e3;
-constexpr int kHalvings = 6;
+constexpr double kRegularisation = 1e-11;     // far above round-off, far below the W^ of one contact (1)
+constexpr int kTrials = 6;                    // step lengths 1, 1/2, .. 1/32
 constexpr double kSufficientDecrease = 1e-4;  // Armijo's, on |Phi|^2
 
 // Phi of one contact, y, and how the contact acts.
@@ -53,7 +51,12 @@ bool carriesNothing(const double* r, int rows) {
 class Equations {
  public:
   Equations(const ScaledProblem& problem, const Iterate& it, SolverScratch& scratch)
-      : problem_(problem), it_(it), active_(scratch.active.data()), A_(scratch.jacobian.data()), b_(scratch.step.data()) {
+      : problem_(problem),
+        it_(it),
+        active_(scratch.active.data()),
+        A_(scratch.jacobian.data()),
+        b_(scratch.step.data()),
+        pivots_(scratch.pivots.data()) {
     double y[kMaxContactRows];
     double phi[kMaxContactRows];
     for (int i = 0; i < problem.contactCount(); ++i) {
@@ -66,13 +69,16 @@ class Equations {
     }
   }
 
-  // Solves for dr; false if the equations are singular in spite of `epsilon`.
-  bool solve(double epsilon) {
+  // Solves for dr; false if the equations are singular in spite of epsilon.
+  bool solve() {
     bool symmetric = true;
     int row = 0;
     for (int a = 0; a < count_; ++a) row += assemble(active_[a], row, symmetric);
-    for (int k = 0; k < size_; ++k) A_[k * (size_ + 1)] += epsilon;
-    return symmetric ? solveByLdlt(A_, size_, b_) : solveByLu(A_, size_, b_);
+    for (int k = 0; k < size_; ++k) A_[k * (size_ + 1)] += kRegularisation;
+    if (symmetric) return solveByLdlt(A_, size_, b_);
+    if (!factoriseLu(A_, size_, pivots_)) return false;
+    solveLu(A_, size_, pivots_, b_);
+    return true;
   }
 
   // r = P_K(r + t dr)
@@ -126,41 +132,34 @@ class Equations {
   int* active_;
   double* A_;
   double* b_;
+  int* pivots_;
   int count_ = 0;
   int size_ = 0;
 };
 
-// Halves the step until |Phi| falls enough; `trial` is the accepted iterate if it does.
-bool searchLine(const ScaledProblem& problem, const Equations& equations, double tolerance, double& phi2, Iterate& trial) {
+// Halves the step until |Phi| falls enough. If it never does the shortest step is taken all the same: that leaves the cycles and the corners of
+// |Phi| where insisting on descent gets stuck (of 1000 grasps with 2-10 fingers from a cold start, 5 % fail instead of 8 %).
+double searchLine(const ScaledProblem& problem, const Equations& equations, double tolerance, double phi2, Iterate& trial) {
   double t = 1;
-  for (int halving = 0; halving < kHalvings; ++halving, t *= 0.5) {
+  for (int n = 1;; ++n, t *= 0.5) {
     equations.step(t, trial.r);
     evaluate(problem, trial);
     const double trial_phi2 = merit(problem, trial);
-    if (trial.residual <= tolerance || trial_phi2 <= (1 - kSufficientDecrease * t) * phi2) {
-      phi2 = trial_phi2;
-      return true;
-    }
+    if (trial.residual <= tolerance || trial_phi2 <= (1 - kSufficientDecrease * t) * phi2 || n == kTrials) return trial_phi2;
   }
-  return false;
 }
 
 }  // namespace
 
 int iterateNewton(const ScaledProblem& problem, double tolerance, int iterations, SolverScratch& scratch, Iterate& current,
                   Iterate& trial) {
-  double epsilon = kSmallestRegularisation;
   double phi2 = merit(problem, current);
   for (int n = 0; n < iterations; ++n) {
-    if (current.residual <= tolerance) return n;
+    if (current.residual <= tolerance || !std::isfinite(phi2)) return n;
     Equations equations(problem, current, scratch);
-    if (equations.solve(epsilon) && searchLine(problem, equations, tolerance, phi2, trial)) {
-      std::swap(current, trial);
-      epsilon = std::max(kSmallestRegularisation, epsilon / kRegularisationGrowth);
-    } else {
-      if (epsilon >= kLargestRegularisation) return n;
-      epsilon *= kRegularisationGrowth;
-    }
+    if (!equations.solve()) return n;
+    phi2 = searchLine(problem, equations, tolerance, phi2, trial);
+    std::swap(current, trial);
   }
   return iterations;
 }

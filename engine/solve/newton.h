@@ -3,8 +3,8 @@
 //   Phi_n = r_n - max(0, y_n),   Phi_T = r_T - P_disc(mu max(0, y_n))(y_T),   y = r - rho u,   rho = 1 in scaled variables
 //   ((I - D) + D W^ + epsilon I) dr = -Phi,   D = dP/dy,   r <- P_K(r + t dr)
 //
-// epsilon is a proximal term: it leaves the solution alone, picks the smallest step among the many of redundant contacts (a box on four
-// corners), and grows when a step doesn't reduce |Phi|. A contact that is open and carries nothing drops out of the equations.
+// epsilon is a proximal term: it leaves the solution alone and picks the smallest step among the many of redundant contacts (a box on four
+// corners). A contact that is open and carries nothing drops out of the equations.
 // Sources: P. Alart, A. Curnier, Comput. Methods Appl. Mech. Engrg. 92 (1991) 353-375; line search and comparison of variants: V. Acary,
 // M. Bremond, O. Huber, in Advanced Topics in Nonsmooth Dynamics (2018) 375-457. Departure: each iterate is put back into the cones, so
 // that any of them may be returned.

@@ -26,8 +26,8 @@ double contactResidual(const ContactProblem& problem, const Eigen::Ref<const Eig
     const int rows = problem.rows(i);
     double* const u_i = u.data() + first;
     contactVelocity(problem.W.data() + first, m, problem.q.data() + first, r.data(), rows, u_i);
-    const double error2 = naturalMap2(r.data() + first, u_i, rows, problem.friction(i), meanDiagonal(problem, i));
-    worst.add(error2, u_i[kNormalRow]);
+    const double w = meanDiagonal(problem, i);
+    worst.add(naturalMap2(r.data() + first, u_i, rows, problem.friction(i), w), u_i[kNormalRow], w * r.data()[first + kNormalRow]);
   }
   return worst.relativeTo(referenceSpeed(problem));
 }

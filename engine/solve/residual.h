@@ -24,17 +24,23 @@ inline void contactVelocity(const double* W, int m, const double* q, const doubl
 // The largest natural map of all contacts.
 class WorstResidual {
  public:
-  // error2  squared natural map [(m/s)^2];  u_n  normal velocity: where it is infinite the natural map may still be finite
-  void add(double error2, double u_n) {
+  // error2    squared natural map [(m/s)^2]
+  // u_n       normal velocity: where it is infinite the natural map may still be finite [m/s]
+  // response  w r_n, the part of u_n that comes from the contact itself [m/s]
+  void add(double error2, double u_n, double response) {
     worst2_ = std::max(worst2_, error2);
+    response_ = std::max(response_, response);
     check_ += error2 + u_n;  // a maximum forgets a NaN, a sum doesn't
   }
   double relativeTo(double speed) const {
-    return std::isfinite(check_) ? std::sqrt(worst2_) / speed : std::numeric_limits<double>::infinity();
+    return std::isfinite(check_) ? std::sqrt(worst2_) / std::max(speed, kCancellation * response_)
+                                 : std::numeric_limits<double>::infinity();
   }
 
  private:
+  static constexpr double kCancellation = 1e-4;
   double worst2_ = 0;
+  double response_ = 0;
   double check_ = 0;
 };
 

@@ -35,7 +35,7 @@ void evaluate(const ScaledProblem& problem, Iterate& it) {
     double* const u_i = it.u + first;
     contactVelocity(problem.W + first, m, problem.q + first, it.r, rows, u_i);
     const double error2 = naturalMap2(it.r + first, u_i, rows, problem.friction(i), 1);  // in scaled variables w_i is 1
-    worst.add(error2 * problem.scale[i] * problem.scale[i], u_i[kNormalRow]);
+    worst.add(error2 * problem.scale[i] * problem.scale[i], u_i[kNormalRow], problem.scale[i] * it.r[first + kNormalRow]);
   }
   it.residual = worst.relativeTo(problem.speed);
 }
