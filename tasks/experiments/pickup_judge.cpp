@@ -1,0 +1,82 @@
+#include "tasks/experiments/pickup_judge.h"
+
+#include <algorithm>
+
+namespace pincer::tasks {
+namespace {
+
+double gripOf(const PickupView& view) { return 0.5 * (view.fingers[0].normal_force + view.fingers[1].normal_force); }
+
+double weakerOf(const PickupView& view) { return std::min(view.fingers[0].normal_force, view.fingers[1].normal_force); }
+
+double offsetFromLine(const PickupView& view) {
+  const Vec3 line_W = view.fingers[1].p_WC - view.fingers[0].p_WC;
+  const Vec3 centre_W = view.p_WBcm - view.fingers[0].p_WC;
+  const double length = line_W.norm();
+  return length > 0 ? centre_W.cross(line_W).norm() / length : centre_W.norm();
+}
+
+}  // namespace
+
+PickupVerdict PickupJudge::observe(const PickupView& view) {
+  const double dt = begun_ ? view.time - last_time_ : 0;
+  begun_ = true;
+  last_time_ = view.time;
+  counts_.peak_grip = std::max(counts_.peak_grip, gripOf(view));
+  watchSqueeze(view, dt);
+  watchHeight(view);
+  watchSlip(view, dt);
+  return watchHold(view, dt);
+}
+
+void PickupJudge::watchSqueeze(const PickupView& view, double dt) {
+  released_for_ = weakerOf(view) < 0.5 * rules_.squeeze_force ? released_for_ + dt : 0;
+  if (!view.wants_lift || released_for_ >= rules_.release_time) squeezing_ = false;
+  if (squeezing_ || !view.wants_lift || weakerOf(view) <= rules_.squeeze_force) return;
+  squeezing_ = true;
+  ++counts_.squeezes;
+  counts_.offset_at_squeeze = offsetFromLine(view);
+}
+
+void PickupJudge::watchHeight(const PickupView& view) {
+  off_ = off_ || view.clearance > rules_.off_clearance;
+  if (!off_) return;
+  const bool touched = view.fingers[0].on_object || view.fingers[1].on_object;
+  cleared_ = cleared_ || view.clearance > rules_.try_clearance;
+  held_ = held_ || (cleared_ && touched);
+  if (held_ && !touched && !dropped_) {
+    dropped_ = true;
+    ++counts_.drops;
+  }
+  if (view.clearance > rules_.back_clearance) return;
+  ++counts_.lifts;
+  if (cleared_) ++counts_.tries_5mm;
+  off_ = cleared_ = held_ = dropped_ = false;
+}
+
+void PickupJudge::watchSlip(const PickupView& view, double dt) {
+  for (std::size_t i = 0; i < view.fingers.size(); ++i) {
+    const auto& finger = view.fingers[i];
+    const bool loaded = finger.on_object && finger.normal_force > rules_.loaded_force;
+    if (loaded && finger.sliding && stuck_for_[i] >= rules_.stick_time) ++counts_.slips;
+    stuck_for_[i] = loaded && !finger.sliding ? stuck_for_[i] + dt : 0;
+  }
+}
+
+PickupVerdict PickupJudge::watchHold(const PickupView& view, double dt) {
+  if (view.clearance < rules_.success_height) {
+    over_since_ = -1;
+    grip_time_ = grip_integral_ = 0;
+  } else {
+    if (over_since_ < 0) over_since_ = view.time;
+    grip_time_ += dt;
+    grip_integral_ += gripOf(view) * dt;
+    if (view.time - over_since_ >= rules_.hold_time) {
+      counts_.held_grip = grip_time_ > 0 ? grip_integral_ / grip_time_ : gripOf(view);
+      return PickupVerdict::kSuccess;
+    }
+  }
+  return view.time >= rules_.timeout ? PickupVerdict::kTimeout : PickupVerdict::kRunning;
+}
+
+}  // namespace pincer::tasks

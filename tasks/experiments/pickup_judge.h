@@ -1,0 +1,88 @@
+// pickup_judge: the one who sees the world, counts, and says when a trial is over.
+//
+//   squeeze  both normal forces exceed 0.2 N while the participant means to lift. It is the same squeeze until that intent ends, or a finger
+//            has carried less than half of it for 0.1 s: one squeeze per attempt, however the forces ring
+//   lift     the object's bottom was off the dish and is back; what is still up when the trial ends isn't counted
+//   try_5mm  the bottom has cleared 5 mm and touches again
+//   slip     a loaded finger that had stuck for a while begins to slide
+//   drop     held over 5 mm, then no finger touches the object before it is back on the dish
+//   success  the bottom stays over 50 mm for 1 s;   timeout: 60 s without (censored data)
+//
+//   clearance  gap between the object and the dish [m]: the height of the bottom, for a sphere lifted straight up
+//   offset at the squeeze  distance of the object's centre of mass from the line through the two contacts [m]; 0 for an antipodal pinch of a
+//                          sphere
+// Definitions of squeeze, lift, try and success: design of the tasks; the rules' other figures are ours.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <limits>
+
+#include "contact/math.h"
+
+namespace pincer::tasks {
+
+struct PickupRules {
+  double squeeze_force = 0.2;     // [N]
+  double release_time = 0.1;      // under half of it, ends a squeeze [s] (ours)
+  double off_clearance = 0.5e-3;  // the bottom is off the dish over this [m] (ours)
+  double back_clearance = 5e-5;   // and back on it under this [m] (ours)
+  double try_clearance = 5e-3;    // [m]
+  double loaded_force = 0.2;      // a finger that carries more is loaded [N] (ours)
+  double stick_time = 0.02;       // stuck for so long before a slide is a slip [s] (ours)
+  double success_height = 0.050;  // [m]
+  double hold_time = 1.0;         // [s]
+  double timeout = 60;            // [s]
+};
+
+// What there is to see in one tick.
+struct PickupView {
+  struct Finger {
+    bool on_object = false;
+    bool sliding = false;
+    double normal_force = 0;   // [N]
+    Vec3 p_WC = Vec3::Zero();  // [m]
+  };
+  double time = 0;  // since the start tone [s]
+  bool wants_lift = false;
+  std::array<Finger, 2> fingers;
+  Vec3 p_WBcm = Vec3::Zero();  // object's centre of mass [m]
+  double clearance = 0;        // [m]
+};
+
+enum class PickupVerdict : std::uint8_t { kRunning, kSuccess, kTimeout };
+
+struct PickupCounts {
+  std::int64_t squeezes = 0, lifts = 0, tries_5mm = 0, slips = 0, drops = 0;
+  double peak_grip = 0;                                                 // [N]
+  double held_grip = std::numeric_limits<double>::quiet_NaN();          // mean grip while over the success height, at the success [N]
+  double offset_at_squeeze = std::numeric_limits<double>::quiet_NaN();  // at the last squeeze [m]
+};
+
+class PickupJudge {
+ public:
+  explicit PickupJudge(const PickupRules& rules = {}) : rules_(rules) {}
+  // One tick of at most some milliseconds; time never goes back.
+  PickupVerdict observe(const PickupView& view);
+  const PickupCounts& counts() const { return counts_; }
+
+ private:
+  void watchSqueeze(const PickupView& view, double dt);
+  void watchHeight(const PickupView& view);
+  void watchSlip(const PickupView& view, double dt);
+  PickupVerdict watchHold(const PickupView& view, double dt);
+
+  PickupRules rules_;
+  PickupCounts counts_;
+  double last_time_ = 0;
+  bool begun_ = false;
+  bool squeezing_ = false;
+  double released_for_ = 0;             // [s]
+  bool off_ = false, cleared_ = false;  // since it was last on the dish: off it; over try_clearance
+  bool held_ = false;                   // over try_clearance with a finger on it
+  bool dropped_ = false;
+  std::array<double, 2> stuck_for_{};  // [s]
+  double over_since_ = -1;             // when it went over the success height [s]; negative: it isn't
+  double grip_time_ = 0, grip_integral_ = 0;
+};
+
+}  // namespace pincer::tasks

@@ -1,0 +1,147 @@
+#include "tasks/experiments/pickup_object.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "contact/mesh/mesh_report.h"
+#include "contact/mesh/obj_reader.h"
+#include "contact/surface/smooth_mesh.h"
+#include "engine/motion/mass.h"
+#include "engine/world/state.h"
+#include "engine/world/step.h"
+
+namespace pincer::tasks {
+namespace {
+
+constexpr double kSmallest = 0.010, kLargest = 0.100;  // extent of an object that two fingers pick up [m]
+constexpr double kSettleTime = 20;                     // [s]
+constexpr double kDampingTime = 0.1;                   // of the settling motion [s]
+constexpr double kAtRest = 1e-4;                       // slower than this, with the damping on, is at rest [m/s]
+
+contact::TriangleMesh readCentred(const SpherePickupOptions& options) {
+  contact::TriangleMesh mesh = contact::readObj(options.object->path, contact::metresPerUnit(options.object->units));
+  contact::requireClosed(mesh);
+  const Vec3 p_BBcm = engine::massPropertiesOf(mesh, options.mass).p_BBcm;
+  for (Vec3& vertex : mesh.vertices) vertex -= p_BBcm;
+  return mesh;
+}
+
+void requireHandSize(const contact::TriangleMesh& mesh) {
+  const contact::MeshReport report = contact::inspect(mesh);
+  const double extent = (report.box_max - report.box_min).maxCoeff();
+  if (extent >= kSmallest && extent <= kLargest) return;
+  throw InputError(fmt::format("{}: the object is {:.4g} m long; two fingers pick up {} .. {} m. Choose other units or scale the file.",
+                               mesh.source, extent, kSmallest, kLargest));
+}
+
+double lowestOf(const contact::TriangleMesh& mesh) {
+  double z = std::numeric_limits<double>::infinity();
+  for (const Vec3& vertex : mesh.vertices) z = std::min(z, vertex.z());
+  return z;
+}
+
+// Height over which nothing of the mesh, centred over the dish's lowest point, reaches into the dish.
+double heightAboveDish(const contact::TriangleMesh& mesh, double dish_radius) {
+  double height = -lowestOf(mesh);
+  for (const Vec3& p : mesh.vertices) {
+    const double rho2 = std::min(p.x() * p.x() + p.y() * p.y(), dish_radius * dish_radius);
+    height = std::max(height, dish_radius - std::sqrt(dish_radius * dish_radius - rho2) - p.z());
+  }
+  return height;
+}
+
+Pose settle(const SpherePickupOptions& options, const contact::Shape& shape, double height) {
+  const double mu = options.frictions.front();
+  const engine::WorldModel model = pickupWorld(options, shape, mu, options.dynamic_ratio * mu).build();
+  engine::WorldState state = engine::makeState(model, {{}, {{Quat::Identity(), Vec3(0, 0, height)}, Vec3::Zero(), Vec3::Zero()}}, {});
+  engine::WorldScratch scratch(model);
+  engine::BodyState& body = state.bodies[kObjectBody];
+  const double keep = std::exp(-model.options.h / kDampingTime);
+  const double reach = model.bodies[kObjectBody].bounding_radius;
+  double quiet = 0;
+  while (state.time < kSettleTime) {
+    engine::step(model, state, scratch);
+    body.v_W *= keep;
+    body.L_W *= keep;
+    const double speed = body.v_W.norm() + reach * engine::bodyAngularVelocity(model, state, kObjectBody).norm();
+    quiet = speed < kAtRest ? quiet + model.options.h : 0;
+    if (quiet > 0.2) return engine::bodyPose(model, state, kObjectBody);
+  }
+  throw InputError(fmt::format("{}: the object finds no rest in the dish within {} s. Check that it is closed and of even density.",
+                               options.object->path, kSettleTime));
+}
+
+struct Crossing {
+  double x = 0;
+  Vec3 n_W = Vec3::UnitX();
+};
+
+// Where the line through `p_W` along W's x axis crosses a triangle.
+bool cross(const std::array<Vec3, 3>& corners_W, const Vec3& p_W, Crossing& crossing) {
+  const Vec3 n_W = (corners_W[1] - corners_W[0]).cross(corners_W[2] - corners_W[0]);
+  if (n_W.x() == 0) return false;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec3 edge_W = corners_W[(i + 1) % 3] - corners_W[i];
+    if (n_W.x() * edge_W.cross(p_W - corners_W[i]).x() < 0) return false;
+  }
+  crossing.x = p_W.x() + (corners_W[0] - p_W).dot(n_W) / n_W.x();
+  crossing.n_W = n_W.normalized();
+  return true;
+}
+
+// Width, asymmetry and normals on the pinch line.
+void measurePinch(const contact::TriangleMesh& mesh, PickupObject& object) {
+  Crossing left{std::numeric_limits<double>::infinity(), {}}, right{-std::numeric_limits<double>::infinity(), {}};
+  for (const auto& triangle : mesh.triangles) {
+    std::array<Vec3, 3> corners_W;
+    for (std::size_t i = 0; i < 3; ++i) corners_W[i] = object.rest_X_WB * mesh.vertices[static_cast<std::size_t>(triangle[i])];
+    Crossing crossing;
+    if (!cross(corners_W, object.place_W, crossing)) continue;
+    if (crossing.x < left.x) left = crossing;
+    if (crossing.x > right.x) right = crossing;
+  }
+  if (!(left.x < right.x)) {
+    throw InputError(
+        fmt::format("{}: no surface on the line along x through its centre of mass. Turn the object in its file.", mesh.source));
+  }
+  object.half_width = 0.5 * (right.x - left.x);
+  object.asymmetry = std::abs(0.5 * (right.x + left.x) - object.place_W.x());
+  object.antipodal_angle = std::acos(std::clamp(std::min(right.n_W.x(), -left.n_W.x()), -1.0, 1.0));
+}
+
+PickupObject objectFromFile(const SpherePickupOptions& options) {
+  const contact::TriangleMesh mesh = readCentred(options);
+  requireHandSize(mesh);
+  PickupObject object;
+  object.shape = contact::Mesh{contact::SmoothMesh::build(mesh)};
+  const double start_gap = 1e-3;
+  object.rest_X_WB = settle(options, object.shape, heightAboveDish(mesh, options.dish_radius) + start_gap);
+  object.place_W = object.rest_X_WB.p;
+  measurePinch(mesh, object);
+  return object;
+}
+
+}  // namespace
+
+PickupObject makePickupObject(const SpherePickupOptions& options) {
+  validate(options);
+  if (options.object) return objectFromFile(options);
+  PickupObject object;
+  object.shape = contact::Sphere{options.radius};
+  object.rest_X_WB.p = object.place_W = Vec3(0, 0, options.radius);
+  object.half_width = options.radius;
+  return object;
+}
+
+engine::WorldBuilder pickupWorld(const SpherePickupOptions& options, const contact::Shape& object, double mu_s, double mu_d) {
+  engine::WorldBuilder builder{engine::WorldOptions{}};
+  const engine::Material dish{options.dish_friction, options.dish_friction, 0, 0};
+  builder.addBody({"dish", contact::Dish{options.dish_radius}, false, 0, dish});
+  builder.addBody({"object", object, true, options.mass, {mu_s, mu_d, 0, options.torsion_radius}});
+  return builder;
+}
+
+}  // namespace pincer::tasks

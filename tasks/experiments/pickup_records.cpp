@@ -1,0 +1,50 @@
+#include "tasks/experiments/pickup_records.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "engine/world/state.h"
+
+namespace pincer::tasks {
+namespace {
+
+enum FingerFlag : std::int32_t { kTouching = 1, kSliding = 2, kGateTripped = 4, kTactorParked = 8 };
+
+std::array<double, 3> toArray(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+std::array<double, 2> toArray(const Vec2& v) { return {v.x(), v.y()}; }
+
+FingerRecord fingerRecord(const TickState& state, const TickScratch& scratch, const FingerInputs& inputs, std::size_t i) {
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  const grasp::FingerReport& report = scratch.grasp.fingers[i];
+  const FingerOutputs& output = scratch.outputs[i];
+  FingerRecord record;
+  record.p_WF = toArray(state.mounts[i].p_WF);
+  record.p_WP = toArray(state.grasp.world.points[i].p_W);
+  record.f_contact_W = toArray(report.f_contact_W);
+  record.f_arm_D = toArray(output.f_D);
+  record.normal_force = report.normal_force;
+  record.tangential_force = report.tangential_force;
+  record.gap = report.gap;
+  record.place_wanted_L = toArray(output.tactile.place_L);
+  record.place_shown_L = {kUnknown, kUnknown};
+  if (inputs.tactile.valid && inputs.tactile.place_L) record.place_shown_L = toArray(*inputs.tactile.place_L);
+  record.flags = (report.touching ? kTouching : 0) | (report.sliding ? kSliding : 0) |
+                 (state.mounts[i].gate.trip != devices::Trip::kNone ? kGateTripped : 0) | (output.tactile.parked ? kTactorParked : 0);
+  return record;
+}
+
+}  // namespace
+
+SampleRecord sampleRecord(const PickupScene& scene, const TickState& state, const TickScratch& scratch,
+                          const std::vector<FingerInputs>& samples) {
+  SampleRecord record;
+  const Pose X_WB = engine::bodyPose(scene.model.grasp.world, state.grasp.world, kObjectBody);
+  record.p_WB = toArray(X_WB.p);
+  record.q_WB = {X_WB.q.w(), X_WB.q.x(), X_WB.q.y(), X_WB.q.z()};
+  record.v_WB = toArray(state.grasp.world.bodies[kObjectBody].v_W);
+  const std::size_t fingers = std::min(samples.size(), record.fingers.size());
+  for (std::size_t i = 0; i < fingers; ++i) record.fingers[i] = fingerRecord(state, scratch, samples[i], i);
+  return record;
+}
+
+}  // namespace pincer::tasks

@@ -1,0 +1,15 @@
+// record_sink: where an experiment leaves its records. The session store stands behind it in a session; a test keeps them in memory.
+#pragma once
+#include "tasks/session/records.h"
+
+namespace pincer::tasks {
+
+class RecordSink {
+ public:
+  virtual ~RecordSink() = default;
+  virtual void sample(const SampleRecord& sample) = 0;  // from the tick: must not block in real time
+  virtual void event(const EventRecord& event) = 0;     // after a trial, before its trial()
+  virtual void trial(const TrialRecord& trial) = 0;     // after a trial; durable on return
+};
+
+}  // namespace pincer::tasks

@@ -1,0 +1,52 @@
+// body: what a hand is made of and what it can't feel exactly. Every figure has its source, or says that it is a choice.
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "devices/arm/sim_arm.h"
+#include "tasks/participants/participant.h"
+#include "tasks/participants/random.h"
+
+namespace pincer::tasks {
+
+// Hands differ; each finger's impedance is drawn once per participant, uniformly between these.
+// Source of the ranges: A. Z. Hajian, R. D. Howe, J. Biomech. Eng. 119(1), 1997, 109-114 (fingertip mass, damping and stiffness under
+// light to moderate force); narrowed to the part that a relaxed precision grip uses (choice).
+struct HandRanges {
+  double mass_min = 0.05, mass_max = 0.10;          // [kg]
+  double stiffness_min = 200, stiffness_max = 600;  // [N/m]
+  double damping_min = 2, damping_max = 5;          // [N s/m]
+  double speed_min = 0.032, speed_max = 0.074;      // mean speed of a reach [m/s]; A. J. Doxon, dissertation, Univ. of Utah, 2014
+};
+
+// Sensing limits. Noise is drawn once per deliberate reading, never per tick; what is "constant in a trial" once per trial.
+struct SensingLimits {
+  double tactor_sd = 1.63e-3;          // place on the pad, per axis [m]: 1.3 mm mean absolute error x sqrt(pi/2) (Doxon 2014)
+  double tactor_bias = 0.9;            // felt place over true place, towards the centre [-] (Doxon 2014, direction; size: choice)
+  double tactor_moves = 0.2e-3;        // a tactor that has moved less than this since the start is felt as still [m] (choice)
+  double orientation_sd = 0.0524;      // felt finger orientation, per axis, constant in a trial [rad], 3 degrees (choice)
+  double placement_sd = 7e-3;          // of the pinch line, per axis, constant in a trial [m] (choice)
+  double placement_between_sd = 4e-3;  // between the fingers, per axis, constant in a trial [m] (choice)
+  double force_sd = 0.10;              // of a felt magnitude, relative [-] (choice, near Weber fractions of 7-10 % for force)
+  double force_floor = 0.1;            // a lighter touch isn't felt [N] (choice)
+  double force_lag = 0.02;             // time constant of felt force [s] (choice)
+  double reflex_time = 0.07;    // from a loss of force to its effect [s] (R. S. Johansson, G. Westling, Exp. Brain Res. 56, 1984: 60-80 ms)
+  double reading_time = 0.35;   // a deliberate reading [s] (choice)
+  double reaction_time = 0.25;  // to a tone [s] (choice)
+};
+
+// One participant's constants.
+struct Body {
+  std::array<devices::HandPull, kHandFingers> hands;  // p_D unused
+  double speed = 0.05;                                // mean speed of a reach [m/s]
+};
+Body drawBody(const HandRanges& ranges, std::uint64_t seed);
+
+// What is wrong with the body's sense of itself in one trial.
+struct BodySense {
+  std::array<Vec3, kHandFingers> misplacement_W;  // true minus felt place of a fingertip [m]
+  std::array<Quat, kHandFingers> q_felt_true;     // felt minus true orientation, in W
+};
+BodySense drawBodySense(const SensingLimits& limits, Random& random);
+
+}  // namespace pincer::tasks

@@ -1,0 +1,75 @@
+// participant: somebody who does an experiment, simulated. A controller behind a wall: files of this folder see devices/, the standard
+// library, and nothing else of pincer, so that no participant can look into the world (tests/unit/tasks/participant_wall.cpp).
+//
+// Each millisecond a participant is given what its body can feel (a Percept) and answers where its fingers pull (a HandAction).
+// Frames: W as the instructions describe the set-up; D_i the base of finger i's arm; F the finger; L its pad (devices/cld).
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "devices/arm/arm.h"
+#include "devices/arm/sim_arm.h"
+#include "devices/cld/tactile_display.h"
+#include "devices/math.h"
+
+namespace pincer::tasks {
+
+constexpr int kHandFingers = 2;  // index finger, thumb
+
+// Tones that pace a trial. Each sounds for one tick.
+enum class Cue : std::uint8_t { kNone, kStart, kSuccess, kEnd };
+
+// What one finger feels in this tick.
+struct FingerPercept {
+  devices::ArmSample arm;          // where the arm (and so the finger) is
+  Vec3 f_D = Vec3::Zero();         // the arm's push on the skin [N]
+  devices::TactileSample tactile;  // where the tactor is on the pad
+};
+
+struct Percept {
+  double time = 0;  // [s]
+  std::array<FingerPercept, kHandFingers> fingers;
+  Cue cue = Cue::kNone;
+};
+
+// What a participant is told about one finger before a trial: how arm and pad sit, and where it rests.
+struct FingerCue {
+  Quat q_WD = Quat::Identity();
+  Vec3 p_WD = Vec3::Zero();     // [m]
+  Vec3 home_W = Vec3::Zero();   // where the finger waits for the start tone [m]
+  double tip_radius = 8e-3;     // [m]
+  Vec3 pad_normal_F{0, 0, -1};  // out of the pad
+  Vec3 distal_F{1, 0, 0};       // first axis of L
+  Vec3 radial_F{0, 1, 0};       // second axis of L
+};
+
+// What a participant is told before a trial, the same in every condition: all of it is learnt in training, none of it is measured.
+struct TrialCues {
+  std::uint64_t seed = 0;  // of everything that varies from trial to trial within the participant
+  std::array<FingerCue, kHandFingers> fingers;
+  Vec3 place_W = Vec3::Zero();  // where the object is to be pinched [m]
+  double half_width = 0.02;     // of the object between the fingers [m]
+  double mass = 0.075;          // of the object [kg]
+  double lift_height = 0.050;   // to lift it at least so high [m]
+  double lowest_z = 0;          // under this height a fingertip's centre can't get beside the object [m]
+};
+
+// What the participant is doing; for records and for the judge, who counts as squeezes only what was meant to lift.
+enum class PickupPhase : std::uint8_t { kListen, kReach, kClose, kRead, kSqueeze, kLift, kHold, kReturn, kRest };
+const char* nameOf(PickupPhase phase);
+
+struct HandAction {
+  std::array<devices::HandPull, kHandFingers> pulls;
+  PickupPhase phase = PickupPhase::kListen;
+  bool wants_lift = false;  // squeezing, lifting or holding
+};
+
+class Participant {
+ public:
+  virtual ~Participant() = default;
+  virtual void begin(const TrialCues& cues) = 0;
+  // One millisecond. Allocates nothing, throws nothing.
+  virtual HandAction act(const Percept& percept) = 0;
+};
+
+}  // namespace pincer::tasks

@@ -1,0 +1,95 @@
+// scripted_pickup: a participant who picks up an object between index finger and thumb, without seeing it. The "simple" strategy:
+//
+//   listen - reach - close - read - (shift: reach) - squeeze - lift - hold - return - rest
+//                ^-------------------- force lost, or nothing found --------'
+//
+// close    both fingers move inwards until both feel a contact
+// read     hold still, then read the pads; when the object seems further than `shift_threshold` from the middle between the fingertips,
+//          open, shift the pinch by gain x estimate and close again; where the tactors stand still there is nothing to read
+// squeeze  go on inwards until the felt grip is the wanted one; lift straight up; hold until the tone
+// A loss of force for longer than the reflex time means that the object got away (slipped out, dropped, or was expelled): open, go down,
+// shift by a random step, and grip 1.3 times as hard. The same plan in every condition; no parameter knows an outcome.
+//
+// The hand pulls each fingertip towards a place (its equilibrium); grip comes from equilibria inside the object.
+#pragma once
+#include "tasks/participants/body.h"
+#include "tasks/participants/participant.h"
+#include "tasks/participants/random.h"
+#include "tasks/participants/reach.h"
+#include "tasks/participants/touch.h"
+
+namespace pincer::tasks {
+
+struct ScriptedPickupOptions {
+  double clearance = 0.015;        // between fingertip and believed surface before closing [m] (choice)
+  double approach_height = 0.010;  // above the pinch place before closing [m] (choice)
+  double close_speed = 0.032;      // [m/s], the slowest that Doxon (2014) measured
+  double contact_time = 0.05;      // both fingers must feel something for so long [s] (choice)
+  double shift_threshold = 5e-3;   // [m] (design)
+  double shift_gain = 0.75;        // placement_sd^2 / (placement_sd^2 + error^2 of a reading, 4 mm): the best linear estimate [-]
+  int max_shifts = 3;              // per attempt (choice)
+  double random_shift_sd = 5e-3;   // after a failure, per axis across the pinch [m]: as far as what is worth a shift (choice)
+  double farthest_shift = 0.014;   // from the first believed place, per axis [m]: twice the placement error's SD
+  double expected_mu = 0.52;       // before the first failure [-]: geometric mean of the frictions met in training, 0.3 .. 0.9
+  double grip_safety = 2.0;        // wanted grip over m g / (2 expected_mu) [-] (choice)
+  double grip_growth = 1.3;        // after a failure [-] (design)
+  double grip_max = 5.0;           // [N] (choice; the arm's peak is 8.5 N)
+  double squeeze_rate = 4.0;       // [N/s] (choice)
+  double lift_margin = 0.010;      // lifted further than asked for [m] (choice)
+  double patience = 2.0;           // without a tone, then lift a little more [s] (choice)
+  double lift_more = 0.010;        // [m] (choice)
+  double gravity = 9.81;           // [m/s^2]
+};
+
+class ScriptedPickup final : public Participant {
+ public:
+  // `seed` makes the participant: hands and speed. What varies between trials comes from the trial's own seed.
+  explicit ScriptedPickup(std::uint64_t seed, const ScriptedPickupOptions& options = {}, const SensingLimits& limits = {},
+                          const HandRanges& ranges = {});
+
+  void begin(const TrialCues& cues) override;
+  HandAction act(const Percept& percept) override;
+
+ private:
+  void listen();
+  void goAlong();
+  void close();
+  void read();
+  void squeeze();
+  void lift();
+  void hold();
+
+  void enter(PickupPhase phase);
+  void enterReach(const Posture& goal, PickupPhase phase);
+  void raise(double height);
+  void shiftPinch(const Vec3& shift_W);
+  void retry(bool harder);
+  bool lostIt();
+  Posture aboveThePinch() const;
+  double touchingHalf() const;
+  devices::HandPull pullOf(int finger) const;
+
+  ScriptedPickupOptions options_;
+  SensingLimits limits_;
+  Body body_;
+  Random random_;
+  TrialCues cues_;
+  BodySense sense_;
+  Touch touch_;
+
+  PickupPhase phase_ = PickupPhase::kListen;
+  Cue cue_ = Cue::kNone;
+  double now_ = 0, dt_ = 0;      // [s]
+  double entered_ = 0;           // when the phase began [s]
+  double heard_ = 0;             // when the start tone sounded [s], negative before
+  double contact_time_ = 0;      // how long both fingers have felt something [s]
+  Vec3 axis_W_ = Vec3::UnitX();  // of the pinch, from finger 0 to finger 1
+  Vec3 place_W_ = Vec3::Zero();  // believed place of the object's centre [m]
+  Posture home_, posture_;       // of the equilibria
+  Reach reach_;
+  double wanted_grip_ = 0;  // [N]
+  double felt_factor_ = 1;  // of felt over true magnitude, in this squeeze [-]
+  int shifts_ = 0;          // in this attempt
+};
+
+}  // namespace pincer::tasks

@@ -1,0 +1,59 @@
+#include "tasks/participants/touch.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pincer::tasks {
+
+void Touch::begin(const SensingLimits& limits, const TrialCues& cues, const BodySense& sense) {
+  *this = Touch();
+  limits_ = limits;
+  cues_ = cues;
+  sense_ = sense;
+}
+
+void Touch::feel(const Percept& percept) {
+  const double dt = begun_ ? std::max(percept.time - percept_.time, 0.0) : 0;
+  begun_ = true;
+  percept_ = percept;
+  for (int i = 0; i < kHandFingers; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const FingerPercept& finger = percept.fingers[k];
+    const double pressed = std::max(0.0, -(cues_.fingers[k].q_WD * finger.f_D).dot(padAxis_W(i, cues_.fingers[k].pad_normal_F)));
+    force_[k] += (pressed - force_[k]) * dt / (limits_.force_lag + dt);
+    const auto& place = finger.tactile.place_L;
+    if (!finger.tactile.valid || !place) continue;
+    if (!place_at_start_[k]) place_at_start_[k] = place;
+    moved_[k] = moved_[k] || (*place - *place_at_start_[k]).norm() > limits_.tactor_moves;
+  }
+  loss_time_ = feelsBoth() ? 0 : loss_time_ + dt;
+}
+
+Vec3 Touch::padAxis_W(int finger, const Vec3& axis_F) const {
+  const auto k = static_cast<std::size_t>(finger);
+  const Quat q_DF = percept_.fingers[k].arm.q_DF.value_or(Quat::Identity());
+  return sense_.q_felt_true[k] * (cues_.fingers[k].q_WD * (q_DF * axis_F));
+}
+
+std::optional<Vec3> Touch::readPlace(Random& random) const {
+  const auto first = readPlace(0, random);
+  const auto second = readPlace(1, random);
+  if (!first || !second) return std::nullopt;
+  return Vec3(0.5 * (*first + *second));
+}
+
+std::optional<Vec3> Touch::readPlace(int finger, Random& random) const {
+  const auto k = static_cast<std::size_t>(finger);
+  const Vec2 noise =
+      limits_.tactor_sd * random.normal2();  // drawn in any case: the noise of later readings doesn't depend on the condition
+  const auto& place = percept_.fingers[k].tactile.place_L;
+  if (!moved_[k] || !place) return std::nullopt;
+  const FingerCue& cue = cues_.fingers[k];
+  const Vec2 felt_L = limits_.tactor_bias * *place + noise;
+  const double length = felt_L.norm();
+  if (length == 0) return Vec3::Zero().eval();
+  const double along = (cue.tip_radius + cues_.half_width) * std::sin(length / cue.tip_radius) / length;
+  return Vec3(along * (felt_L.x() * padAxis_W(finger, cue.distal_F) + felt_L.y() * padAxis_W(finger, cue.radial_F)));
+}
+
+}  // namespace pincer::tasks

@@ -1,0 +1,53 @@
+// touch: what the skin of two fingers tells, within the limits of body.h.
+//
+//   grip force of a finger   f = max(0, -f_W . n_W),   low-passed:  f' = (f_now - f)/lag
+//   place of the object      p_fo = (r + w) (d - (d . n) n),   d = cos(a) n + sin(a) t,   a = |place_L|/r,   t = place_L/|place_L| in F
+//
+//   f_W  the arm's push [N], n_W  the pad's normal as felt, r  radius of the fingertip, w  expected half width of the object [m],
+//   d  direction from the fingertip's centre to the contact, p_fo  from the fingertip to the object's centre, across the pad [m].
+// A spherical fingertip on a spherical object touches on the line of the centres, hence the second equation.
+//
+// The direction of the force is not read: in a quasi-static pinch both forces lie along the line that joins the contacts, wherever these
+// are, so that it doesn't tell whether the fingers oppose each other.
+#pragma once
+#include <array>
+#include <optional>
+
+#include "tasks/participants/body.h"
+#include "tasks/participants/participant.h"
+#include "tasks/participants/random.h"
+
+namespace pincer::tasks {
+
+class Touch {
+ public:
+  void begin(const SensingLimits& limits, const TrialCues& cues, const BodySense& sense);
+  void feel(const Percept& percept);
+
+  bool feels(int finger) const { return force(finger) > limits_.force_floor; }
+  bool feelsBoth() const { return feels(0) && feels(1); }
+  double force(int finger) const { return force_[static_cast<std::size_t>(finger)]; }  // [N]
+  double grip() const { return 0.5 * (force_[0] + force_[1]); }                        // [N]
+  // How long at least one finger has felt nothing [s].
+  double lossTime() const { return loss_time_; }
+
+  // A deliberate reading of the pads: where the object's centre lies from the middle between the fingertips, across the pads [m], W.
+  // Absent unless both tactors have moved since the trial began: a still one tells nothing.
+  std::optional<Vec3> readPlace(Random& random) const;
+
+ private:
+  Vec3 padAxis_W(int finger, const Vec3& axis_F) const;
+  std::optional<Vec3> readPlace(int finger, Random& random) const;
+
+  SensingLimits limits_;
+  TrialCues cues_;
+  BodySense sense_;
+  Percept percept_;
+  std::array<double, kHandFingers> force_{};
+  std::array<bool, kHandFingers> moved_{};
+  std::array<std::optional<Vec2>, kHandFingers> place_at_start_;
+  double loss_time_ = 0;
+  bool begun_ = false;
+};
+
+}  // namespace pincer::tasks
