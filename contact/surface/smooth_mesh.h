@@ -11,7 +11,9 @@
 // triangles", 2001 (patch). Departures: edge cubics after D. Walton, D. Meek, Computer-Aided Design 28(2), 1996, so that an edge depends
 // on its own ends only; Bernstein normals with the factor 2 on mixed terms; Newton's method in place of the published iteration.
 #pragma once
+#include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "contact/math.h"
@@ -42,6 +44,11 @@ class SmoothMesh {
   const std::vector<Vec3>& hullVertices() const;  // corners of the mesh's convex hull, each a vertex of the mesh [m]
   double boundingRadius() const;                  // of a sphere about B's origin that holds the surface [m]
   const TriangleMesh& triangles() const;
+
+  const std::vector<std::int32_t>& foldedTriangles() const;  // whose patch folds over: contact there may be held (kQueryHeldDirection)
+  double tightestConcaveRadius() const;                      // of the surface [m]; infinity where it is convex
+  // What a finger of radius `r` [m] will not feel well, one sentence each with remedy; complements inspect() (mesh_report.h).
+  std::vector<std::string> findings(double r) const;
 
  private:
   struct Data;

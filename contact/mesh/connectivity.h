@@ -1,0 +1,39 @@
+// connectivity: which triangle lies across each edge, which edges are sharp, and the normal at each corner.
+//
+//   n_corner = normalised sum over the corner's fan of alpha_i n_i,  alpha_i  the triangle's angle there [rad], n_i  its normal
+//
+// Edge i of a triangle goes from its corner i to corner (i + 1) mod 3. A fan is the triangles around a vertex between two sharp edges, so a
+// vertex on a crease has several normals. Where the file has normals they replace n_i (weight 1 each), and an edge is sharp where the two
+// sides' normals differ at an end by more than kSameNormal; elsewhere it is sharp where the facets' angle exceeds the crease angle.
+// Source: G. Thürmer, C. A. Wüthrich, J. Graphics Tools 3(1), 1998 (angle weights).
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "contact/mesh/triangle_mesh.h"
+
+namespace pincer::contact {
+
+// File normals closer than this are one normal, written with rounding: 1 degree. [rad]
+constexpr double kSameNormal = 0.017453292519943295;
+
+struct Neighbour {
+  std::int32_t triangle = -1;  // -1: open border
+  std::int8_t edge = -1;       // the same edge as the neighbour counts it
+};
+
+using Neighbours = std::vector<std::array<Neighbour, 3>>;  // per triangle and edge
+
+struct CornerNormals {
+  std::vector<std::array<bool, 3>> sharp;    // per triangle and edge; open borders are sharp
+  std::vector<std::array<Vec3, 3>> normals;  // per triangle and corner, unit; equal to the last bit within a fan
+};
+
+// Requires a manifold mesh (requireManifold); throws std::logic_error if it isn't.
+Neighbours findNeighbours(const TriangleMesh& mesh);
+
+// Requires 0 < crease_angle <= pi [rad].
+CornerNormals findCornerNormals(const TriangleMesh& mesh, const Neighbours& neighbours, double crease_angle, bool use_file_normals);
+
+}  // namespace pincer::contact

@@ -1,0 +1,103 @@
+#include <algorithm>
+
+#include "contact/mesh/connectivity.h"
+#include "contact/mesh/union_find.h"
+
+namespace pincer::contact {
+
+namespace {
+
+double angleBetween(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
+
+class CornerNormalFinder {
+ public:
+  CornerNormalFinder(const TriangleMesh& mesh, const Neighbours& neighbours, bool use_file_normals)
+      : mesh_(mesh), neighbours_(neighbours), use_file_normals_(use_file_normals && !mesh.triangle_normals.empty()) {
+    facet_normals_.reserve(mesh.triangles.size());
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      facet_normals_.push_back((corner(t, 1) - corner(t, 0)).cross(corner(t, 2) - corner(t, 0)).normalized());
+    }
+  }
+
+  CornerNormals find(double crease_angle) const {
+    CornerNormals result;
+    result.sharp.resize(mesh_.triangles.size());
+    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+      for (std::size_t i = 0; i < 3; ++i) result.sharp[t][i] = isSharp(t, i, crease_angle);
+    }
+    result.normals = averageOverFans(result.sharp);
+    return result;
+  }
+
+ private:
+  const Vec3& corner(std::size_t t, std::size_t i) const { return mesh_.vertices[static_cast<std::size_t>(mesh_.triangles[t][i % 3])]; }
+
+  const Vec3* fileNormal(std::size_t t, std::size_t i) const {
+    if (!use_file_normals_) return nullptr;
+    const std::int32_t n = mesh_.triangle_normals[t][i % 3];
+    return n < 0 ? nullptr : &mesh_.normals[static_cast<std::size_t>(n)];
+  }
+
+  bool isSharp(std::size_t t, std::size_t i, double crease_angle) const {
+    const auto [other, edge] = neighbours_[t][i];
+    if (other < 0) return true;
+    const auto s = static_cast<std::size_t>(other), j = static_cast<std::size_t>(edge);
+    const Vec3 *a0 = fileNormal(t, i), *a1 = fileNormal(t, i + 1), *b0 = fileNormal(s, j + 1), *b1 = fileNormal(s, j);
+    if (a0 && a1 && b0 && b1) return angleBetween(*a0, *b0) > kSameNormal || angleBetween(*a1, *b1) > kSameNormal;
+    return angleBetween(facet_normals_[t], facet_normals_[s]) > crease_angle;
+  }
+
+  Vec3 weightedNormal(std::size_t t, std::size_t i) const {
+    return angleBetween(corner(t, i + 1) - corner(t, i), corner(t, i + 2) - corner(t, i)) * facet_normals_[t];
+  }
+
+  std::vector<std::array<Vec3, 3>> averageOverFans(const std::vector<std::array<bool, 3>>& sharp) const {
+    UnionFind fans(3 * mesh_.triangles.size());
+    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        if (!sharp[t][i]) joinAcross(t, i, fans);
+      }
+    }
+    const std::size_t corners = 3 * mesh_.triangles.size();
+    std::vector<Vec3> from_file(corners, Vec3::Zero()), from_facets(corners, Vec3::Zero());
+    for (std::size_t c = 0; c < corners; ++c) {
+      const auto fan = static_cast<std::size_t>(fans.find(static_cast<std::int32_t>(c)));
+      from_facets[fan] += weightedNormal(c / 3, c % 3);
+      if (const Vec3* n = fileNormal(c / 3, c % 3)) from_file[fan] += *n;
+    }
+    std::vector<std::array<Vec3, 3>> normals(mesh_.triangles.size());
+    for (std::size_t c = 0; c < corners; ++c) {
+      const auto fan = static_cast<std::size_t>(fans.find(static_cast<std::int32_t>(c)));
+      normals[c / 3][c % 3] = directionOf(from_file[fan], from_facets[fan], facet_normals_[c / 3]);
+    }
+    return normals;
+  }
+
+  void joinAcross(std::size_t t, std::size_t i, UnionFind& fans) const {
+    const auto [other, edge] = neighbours_[t][i];
+    const auto here = static_cast<std::int32_t>(3 * t + i), here_next = static_cast<std::int32_t>(3 * t + (i + 1) % 3);
+    fans.join(here, 3 * other + (edge + 1) % 3);
+    fans.join(here_next, 3 * other + edge);
+  }
+
+  // Opposite facets cancel; what is left after that has no direction, and each facet keeps its own.
+  static Vec3 directionOf(const Vec3& from_file, const Vec3& from_facets, const Vec3& facet) {
+    constexpr double kCancelled = 1e-6;
+    if (from_file.norm() > kCancelled) return from_file.normalized();
+    if (from_facets.norm() > kCancelled) return from_facets.normalized();
+    return facet;
+  }
+
+  const TriangleMesh& mesh_;
+  const Neighbours& neighbours_;
+  bool use_file_normals_;
+  std::vector<Vec3> facet_normals_;
+};
+
+}  // namespace
+
+CornerNormals findCornerNormals(const TriangleMesh& mesh, const Neighbours& neighbours, double crease_angle, bool use_file_normals) {
+  return CornerNormalFinder(mesh, neighbours, use_file_normals).find(crease_angle);
+}
+
+}  // namespace pincer::contact

@@ -1,0 +1,228 @@
+#include "contact/surface/shell_solver.h"
+
+#include "contact/surface/shell_edge.h"
+#include "contact/surface/shell_face.h"
+
+namespace pincer::contact {
+
+namespace {
+
+constexpr double kDone = 1e-9;        // [m] residual that needs no further step
+constexpr double kNear = 1e-6;        // [m] residual after which one more step is the last: Newton squares it
+constexpr int kMaxSteps = 20;         // within faces
+constexpr int kMaxCrossings = 200;    // of edges, at most one per step of a walk over fine triangles
+constexpr int kMaxFeatureVisits = 6;  // of edges and of vertices, each
+
+class ShellWalk {
+ public:
+  ShellWalk(const SurfaceNet& net, const Vec3& C, const Foot& start) : net_(net), C_(C), foot_(start) { result_.foot = start; }
+
+  ShellContact run() {
+    while (state_ == State::onFace) stepOnFace();
+    return result_;
+  }
+
+ private:
+  enum class State { onFace, ended };
+  struct Side {
+    std::int32_t triangle = -1;
+    int edge = -1;
+  };
+
+  const SurfaceCell& cell() const { return net_.cell(foot_.triangle); }
+  void stepOnFace();
+  bool halveLastMove(double residual);
+  void move(const std::array<double, 3>& db);
+  void meetEdge(int edge, double s);
+  void cross(int edge, double s);
+  void settleOnEdge(int edge, double s);
+  void settleOnVertex(std::int32_t vertex);
+  bool leaveVertexIntoFace(std::int32_t vertex);
+  bool leaveVertexAlongEdge(std::int32_t vertex);
+  void putOnEdge(int edge, double s);
+  void enterFace();
+  void accept(const Vec3& n, double h);
+  void giveUp() { state_ = State::ended; }
+
+  const SurfaceNet& net_;
+  const Vec3 C_;
+  Foot foot_;
+  State state_ = State::onFace;
+  ShellContact result_;
+
+  StepKind next_kind_ = StepKind::newton;
+  bool near_ = false;  // the last residual was below kNear
+  Side entered_by_;    // the edge through which the walk came into this face, until a step stays inside
+  int steps_ = 0, crossings_ = 0, edge_visits_ = 0, vertex_visits_ = 0;
+
+  Foot last_;  // where the last step within this face began
+  std::array<double, 3> last_db_{};
+  double last_residual_ = 0, last_scale_ = 0;  // scale 0: no step to halve
+};
+
+void ShellWalk::stepOnFace() {
+  const FaceStep step = faceStep(evaluate(cell().patch, foot_.b[1], foot_.b[2]), C_, next_kind_);
+  if (step.residual < kDone || (near_ && step.residual < kNear)) return accept(step.n, step.h);
+  if (steps_ >= kMaxSteps || crossings_ >= kMaxCrossings) return giveUp();
+  near_ = step.residual < kNear;
+  if (!near_ && halveLastMove(step.residual)) return;
+  last_ = foot_;
+  last_db_ = step.db;
+  last_residual_ = step.residual;
+  last_scale_ = next_kind_ == StepKind::newton ? 1 : 0;
+  next_kind_ = StepKind::newton;
+  move(step.db);
+}
+
+bool ShellWalk::halveLastMove(double residual) {
+  constexpr double kLeastScale = 0.05;
+  if (last_scale_ < kLeastScale || residual <= last_residual_) return false;
+  ++steps_;
+  last_scale_ *= 0.5;
+  for (std::size_t i = 0; i < 3; ++i) foot_.b[i] = last_.b[i] + last_scale_ * last_db_[i];
+  return true;
+}
+
+void ShellWalk::move(const std::array<double, 3>& db) {
+  double part = 1;
+  int leaving = -1;  // the coordinate that reaches 0 first
+  for (int i = 0; i < 3; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    if (foot_.b[k] + db[k] >= 0) continue;
+    const double until = foot_.b[k] / -db[k];
+    if (until >= part) continue;
+    part = until;
+    leaving = i;
+  }
+  for (std::size_t i = 0; i < 3; ++i) foot_.b[i] = std::max(0.0, foot_.b[i] + part * db[i]);
+  if (leaving < 0) {
+    ++steps_;
+    entered_by_ = {};
+    return;
+  }
+  const int edge = (leaving + 1) % 3;
+  const double to = foot_.b[static_cast<std::size_t>((edge + 1) % 3)], from = foot_.b[static_cast<std::size_t>(edge)];
+  meetEdge(edge, to / (from + to));
+}
+
+void ShellWalk::meetEdge(int edge, double s) {
+  last_scale_ = 0;
+  near_ = false;
+  const bool turned_back = entered_by_.triangle == foot_.triangle && entered_by_.edge == edge;
+  if (turned_back || cell().neighbours[static_cast<std::size_t>(edge)].triangle < 0) return settleOnEdge(edge, s);
+  const bool circling =
+      (s == 0 || s == 1) && entered_by_.triangle == foot_.triangle;  // through a vertex, around which steps may lead forever
+  if (circling) return settleOnVertex(cell().vertices[static_cast<std::size_t>(s == 0 ? edge : (edge + 1) % 3)]);
+  cross(edge, s);
+}
+
+void ShellWalk::putOnEdge(int edge, double s) {
+  foot_.b[static_cast<std::size_t>(edge)] = 1 - s;
+  foot_.b[static_cast<std::size_t>((edge + 1) % 3)] = s;
+  foot_.b[static_cast<std::size_t>((edge + 2) % 3)] = 0;
+}
+
+void ShellWalk::cross(int edge, double s) {
+  ++crossings_;
+  const Neighbour other = cell().neighbours[static_cast<std::size_t>(edge)];
+  foot_.triangle = other.triangle;
+  putOnEdge(other.edge, 1 - s);
+  entered_by_ = {other.triangle, other.edge};
+}
+
+// The next step goes along the residual, which leads inside by the test that sent us here; Newton's need not on a kinked patch.
+void ShellWalk::enterFace() {
+  next_kind_ = StepKind::alongResidual;
+  entered_by_ = {};
+  last_scale_ = 0;
+  near_ = false;
+}
+
+void ShellWalk::settleOnEdge(int edge, double s) {
+  if (++edge_visits_ > kMaxFeatureVisits) return giveUp();
+  const SharpEdge curve = sharpEdge(net_, foot_.triangle, edge);
+  const EdgeFoot foot = footOnEdge(curve, C_, s);
+  putOnEdge(edge, foot.s);
+  if (foot.s == 0 || foot.s == 1) return settleOnVertex(cell().vertices[static_cast<std::size_t>(foot.s == 0 ? edge : (edge + 1) % 3)]);
+  if (foot.leads_left) return enterFace();
+  if (foot.leads_right) {
+    cross(edge, foot.s);
+    return enterFace();
+  }
+  const FeatureContact contact = contactWithPoint(C_, foot.x.E, foot.x.left.normalized() + foot.x.right.normalized(), curve.is_border);
+  accept(contact.n, contact.h);
+}
+
+void ShellWalk::settleOnVertex(std::int32_t vertex) {
+  if (++vertex_visits_ > kMaxFeatureVisits) return giveUp();
+  if (leaveVertexIntoFace(vertex)) return;
+  if (leaveVertexAlongEdge(vertex)) return;
+  Vec3 outward = Vec3::Zero(), p = Vec3::Zero();
+  bool has_border = false;
+  for (const auto& [triangle, corner] : net_.cornersAt(vertex)) {
+    const Patch& patch = net_.cell(triangle).patch;
+    outward += edgeNormals(patch, corner)[0];
+    p = edgeCurve(patch, corner)[0];
+    for (const int i : {corner, (corner + 2) % 3}) has_border |= net_.cell(triangle).neighbours[static_cast<std::size_t>(i)].triangle < 0;
+  }
+  const FeatureContact contact = contactWithPoint(C_, p, outward, has_border);
+  accept(contact.n, contact.h);
+}
+
+// Into the face whose residual leads inside, the largest if there are several.
+bool ShellWalk::leaveVertexIntoFace(std::int32_t vertex) {
+  double largest = kDone;
+  Foot best;
+  for (const auto& [triangle, corner] : net_.cornersAt(vertex)) {
+    Foot foot{triangle, {0, 0, 0}};
+    const auto c = static_cast<std::size_t>(corner);
+    foot.b[c] = 1;
+    const FaceStep step = faceStep(evaluate(net_.cell(triangle).patch, foot.b[1], foot.b[2]), C_, StepKind::alongResidual);
+    if (step.db[(c + 1) % 3] < 0 || step.db[(c + 2) % 3] < 0 || step.residual <= largest) continue;
+    largest = step.residual;
+    best = foot;
+  }
+  if (largest == kDone) return false;
+  foot_ = best;
+  enterFace();
+  return true;
+}
+
+// Along the sharp edge that leads away from the vertex most directly.
+bool ShellWalk::leaveVertexAlongEdge(std::int32_t vertex) {
+  double largest = kDone;
+  Side best;
+  double best_end = 0;
+  for (const auto& [triangle, corner] : net_.cornersAt(vertex)) {
+    for (const int edge : {corner, (corner + 2) % 3}) {
+      if (!net_.cell(triangle).sharp[static_cast<std::size_t>(edge)]) continue;
+      const double end = edge == corner ? 0 : 1;
+      const SharpEdgePoint x = evaluate(sharpEdge(net_, triangle, edge), end);
+      const double away = (end == 0 ? 1 : -1) * (C_ - x.E).dot(x.D.normalized());
+      if (away <= largest) continue;
+      largest = away;
+      best = {triangle, edge};
+      best_end = end;
+    }
+  }
+  if (best.triangle < 0) return false;
+  foot_.triangle = best.triangle;
+  settleOnEdge(best.edge, best_end);
+  return true;
+}
+
+void ShellWalk::accept(const Vec3& n, double h) {
+  result_ = {foot_, n, h, true};
+  state_ = State::ended;
+}
+
+}  // namespace
+
+ShellContact solveShell(const SurfaceNet& net, const Vec3& C, const Foot& start) { return ShellWalk(net, C, start).run(); }
+
+ShellContact tangentContact(const SurfaceNet& net, const Vec3& C, const Foot& foot) {
+  const FaceStep step = faceStep(evaluate(net.cell(foot.triangle).patch, foot.b[1], foot.b[2]), C, StepKind::alongResidual);
+  return {foot, step.n, step.h, false};
+}
+
+}  // namespace pincer::contact

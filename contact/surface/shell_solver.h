@@ -1,0 +1,43 @@
+// shell_solver: the surface point over whose normal a fingertip's centre lies, followed from where it was last.
+//
+//   C = S(u,v) + h N(u,v)      three equations for u, v, h
+//
+//   Newton on a face:  R = C - S, h = R.N / N.N, T = R - h N, A = Su + h Nu, B = Sv + h Nv, X = B x N, det = A.X,
+//                      du = T.X / det, dv = T.(N x A) / det
+//   C  fingertip centre, S  surface point [m], N  normal [-], T  residual: what is left across the normal [m]; frame B
+//
+// Safeguards: where det < 0.1 (Su x Sv).N (near the centre of a concave curvature) or the step leads away from T by more than acos 0.2, it
+// goes along T instead, with the gain 1 / (1 + |kappa h|), kappa the curvature that way; a step that raises |T| is halved.
+// Crossing a smooth edge: the step is cut at the edge and goes on from the same point of the neighbour.
+// On an edge or vertex that both sides' steps leave, the contact is the edge point or vertex (shell_edge.h).
+//
+// Source of the equation: A. J. Doxon et al., Presence 20(6), 2011; of Newton's form and the feature states: this project's design.
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "contact/math.h"
+#include "contact/surface/surface_net.h"
+
+namespace pincer::contact {
+
+// A point of the surface: barycentric coordinates of a triangle's corners 0, 1, 2, each >= 0, their sum 1.
+struct Foot {
+  std::int32_t triangle = 0;
+  std::array<double, 3> b = {1.0 / 3, 1.0 / 3, 1.0 / 3};
+};
+
+struct ShellContact {
+  Foot foot;
+  Vec3 n = Vec3::UnitZ();  // unit; C - h n is the contact point to within 1e-9 m
+  double h = 0;            // [m], negative when the centre lies under the surface
+  bool converged = false;  // false: no solution within the budget of 20 steps, and `foot` is where the walk began
+};
+
+// Walks from `start` to a solution for centre `C`. Allocates nothing, throws nothing.
+ShellContact solveShell(const SurfaceNet& net, const Vec3& C, const Foot& start);
+
+// The contact with the tangent plane at `foot`, whatever its residual: what is held where there is no solution.
+ShellContact tangentContact(const SurfaceNet& net, const Vec3& C, const Foot& foot);
+
+}  // namespace pincer::contact

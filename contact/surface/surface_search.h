@@ -1,0 +1,40 @@
+// surface_search: the nearest place of a whole surface, for starting (and guarding) the shell solver.
+//
+// The tree's boxes hold the patches' control nets, so a patch that bulges out of its triangle isn't missed. Within a leaf a patch is skipped
+// where the flat triangle's distance less the patch's bulge can't beat the best so far; otherwise the patch is evaluated over the flat
+// triangle's closest point (C. Ericson, "Real-Time Collision Detection", 2005, section 5.1.5).
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "contact/surface/aabb_tree.h"
+#include "contact/surface/shell_solver.h"
+#include "contact/surface/surface_net.h"
+
+namespace pincer::contact {
+
+struct SurfaceSeed {
+  Foot foot;
+  double distance;     // from the point searched for to the patch at `foot` [m]: an upper bound of the distance to the surface
+  bool found = false;  // false: nothing within the bound
+};
+
+class SurfaceSearch {
+ public:
+  explicit SurfaceSearch(const SurfaceNet& net);
+
+  // The best place nearer than `bound` [m]. Looks at 2000 patches at most, which a finger can only exceed near the centre of a spherical
+  // bowl, where all places are equally near. Allocates nothing.
+  SurfaceSeed nearest(const SurfaceNet& net, const Vec3& p, double bound) const;
+
+ private:
+  struct FlatTriangle {
+    std::array<Vec3, 3> corners;  // [m]
+    double bulge;                 // no point of the patch is further from the flat triangle [m]
+    std::int32_t triangle;
+  };
+  AabbTree tree_;
+  std::vector<FlatTriangle> leaves_;  // in the tree's order
+};
+
+}  // namespace pincer::contact
