@@ -6,15 +6,15 @@
 namespace pincer::engine {
 
 struct MassProperties {
-  double mass = 0;               // [kg]
-  Vec3 p_BBcm = Vec3::Zero();    // centre of mass [m]
-  Mat3 I_BBcm = Mat3::Zero();    // inertia about the centre of mass, in B's axes [kg m^2]
+  double mass = 0;             // [kg]
+  Vec3 p_BBcm = Vec3::Zero();  // centre of mass [m]
+  Mat3 I_BBcm = Mat3::Zero();  // inertia about the centre of mass, in B's axes [kg m^2]
 };
 
 // Principal axes: a frame I at the centre of mass in which the inertia is diagonal.
 struct PrincipalInertia {
-  Pose X_BI;                      // I in the body's frame; identity rotation where B's axes are principal already (to round-off)
-  Vec3 moments = Vec3::Zero();    // about I's axes, each > 0 [kg m^2]
+  Pose X_BI;                    // I in the body's frame; identity rotation where B's axes are principal already (to round-off)
+  Vec3 moments = Vec3::Zero();  // about I's axes, each > 0 [kg m^2]
 };
 
 // Volume of the solid [m^3]. Throws InputError for half-spaces and dishes, which have none.
