@@ -23,6 +23,7 @@ double radiusOf(const Dish&) { return kUnbounded; }
 double radiusOf(const Mesh& m) { return m.surface->boundingRadius(); }
 
 bool isSphere(const Shape& shape) { return std::holds_alternative<Sphere>(shape); }
+bool isMesh(const Shape& shape) { return std::holds_alternative<Mesh>(shape); }
 bool isSupport(const Shape& shape) { return std::holds_alternative<HalfSpace>(shape) || std::holds_alternative<Dish>(shape); }
 
 void addPoint(const PairPoint& point, PairPoints& out) { out.points[out.count++] = point; }
@@ -30,16 +31,15 @@ void addPoint(const PairPoint& point, PairPoints& out) { out.points[out.count++]
 // n out of the support.
 template <class Support>
 void collideWithSupport(const Shape& solid, const SolidFrame& A, const Support& support, double margin, PairPoints& out) {
-  if (!(support.gap(Vec3::Zero()) - boundingRadius(solid) < margin)) return;
+  if (isMesh(solid) && !(support.gap(Vec3::Zero()) - boundingRadius(solid) < margin)) return;  // the others have 12 points at most
   ExtremePointStore store;
   const ExtremePoints extreme = extremePoints(solid, support.steepest(), store);
   const PointChoice choice(extreme, support, margin);
   for (int k = 0; k < choice.count(); ++k) {
-    const int i = choice[k];
-    const double phi = choice.gapOf(i);
-    const Vec3 n_A = support.normal(extreme.points[i]);
-    const Vec3 p_A = extreme.points[i] - (extreme.rounding + 0.5 * phi) * n_A;
-    addPoint({A.pointToWorld(p_A), A.R_WA * n_A, phi, extreme.featureOf(i)}, out);
+    const auto [i, phi] = choice[k];
+    const Vec3 n_W = support.normalInWorld(extreme.points[i], A);
+    const Vec3 p_W = A.p_WA + A.toWorld(extreme.points[i]) - (extreme.rounding + 0.5 * phi) * n_W;
+    addPoint({p_W, n_W, phi, extreme.featureOf(i)}, out);
   }
 }
 
@@ -52,7 +52,7 @@ void collideWithSupport(const Shape& solid, const Pose& X_WA, const Shape& suppo
 // n out of b.
 void collideSphere(const Sphere& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin, PairPoints& out) {
   const Vec3 p_BC = X_WB.q.conjugate() * (X_WA.p - X_WB.p);
-  if (!(lowerBoundOfGap(b, p_BC, a.radius) < margin)) return;
+  if (isMesh(b) && !(lowerBoundOfGap(b, p_BC, a.radius) < margin)) return;  // a closed form costs no more than its bound
   SurfaceTracker whole_mesh;
   const SurfaceContact s = querySphere(b, p_BC, a.radius, whole_mesh);
   if (s.phi < margin) addPoint({X_WB * (s.p_BS + 0.5 * s.phi * s.n_B), X_WB.q * s.n_B, s.phi, 0}, out);

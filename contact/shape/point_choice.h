@@ -21,6 +21,11 @@
 
 namespace pincer::contact {
 
+struct Chosen {
+  int index = 0;   // of the extreme point
+  double gap = 0;  // [m]
+};
+
 template <class Support>
 class PointChoice {
  public:
@@ -30,27 +35,29 @@ class PointChoice {
     keepFurthest();
     keepFurthestFromLine();
     keepFurthestFromTriangle();
-    std::sort(chosen_.begin(), chosen_.end());
+    std::sort(chosen_.begin(), chosen_.end(), [](const Chosen& a, const Chosen& b) { return a.index < b.index; });
   }
 
   int count() const { return count_; }
-  int operator[](int i) const { return chosen_[i]; }  // index into the extreme points, ascending
-  double gapOf(int i) const { return support_.gap(solid_.points[i]) - solid_.rounding; }
+  const Chosen& operator[](int i) const { return chosen_[i]; }  // by ascending index
 
  private:
   static constexpr double kSame = 1e-7;      // [m]
   static constexpr double kGapWeight = 2.0;  // [-]
 
+  double gapOf(int i) const { return support_.gap(solid_.points[i]) - solid_.rounding; }
   int candidates() const { return static_cast<int>(solid_.points.size()); }
-  const Vec3& chosenPoint(int i) const { return solid_.points[chosen_[i]]; }
-  bool isChosen(int i) const { return std::find(chosen_.begin(), chosen_.begin() + count_, i) != chosen_.begin() + count_; }
+  const Vec3& chosenPoint(int i) const { return solid_.points[chosen_[i].index]; }
+  bool isChosen(int i) const {
+    return std::any_of(chosen_.begin(), chosen_.begin() + count_, [i](const Chosen& c) { return c.index == i; });
+  }
 
   bool keepAllOfFew() {
     int near = 0;
     for (int i = 0; i < candidates(); ++i) {
       const double gap = gapOf(i);
       if (!(gap < margin_)) continue;
-      if (near < kMaxPairPoints) chosen_[near] = i;
+      if (near < kMaxPairPoints) chosen_[near] = {i, gap};
       ++near;
       deepest_ = std::min(deepest_, gap);
     }
@@ -61,7 +68,7 @@ class PointChoice {
   void keepDeepest() {
     int i = 0;
     while (gapOf(i) > deepest_ + kSame) ++i;
-    chosen_[count_++] = i;
+    chosen_[count_++] = {i, gapOf(i)};
     n_A_ = support_.normal(chosenPoint(0));
   }
 
@@ -99,7 +106,7 @@ class PointChoice {
       const double score = distance(solid_.points[i]) - kGapWeight * (gap - deepest_);
       if (!(score > best + kSame)) continue;
       best = score;
-      chosen_[count_] = i;
+      chosen_[count_] = {i, gap};
     }
     ++count_;
   }
@@ -109,7 +116,7 @@ class PointChoice {
   double margin_;                                             // [m]
   double deepest_ = std::numeric_limits<double>::infinity();  // smallest gap [m]
   Vec3 n_A_ = Vec3::UnitZ();
-  std::array<int, kMaxPairPoints> chosen_{};
+  std::array<Chosen, kMaxPairPoints> chosen_;
   int count_ = 0;
 };
 

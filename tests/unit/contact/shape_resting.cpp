@@ -204,7 +204,7 @@ Features chosen(const Ring& ring, const Pose& X_WA) {
   const PlaneSupport ground(HalfSpace{}, Pose{}, A);
   const PointChoice choice({ring.points, {}, 0}, ground, 0.05);
   Features features;
-  for (int i = 0; i < choice.count(); ++i) features.insert(static_cast<std::uint32_t>(choice[i]));
+  for (int i = 0; i < choice.count(); ++i) features.insert(static_cast<std::uint32_t>(choice[i].index));
   return features;
 }
 
