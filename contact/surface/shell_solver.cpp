@@ -69,7 +69,7 @@ void ShellWalk::stepOnFace() {
   last_ = foot_;
   last_db_ = step.db;
   last_residual_ = step.residual;
-  last_scale_ = next_kind_ == StepKind::newton ? 1 : 0;
+  last_scale_ = step.is_newton ? 1 : 0;
   next_kind_ = StepKind::newton;
   move(step.db);
 }

@@ -1,0 +1,102 @@
+#include "contact/surface/shell_face.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pincer::contact {
+
+namespace {
+
+constexpr double kLeastDeterminant = 0.1;  // of J
+constexpr double kLeastCosine = 0.2;       // between Newton's step and T
+constexpr double kLeastEigenvalue = 0.2;   // of J, so that no step is longer than 5 |T|
+
+struct Residual {
+  Vec3 T, n;
+  double hN;  // h in units of |N|
+  double h;
+  double N_length;
+};
+
+Residual residualOf(const PatchPoint& x, const Vec3& C) {
+  const Vec3 R = C - x.S;
+  const double NN = x.N.squaredNorm(), N_length = std::sqrt(NN);
+  const double hN = R.dot(x.N) / NN;
+  return {R - hN * x.N, x.N / N_length, hN, hN * N_length, N_length};
+}
+
+// A square 2x2 system in the plane across n: columns are the images of du and dv.
+struct PlaneMap {
+  double a, b, c, d;  // [a b; c d]
+  double det() const { return a * d - b * c; }
+  Vec2 solve(const Vec2& y) const { return Vec2(d * y.x() - b * y.y(), a * y.y() - c * y.x()) / det(); }
+};
+
+Vec2 stepAlongResidual(const PatchPoint& x, const Residual& r) {
+  const double a = x.Su.squaredNorm(), b = x.Su.dot(x.Sv), c = x.Sv.squaredNorm();
+  const double det = std::max(a * c - b * b, 1e-12 * a * c);  // a folded patch may have Su parallel to Sv
+  const double tu = r.T.dot(x.Su), tv = r.T.dot(x.Sv);
+  const Vec2 d((c * tu - b * tv) / det, (a * tv - b * tu) / det);
+  const Vec3 dS = x.Su * d.x() + x.Sv * d.y();
+  const Vec3 dN = x.Nu * d.x() + x.Nv * d.y();
+  const double moved = dS.norm();
+  const double kappa = moved > 0 ? (dN - r.n * r.n.dot(dN)).norm() / (r.N_length * moved) : 0;
+  return d / (1 + kappa * std::abs(r.h));
+}
+
+// T divided by the sizes of the eigenvalues of the symmetric matrix [p q; q s].
+Vec2 divideByEigenvalueSizes(double p, double q, double s, const Vec2& T) {
+  const double mean = 0.5 * (p + s), half_gap = std::hypot(0.5 * (p - s), q);
+  const auto inverse = [](double lambda) { return 1 / std::max(std::abs(lambda), kLeastEigenvalue); };
+  const double f1 = inverse(mean + half_gap), f2 = inverse(mean - half_gap);
+  if (half_gap < 1e-12) return f1 * T;
+  // Sylvester: f(M) = f2 + (f1 - f2) (M - lambda2) / (lambda1 - lambda2)
+  const double k = (f1 - f2) / (2 * half_gap), lambda2 = mean - half_gap;
+  return {f2 * T.x() + k * ((p - lambda2) * T.x() + q * T.y()), f2 * T.y() + k * (q * T.x() + (s - lambda2) * T.y())};
+}
+
+Vec2 saddleFreeStep(const PatchPoint& x, const Residual& r) {
+  const Vec3 e1 = (x.Su - r.n * r.n.dot(x.Su)).normalized(), e2 = r.n.cross(e1);
+  const PlaneMap moves{x.Su.dot(e1), x.Sv.dot(e1), x.Su.dot(e2), x.Sv.dot(e2)};
+  if (!(moves.det() > 0.01 * moves.a * moves.d)) return stepAlongResidual(x, r);  // folded
+  const Vec3 A = x.Su + r.hN * x.Nu, B = x.Sv + r.hN * x.Nv;
+  // J = image * moves^-1, row by row
+  const double image[2][2] = {{A.dot(e1), B.dot(e1)}, {A.dot(e2), B.dot(e2)}};
+  double J[2][2];
+  for (int i = 0; i < 2; ++i) {
+    J[i][0] = (image[i][0] * moves.d - image[i][1] * moves.c) / moves.det();
+    J[i][1] = (image[i][1] * moves.a - image[i][0] * moves.b) / moves.det();
+  }
+  const Vec2 dS = divideByEigenvalueSizes(J[0][0], 0.5 * (J[0][1] + J[1][0]), J[1][1], {r.T.dot(e1), r.T.dot(e2)});
+  return moves.solve(dS);
+}
+
+// Newton's step; `usable` tells whether it may be taken.
+Vec2 newtonStep(const PatchPoint& x, const Residual& r, bool& usable) {
+  const Vec3 A = x.Su + r.hN * x.Nu, B = x.Sv + r.hN * x.Nv;
+  const Vec3 X = B.cross(x.N);
+  const double det = A.dot(X), flat = x.Su.dot(x.Sv.cross(x.N));
+  const Vec2 d = Vec2(r.T.dot(X), r.T.dot(x.N.cross(A))) / det;
+  const Vec3 dS = x.Su * d.x() + x.Sv * d.y();
+  const double along = r.T.dot(dS);
+  usable = flat > 0 && det > kLeastDeterminant * flat && along > 0 &&
+           along * along >= kLeastCosine * kLeastCosine * r.T.squaredNorm() * dS.squaredNorm();
+  return d;
+}
+
+}  // namespace
+
+FaceStep faceStep(const PatchPoint& x, const Vec3& C, StepKind kind) {
+  const Residual r = residualOf(x, C);
+  bool is_newton = false;
+  Vec2 d = Vec2::Zero();
+  if (kind == StepKind::newton) {
+    d = newtonStep(x, r, is_newton);
+    if (!is_newton) d = saddleFreeStep(x, r);
+  } else {
+    d = stepAlongResidual(x, r);
+  }
+  return {r.n, r.h, r.T.norm(), {-d.x() - d.y(), d.x(), d.y()}, is_newton};
+}
+
+}  // namespace pincer::contact
