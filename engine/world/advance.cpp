@@ -53,17 +53,12 @@ void advancePoint(const std::array<AxisForm, 3>& forms, const PointScratch& scra
   s.touching = touches;
 }
 
-Vec3 anchorOf(const WorldScratch& scratch, const Side& side, const Vec3& p_W) {
-  if (side.kind == SideKind::kPoint) return p_W - scratch.points[side.index].p_mid_W;
-  return scratch.bodies[side.index].X_WI_mid.inverse() * p_W;
+Motion motionOf(const WorldModel& model, const WorldState& state, const Side& side) {
+  if (side.kind == SideKind::kPoint) return {state.points[side.index].v_W, Vec3::Zero()};
+  return {state.bodies[side.index].v_W, bodyAngularVelocity(model, state, side.index)};
 }
 
-Vec3 angularVelocityOf(const WorldModel& model, const WorldState& state, const Side& side) {
-  return side.kind == SideKind::kPoint ? Vec3(Vec3::Zero()) : bodyAngularVelocity(model, state, side.index);
-}
-
-// The anchor moves to today's contact point, the offset with it: sticking survives rolling.
-ContactMemory remember(const WorldModel& model, const WorldState& state, const WorldScratch& scratch, const Contact& c) {
+ContactMemory remember(const WorldModel& model, const WorldState& state, const Contact& c) {
   ContactMemory m;
   m.id = c.id;
   m.r = c.r;
@@ -73,18 +68,17 @@ ContactMemory remember(const WorldModel& model, const WorldState& state, const W
   m.arm_b_W = c.arm_b_W;
   m.active = c.active();
   m.sliding = c.sliding;
-  m.anchor_a = anchorOf(scratch, c.a, c.p_W + 0.5 * c.offset_W);
-  m.anchor_b = anchorOf(scratch, c.b, c.p_W - 0.5 * c.offset_W);
-  if (c.material.torsion_radius > 0 && m.active && !m.sliding) {
-    const Vec3 w_rel_W = angularVelocityOf(model, state, c.a) - angularVelocityOf(model, state, c.b);
-    m.twist = c.twist + model.options.h * c.n_W().dot(w_rel_W);
+  if (m.active && !m.sliding) {
+    const Eigen::Vector4d v_end_C = relativeVelocity(c, motionOf(model, state, c.a), motionOf(model, state, c.b));
+    m.offset_C = c.offset_C + model.options.h * (c.closing ? v_end_C : Eigen::Vector4d(0.5 * (c.v_start_C + v_end_C)));
+    m.offset_C[kNormalRow] = 0;
   }
   return m;
 }
 
 void rememberContacts(const WorldModel& model, WorldState& state, const WorldScratch& scratch) {
   state.contact_count = 0;
-  for (const Contact& c : scratch.contacts) state.contacts[state.contact_count++] = remember(model, state, scratch, c);
+  for (const Contact& c : scratch.contacts) state.contacts[state.contact_count++] = remember(model, state, c);
 }
 
 bool touches(const WorldScratch& scratch, int point, bool closing_only) {

@@ -5,36 +5,22 @@
 namespace pincer::engine {
 namespace {
 
-Vec3 freeVelocity(const WorldScratch& scratch, const Side& side, const Vec3& arm_W) {
-  if (side.kind == SideKind::kPoint) return scratch.points[side.index].v_free_W;
-  const BodyScratch& body = scratch.bodies[side.index];
-  return body.v_free_W + body.w_free_W.cross(arm_W);
-}
-
-Vec3 freeAngularVelocity(const WorldScratch& scratch, const Side& side) {
-  return side.kind == SideKind::kPoint ? Vec3(Vec3::Zero()) : scratch.bodies[side.index].w_free_W;
-}
-
-Vec3 startAngularVelocity(const WorldScratch& scratch, const Side& side) {
-  return side.kind == SideKind::kPoint ? Vec3(Vec3::Zero()) : scratch.bodies[side.index].w_start_W;
-}
-
 // Half a tick's turn of the normal and of the arms, from their motion since the last tick's middle: n_end . v_end - n_mid . v_mid.
-double turnOfNormal(const WorldScratch& scratch, const Contact& c, const ContactMemory& memory, const Vec3& v_rel_W) {
+double turnOfNormal(const WorldScratch& scratch, const Contact& c, const ContactMemory& memory) {
   const Vec3 n_W = c.n_W();
+  const Vec3 v_rel_W = c.R_WC * c.v_start_C.head<3>();
   double turn = (n_W - memory.n_W).dot(v_rel_W);
-  turn += n_W.dot(startAngularVelocity(scratch, c.a).cross(c.arm_a_W - memory.arm_a_W));
-  turn -= n_W.dot(startAngularVelocity(scratch, c.b).cross(c.arm_b_W - memory.arm_b_W));
+  turn += n_W.dot(startMotion(scratch, c.a).w_W.cross(c.arm_a_W - memory.arm_a_W));
+  turn -= n_W.dot(startMotion(scratch, c.b).w_W.cross(c.arm_b_W - memory.arm_b_W));
   return 0.5 * turn;
 }
 
 double normalBias(const WorldModel& model, const WorldState& state, const WorldScratch& scratch, Contact& c) {
   const double h = model.options.h;
-  const Vec3 v_rel_W = startVelocity(scratch, state, c.a, c.arm_a_W) - startVelocity(scratch, state, c.b, c.arm_b_W);
   if (c.memory >= 0 && state.contacts[c.memory].active) {
-    return std::max(kNormalCorrection * c.phi / h, -kLargestCorrection) + turnOfNormal(scratch, c, state.contacts[c.memory], v_rel_W);
+    return std::max(kNormalCorrection * c.phi / h, -kLargestCorrection) + turnOfNormal(scratch, c, state.contacts[c.memory]);
   }
-  const double u_n = c.n_W().dot(v_rel_W);
+  const double u_n = c.v_start_C[kNormalRow];
   const double phi_start = c.phi - 0.5 * h * u_n;
   c.closing = u_n < -kClosingSpeed;
   // Slower than a few ticks of gravity is rest, not a bounce.
@@ -98,23 +84,28 @@ void fillContact(const WorldModel& model, const WorldState& state, WorldScratch&
   for (int k = 0; k < count; ++k) fillRow(model, scratch, c, k, scratch.rows[first + k]);
 
   const ContactMemory* memory = c.memory >= 0 ? &state.contacts[c.memory] : nullptr;
-  const Vec3 v_rel_W = freeVelocity(scratch, c.a, c.arm_a_W) - freeVelocity(scratch, c.b, c.arm_b_W);
-  Eigen::Map<Vec3>(&scratch.q[first]) = c.R_WC.transpose() * (v_rel_W + (kTangentCorrection / h) * c.offset_W);
-  scratch.q[first + kNormalRow] = c.n_W().dot(v_rel_W) + normalBias(model, state, scratch, c);
-  if (count == kMaxContactRows) {
-    const double spin = c.n_W().dot(freeAngularVelocity(scratch, c.a) - freeAngularVelocity(scratch, c.b));
-    scratch.q[first + 3] = c.material.torsion_radius * (spin + kTwistCorrection * c.twist / h);
+  Eigen::Vector4d q = relativeVelocity(c, freeMotion(scratch, c.a), freeMotion(scratch, c.b));
+  if (memory && memory->active && !memory->sliding) {
+    const Eigen::Vector4d offset_mid_C = c.offset_C + 0.5 * h * c.v_start_C;
+    for (int k : {0, 1, 3}) q[k] += kTangentCorrection / h * offset_mid_C[k];
   }
+  q[kNormalRow] += normalBias(model, state, scratch, c);
+  q[3] *= c.material.torsion_radius;
+  for (int k = 0; k < count; ++k) scratch.q[first + k] = q[k];
   for (int k = 0; k < count; ++k) scratch.r[first + k] = memory ? memory->r[k] : 0;
   scratch.mu[i] = c.mu;
 }
 
 }  // namespace
 
-Vec3 startVelocity(const WorldScratch& scratch, const WorldState& state, const Side& side, const Vec3& arm_W) {
-  if (side.kind == SideKind::kPoint) return state.points[side.index].v_W;
-  const BodyScratch& body = scratch.bodies[side.index];
-  return body.v_start_W + body.w_start_W.cross(arm_W);
+Motion startMotion(const WorldScratch& scratch, const Side& side) {
+  if (side.kind == SideKind::kPoint) return {scratch.points[side.index].v_start_W, Vec3::Zero()};
+  return {scratch.bodies[side.index].v_start_W, scratch.bodies[side.index].w_start_W};
+}
+
+Motion freeMotion(const WorldScratch& scratch, const Side& side) {
+  if (side.kind == SideKind::kPoint) return {scratch.points[side.index].v_free_W, Vec3::Zero()};
+  return {scratch.bodies[side.index].v_free_W, scratch.bodies[side.index].w_free_W};
 }
 
 ContactProblem assembleProblem(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {

@@ -9,11 +9,6 @@ Vec3 centre(const WorldScratch& scratch, const Side& side) {
   return side.kind == SideKind::kBody ? scratch.bodies[side.index].X_WI_mid.p : scratch.points[side.index].p_mid_W;
 }
 
-Vec3 materialPoint(const WorldScratch& scratch, const Side& side, const Vec3& anchor) {
-  return side.kind == SideKind::kBody ? Vec3(scratch.bodies[side.index].X_WI_mid * anchor)
-                                      : Vec3(scratch.points[side.index].p_mid_W + anchor);
-}
-
 // Keeps the first tangent as close as possible to the one remembered, so that the warm start keeps its meaning.
 Mat3 carriedFrame(const Vec3& n_W, const Vec3& t1_old_W) {
   const Vec3 t1 = t1_old_W - n_W * n_W.dot(t1_old_W);
@@ -33,12 +28,9 @@ void recall(const WorldState& state, WorldScratch& scratch, Contact& c) {
   c.arm_a_W = c.p_W - centre(scratch, c.a);
   c.arm_b_W = c.p_W - centre(scratch, c.b);
   c.mu = memory && memory->sliding ? c.material.mu_d : c.material.mu_s;
-  c.twist = memory ? memory->twist : 0;
-  c.offset_W.setZero();
-  if (memory && memory->active && !memory->sliding) {
-    const Vec3 d = materialPoint(scratch, c.a, memory->anchor_a) - materialPoint(scratch, c.b, memory->anchor_b);
-    c.offset_W = d - n_W * n_W.dot(d);
-  }
+  c.v_start_C = relativeVelocity(c, startMotion(scratch, c.a), startMotion(scratch, c.b));
+  c.offset_C.setZero();
+  if (memory && memory->active && !memory->sliding) c.offset_C = memory->offset_C;
 }
 
 }  // namespace

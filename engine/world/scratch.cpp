@@ -24,6 +24,13 @@ std::uint64_t contactId(int kind, int a, int b, std::uint32_t feature) {
          static_cast<std::uint64_t>(b & 0x7fff) << 32 | feature;
 }
 
+Eigen::Vector4d relativeVelocity(const Contact& c, const Motion& a, const Motion& b) {
+  const Vec3 v_W = a.v_W + a.w_W.cross(c.arm_a_W) - (b.v_W + b.w_W.cross(c.arm_b_W));
+  Eigen::Vector4d v_C;
+  v_C << c.R_WC.transpose() * v_W, c.n_W().dot(a.w_W - b.w_W);
+  return v_C;
+}
+
 void addContact(WorldScratch& scratch, const Contact& contact) {
   if (scratch.contacts.size() < scratch.contacts.capacity()) {
     scratch.contacts.push_back(contact);

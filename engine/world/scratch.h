@@ -31,12 +31,12 @@ struct Contact {
   // filled by the step:
   double mu = 0;  // in force in this tick
   Vec3 arm_a_W = Vec3::Zero(), arm_b_W = Vec3::Zero();
-  Vec3 offset_W = Vec3::Zero();                 // anchored stick: tangential offset of the points that stuck to each other [m]
-  double twist = 0;                             // torsional offset at the start of the tick [rad]
-  bool closing = false;                         // it closes in this tick, from a positive gap or with an approaching velocity
-  Eigen::Vector4d r = Eigen::Vector4d::Zero();  // impulse on a in C, torsion last [N s]
-  Vec3 impulse_W = Vec3::Zero();                // impulse on a at p_W [N s]; b got exactly its negative
-  Vec3 u_C = Vec3::Zero();                      // velocity of a relative to b at the end of the tick, biases included [m/s]
+  Eigen::Vector4d v_start_C = Eigen::Vector4d::Zero();  // of a relative to b at the start of the tick, see relativeVelocity
+  Eigen::Vector4d offset_C = Eigen::Vector4d::Zero();   // anchored stick, at the start of the tick; see ContactMemory
+  bool closing = false;                                 // it closes in this tick, from a positive gap or with an approaching velocity
+  Eigen::Vector4d r = Eigen::Vector4d::Zero();          // impulse on a in C, torsion last [N s]
+  Vec3 impulse_W = Vec3::Zero();                        // impulse on a at p_W [N s]; b got exactly its negative
+  Vec3 u_C = Vec3::Zero();                              // velocity of a relative to b at the end of the tick, biases included [m/s]
   bool sliding = false;
 
   Vec3 n_W() const { return R_WC.col(2); }
@@ -82,6 +82,13 @@ struct WorldScratch {
   SolveResult solve;
   StageClock* clock = nullptr;  // set it to have the stages timed; null costs nothing
 };
+
+// Velocity of one side: of its centre and angular, in W.
+struct Motion {
+  Vec3 v_W = Vec3::Zero(), w_W = Vec3::Zero();
+};
+// Of a relative to b where they touch, in C: along t1, t2, n [m/s], and about n [rad/s].
+Eigen::Vector4d relativeVelocity(const Contact& c, const Motion& a, const Motion& b);
 
 inline void mark(WorldScratch& scratch, Stage stage) {
   if (scratch.clock) scratch.clock->mark(stage);

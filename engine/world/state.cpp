@@ -30,8 +30,8 @@ class Fnv1a {
 void add(Fnv1a& hash, const ContactMemory& c) {
   hash.add(c.id);
   for (int i = 0; i < 4; ++i) hash.add(c.r[i]);
-  for (const Vec3& v : {c.t1_W, c.n_W, c.arm_a_W, c.arm_b_W, c.anchor_a, c.anchor_b}) hash.add(v);
-  hash.add(c.twist);
+  for (int i = 0; i < 4; ++i) hash.add(c.offset_C[i]);
+  for (const Vec3& v : {c.t1_W, c.n_W, c.arm_a_W, c.arm_b_W}) hash.add(v);
   hash.add(static_cast<std::uint64_t>(c.active) | static_cast<std::uint64_t>(c.sliding) << 1);
 }
 

@@ -29,10 +29,8 @@ struct ContactMemory {
   Vec3 t1_W = Vec3::UnitX();                    // first tangent of C, so that r keeps its meaning when n turns
   Vec3 n_W = Vec3::UnitZ();
   Vec3 arm_a_W = Vec3::Zero(), arm_b_W = Vec3::Zero();  // contact point from the two centres [m]
-  Vec3 anchor_a = Vec3::Zero(),
-       anchor_b = Vec3::Zero();  // material points that stuck to each other, in I of each side (from the centre for points) [m]
-  double twist = 0;              // torsional offset about n since it stuck [rad]
-  bool active = false;           // pushed in the last tick
+  Eigen::Vector4d offset_C = Eigen::Vector4d::Zero();   // how far a has moved past b since they stuck: along t1, t2 [m], -, about n [rad]
+  bool active = false;                                  // pushed in the last tick
   bool sliding = false;
 };
 
