@@ -30,13 +30,17 @@ void project(const ContactProblem& problem, double* r) {
 // The iterates of one solve, in scaled variables.
 class Search {
  public:
-  Search(const ContactProblem& problem, SolverScratch& scratch, const double* r)
+  // r, u, residual: the warm start, evaluated
+  Search(const ContactProblem& problem, SolverScratch& scratch, const double* r, const double* u, double residual)
       : problem_(scaleProblem(problem, scratch)), scratch_(scratch) {
     Iterate* const iterates[] = {&current_, &trial_, &best_};
     for (std::size_t k = 0; k < 3; ++k) *iterates[k] = {scratch.impulses[k].data(), scratch.velocities[k].data()};
     for (int i = 0; i < problem.contactCount(); ++i)
-      for (int row = problem.firstRow(i); row < problem.firstRow(i + 1); ++row) current_.r[row] = r[row] * problem_.scale[i];
-    evaluate(problem_, current_);
+      for (int row = problem.firstRow(i); row < problem.firstRow(i + 1); ++row) {
+        current_.r[row] = r[row] * problem_.scale[i];
+        current_.u[row] = u[row] / problem_.scale[i];
+      }
+    current_.residual = residual;
     std::fill(best_.r, best_.r + problem_.rowCount(), 0.0);
     best_.residual = std::numeric_limits<double>::infinity();
   }
@@ -138,7 +142,7 @@ SolveResult solveContacts(const ContactProblem& problem, const SolverOptions& op
   project(problem, r.data());
   double residual = contactResidual(problem, r, u);
   if (residual <= options.tolerance) return {SolveMethod::kWarmStart, 0, residual, true};
-  Search search(problem, scratch, r.data());
+  Search search(problem, scratch, r.data(), u.data(), residual);
   SolveMethod method = search.run(options);
   search.write(r.data());
   project(problem, r.data());

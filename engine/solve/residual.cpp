@@ -19,13 +19,12 @@ double referenceSpeed(const ContactProblem& problem) {
 }
 
 double contactResidual(const ContactProblem& problem, const Eigen::Ref<const Eigen::VectorXd>& r, Eigen::Ref<Eigen::VectorXd> u) {
-  const int m = problem.rowCount();
+  contactVelocities(problem.W.data(), problem.q.data(), r.data(), problem.rowCount(), u.data());
   WorstResidual worst;
   for (int i = 0; i < problem.contactCount(); ++i) {
     const int first = problem.firstRow(i);
     const int rows = problem.rows(i);
-    double* const u_i = u.data() + first;
-    contactVelocity(problem.W.data() + first, m, problem.q.data() + first, r.data(), rows, u_i);
+    const double* const u_i = u.data() + first;
     const double w = meanDiagonal(problem, i);
     worst.add(naturalMap2(r.data() + first, u_i, rows, problem.friction(i), w), u_i[kNormalRow], w * r.data()[first + kNormalRow]);
   }

@@ -8,17 +8,11 @@
 
 namespace pincer::engine {
 
-// u = W r + q of one contact, its row sums in the order of the columns.
-//   W  the contact's first row in the m x m column-major matrix
-inline void contactVelocity(const double* W, int m, const double* q, const double* r, int rows, double* u) {
-  double sum[kMaxContactRows] = {q[0], q[1], q[2], rows == 4 ? q[3] : 0};
-  if (rows == 3)
-    for (int j = 0; j < m; ++j, W += m)
-      for (int k = 0; k < 3; ++k) sum[k] += W[k] * r[j];
-  else
-    for (int j = 0; j < m; ++j, W += m)
-      for (int k = 0; k < 4; ++k) sum[k] += W[k] * r[j];
-  for (int k = 0; k < rows; ++k) u[k] = sum[k];
+// u = W r + q, all of size m; W column-major.
+inline void contactVelocities(const double* W, const double* q, const double* r, int m, double* u) {
+  Eigen::Map<Eigen::VectorXd> velocities(u, m);
+  velocities = Eigen::Map<const Eigen::VectorXd>(q, m);
+  velocities.noalias() += Eigen::Map<const Eigen::MatrixXd>(W, m, m) * Eigen::Map<const Eigen::VectorXd>(r, m);
 }
 
 // The largest natural map of all contacts.

@@ -27,13 +27,12 @@ ScaledProblem scaleProblem(const ContactProblem& problem, SolverScratch& scratch
 }
 
 void evaluate(const ScaledProblem& problem, Iterate& it) {
-  const int m = problem.rowCount();
+  contactVelocities(problem.W, problem.q, it.r, problem.rowCount(), it.u);
   WorstResidual worst;
   for (int i = 0; i < problem.contactCount(); ++i) {
     const int first = problem.firstRow(i);
     const int rows = problem.rows(i);
-    double* const u_i = it.u + first;
-    contactVelocity(problem.W + first, m, problem.q + first, it.r, rows, u_i);
+    const double* const u_i = it.u + first;
     const double error2 = naturalMap2(it.r + first, u_i, rows, problem.friction(i), 1);  // in scaled variables w_i is 1
     worst.add(error2 * problem.scale[i] * problem.scale[i], u_i[kNormalRow], problem.scale[i] * it.r[first + kNormalRow]);
   }
