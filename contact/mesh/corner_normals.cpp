@@ -9,6 +9,8 @@ namespace {
 
 double angleBetween(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
+constexpr double kFarthestMirror = 0.35;  // [rad] 20 degrees: further away the neighbours belong to another shape
+
 class CornerNormalFinder {
  public:
   CornerNormalFinder(const TriangleMesh& mesh, const Neighbours& neighbours, bool use_file_normals)
@@ -25,7 +27,9 @@ class CornerNormalFinder {
     for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
       for (std::size_t i = 0; i < 3; ++i) result.sharp[t][i] = isSharp(t, i, crease_angle);
     }
-    result.normals = averageOverFans(result.sharp);
+    const Fans fans = findFans(result.sharp);
+    result.normals = averageOverFans(fans);
+    continueToCreases(fans, result.normals);
     return result;
   }
 
@@ -47,37 +51,70 @@ class CornerNormalFinder {
     return angleBetween(facet_normals_[t], facet_normals_[s]) > crease_angle;
   }
 
-  Vec3 weightedNormal(std::size_t t, std::size_t i) const {
-    return angleBetween(corner(t, i + 1) - corner(t, i), corner(t, i + 2) - corner(t, i)) * facet_normals_[t];
+  double angleAt(std::size_t t, std::size_t i) const {
+    return angleBetween(corner(t, i + 1) - corner(t, i), corner(t, i + 2) - corner(t, i));
   }
+  Vec3 weightedNormal(std::size_t t, std::size_t i) const { return angleAt(t, i) * facet_normals_[t]; }
 
-  std::vector<std::array<Vec3, 3>> averageOverFans(const std::vector<std::array<bool, 3>>& sharp) const {
-    UnionFind fans(3 * mesh_.triangles.size());
-    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+  // Fans by their first corner, and which of them end at a sharp edge.
+  struct Fans {
+    std::vector<std::size_t> of_corner;
+    std::vector<bool> is_open;
+  };
+
+  Fans findFans(const std::vector<std::array<bool, 3>>& sharp) const {
+    UnionFind sets(3 * mesh_.triangles.size());
+    for (std::size_t t = 0; t < sharp.size(); ++t) {
       for (std::size_t i = 0; i < 3; ++i) {
-        if (!sharp[t][i]) joinAcross(t, i, fans);
+        if (!sharp[t][i]) joinAcross(t, i, sets);
       }
     }
-    const std::size_t corners = 3 * mesh_.triangles.size();
+    Fans fans{std::vector<std::size_t>(3 * sharp.size()), std::vector<bool>(3 * sharp.size())};
+    for (std::size_t c = 0; c < fans.of_corner.size(); ++c) {
+      fans.of_corner[c] = static_cast<std::size_t>(sets.find(static_cast<std::int32_t>(c)));
+      if (sharp[c / 3][c % 3] || sharp[c / 3][(c + 2) % 3]) fans.is_open[fans.of_corner[c]] = true;
+    }
+    return fans;
+  }
+
+  std::vector<std::array<Vec3, 3>> averageOverFans(const Fans& fans) const {
+    const std::size_t corners = fans.of_corner.size();
     std::vector<Vec3> from_file(corners, Vec3::Zero()), from_facets(corners, Vec3::Zero());
     for (std::size_t c = 0; c < corners; ++c) {
-      const auto fan = static_cast<std::size_t>(fans.find(static_cast<std::int32_t>(c)));
-      from_facets[fan] += weightedNormal(c / 3, c % 3);
-      if (const Vec3* n = fileNormal(c / 3, c % 3)) from_file[fan] += *n;
+      from_facets[fans.of_corner[c]] += weightedNormal(c / 3, c % 3);
+      if (const Vec3* n = fileNormal(c / 3, c % 3)) from_file[fans.of_corner[c]] += *n;
     }
     std::vector<std::array<Vec3, 3>> normals(mesh_.triangles.size());
     for (std::size_t c = 0; c < corners; ++c) {
-      const auto fan = static_cast<std::size_t>(fans.find(static_cast<std::int32_t>(c)));
-      normals[c / 3][c % 3] = directionOf(from_file[fan], from_facets[fan], facet_normals_[c / 3]);
+      normals[c / 3][c % 3] = directionOf(from_file[fans.of_corner[c]], from_facets[fans.of_corner[c]], facet_normals_[c / 3]);
     }
     return normals;
   }
 
-  void joinAcross(std::size_t t, std::size_t i, UnionFind& fans) const {
+  void continueToCreases(const Fans& fans, std::vector<std::array<Vec3, 3>>& normals) const {
+    const std::size_t corners = fans.of_corner.size();
+    std::vector<Vec3> mirrored(corners, Vec3::Zero());
+    for (std::size_t c = 0; c < corners; ++c) {
+      const std::size_t t = c / 3, i = c % 3, fan = fans.of_corner[c];
+      if (!fans.is_open[fan] || fileNormal(t, i)) continue;
+      for (const std::size_t j : {(i + 1) % 3, (i + 2) % 3}) {
+        if (fans.is_open[fans.of_corner[3 * t + j]]) continue;
+        const Vec3 along = (corner(t, j) - corner(t, i)).normalized();
+        const Vec3& n = normals[t][j];
+        mirrored[fan] += angleAt(t, i) * (n - 2 * n.dot(along) * along);
+      }
+    }
+    for (std::size_t c = 0; c < corners; ++c) {
+      const Vec3& n = mirrored[fans.of_corner[c]];
+      if (n.norm() > 0 && angleBetween(n, normals[c / 3][c % 3]) < kFarthestMirror) normals[c / 3][c % 3] = n.normalized();
+    }
+  }
+
+  void joinAcross(std::size_t t, std::size_t i, UnionFind& sets) const {
     const auto [other, edge] = neighbours_[t][i];
     const auto here = static_cast<std::int32_t>(3 * t + i), here_next = static_cast<std::int32_t>(3 * t + (i + 1) % 3);
-    fans.join(here, 3 * other + (edge + 1) % 3);
-    fans.join(here_next, 3 * other + edge);
+    sets.join(here, 3 * other + (edge + 1) % 3);
+    sets.join(here_next, 3 * other + edge);
   }
 
   // Opposite facets cancel; what is left after that has no direction, and each facet keeps its own.

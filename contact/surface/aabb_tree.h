@@ -35,7 +35,7 @@ class AabbTree {
     std::int32_t left;   // >= 0: the children are left and left + 1; < 0: a leaf, items begin at place -1 - left
     std::int32_t count;  // of items in a leaf
   };
-  static constexpr std::int32_t kLeafSize = 4;
+  static constexpr std::int32_t kLeafSize = 12;
   static constexpr std::size_t kMaxDepth = 64;
 
   void split(std::size_t node, std::int32_t begin, std::int32_t end, const std::vector<Aabb>& boxes);

@@ -57,13 +57,26 @@ double bulgeOf(const Patch& patch, const std::array<Vec3, 3>& corners) {
 
 }  // namespace
 
+SurfaceSearch::FlatTriangle::FlatTriangle(const Patch& patch, std::int32_t t) : corners{patch.b300, patch.b030, patch.b003}, triangle(t) {
+  centre = (corners[0] + corners[1] + corners[2]) / 3;
+  n = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
+  radius = 0;
+  for (const Vec3& corner : corners) radius = std::max(radius, (corner - centre).norm());
+  bulge = bulgeOf(patch, corners);
+}
+
+bool SurfaceSearch::FlatTriangle::discIsWithin(const Vec3& p, double distance) const {
+  const Vec3 R = p - centre;
+  const double above = R.dot(n);
+  const double reach2 = distance * distance - above * above;  // squared, in the disc's plane
+  if (reach2 <= 0) return false;
+  const double reach = radius + std::sqrt(reach2);
+  return R.squaredNorm() - above * above <= reach * reach;
+}
+
 SurfaceSearch::SurfaceSearch(const SurfaceNet& net) : tree_(netBoxes(net)) {
   leaves_.reserve(net.cells().size());
-  for (const std::int32_t t : tree_.order()) {
-    const Patch& patch = net.cell(t).patch;
-    const std::array<Vec3, 3> corners = {patch.b300, patch.b030, patch.b003};
-    leaves_.push_back({corners, bulgeOf(patch, corners), t});
-  }
+  for (const std::int32_t t : tree_.order()) leaves_.emplace_back(net.cell(t).patch, t);
 }
 
 SurfaceSeed SurfaceSearch::nearest(const SurfaceNet& net, const Vec3& p, double bound) const {
@@ -71,8 +84,9 @@ SurfaceSeed SurfaceSearch::nearest(const SurfaceNet& net, const Vec3& p, double 
   double bound2 = bound * bound;
   tree_.visitNear(p, bound2, kMaxVisits, [&](std::int32_t place_in_order) {
     const FlatTriangle& leaf = leaves_[static_cast<std::size_t>(place_in_order)];
-    const FlatPoint flat = closestOnTriangle(leaf.corners, p);
     const double reach = seed.distance + leaf.bulge;
+    if (!leaf.discIsWithin(p, reach)) return;
+    const FlatPoint flat = closestOnTriangle(leaf.corners, p);
     if (flat.distance2 >= reach * reach) return;
     const double distance2 = (p - place(net.cell(leaf.triangle).patch, flat.b[1], flat.b[2])).squaredNorm();
     if (distance2 >= bound2) return;

