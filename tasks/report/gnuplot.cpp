@@ -1,0 +1,106 @@
+#include "tasks/report/gnuplot.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "contact/error.h"
+#include "tasks/session/atomic_file.h"
+
+namespace pincer::tasks {
+
+namespace {
+
+std::string read(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+std::string makeTemporaryDirectory() {
+  std::string path = (std::filesystem::temp_directory_path() / "pincer-plot-XXXXXX").string();
+  if (::mkdtemp(path.data())) return path;
+  throw InputError(
+      fmt::format("{}: can't make a temporary directory: {}. Set TMPDIR to one that you may write.", path, std::strerror(errno)));
+}
+
+// The child starts in `directory`, reads nothing and says everything into `log`.
+class SpawnActions {
+ public:
+  SpawnActions(const std::string& directory, const char* log) {
+    posix_spawn_file_actions_init(&actions_);
+    posix_spawn_file_actions_addchdir_np(&actions_, directory.c_str());
+    posix_spawn_file_actions_addopen(&actions_, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    posix_spawn_file_actions_addopen(&actions_, STDOUT_FILENO, log, O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    posix_spawn_file_actions_adddup2(&actions_, STDOUT_FILENO, STDERR_FILENO);
+  }
+  SpawnActions(SpawnActions&&) = delete;
+  ~SpawnActions() { posix_spawn_file_actions_destroy(&actions_); }
+  const posix_spawn_file_actions_t* get() const { return &actions_; }
+
+ private:
+  posix_spawn_file_actions_t actions_;
+};
+
+}  // namespace
+
+std::string gnuplotString(const std::string& text) {
+  std::string quoted = "'";
+  for (const char c : text) {
+    if (c == '\'') quoted += '\'';
+    quoted += c == '\n' || c == '\r' ? ' ' : c;
+  }
+  return quoted + "'";
+}
+
+// The child runs elsewhere, so a relative path must be made absolute; a bare name is looked up in PATH.
+Gnuplot::Gnuplot(std::string program)
+    : program_(program.find('/') == std::string::npos ? std::move(program) : std::filesystem::absolute(program).string()),
+      directory_(makeTemporaryDirectory()) {}
+
+Gnuplot::~Gnuplot() {
+  std::error_code ignored;
+  std::filesystem::remove_all(directory_, ignored);
+}
+
+std::string Gnuplot::plot(const Figure& figure) {
+  for (const auto& [name, content] : figure.data) writeAtomically(directory_ + "/" + name, content);
+  const std::string terminal = fmt::format(
+      "set terminal pngcairo noenhanced size {},{} font 'DejaVu Sans,20' linewidth 2 background '#ffffff'\n", figure.width, figure.height);
+  const std::string script = figure.name + ".gp", picture = directory_ + "/" + figure.name + ".png";
+  writeAtomically(directory_ + "/" + script, fmt::format("{}set output '{}.png'\n{}", terminal, figure.name, figure.script));
+  const int status = run(script);
+  std::string png = read(picture);
+  if (status == 0 && !png.empty()) return png;
+  throw InputError(
+      fmt::format("{}: figure {} failed (status {}): {}. Check that it is gnuplot 5.4 or newer with the pngcairo terminal "
+                  "(Debian: apt-get install gnuplot-nox).",
+                  program_, figure.name, status, read(directory_ + "/log")));
+}
+
+int Gnuplot::run(const std::string& script_name) {
+  const SpawnActions actions(directory_, "log");
+  std::string program = program_, defaults = "-d", script = script_name;  // -d: nobody's ~/.gnuplot
+  char* arguments[] = {program.data(), defaults.data(), script.data(), nullptr};
+  pid_t child = 0;
+  const int error = posix_spawnp(&child, program_.c_str(), actions.get(), nullptr, arguments, environ);
+  if (error != 0) {
+    throw InputError(
+        fmt::format("{}: can't run the plotting program: {}. The report's pictures need gnuplot (Debian: apt-get install gnuplot-nox); "
+                    "the session itself is unharmed.",
+                    program_, std::strerror(error)));
+  }
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+}  // namespace pincer::tasks

@@ -1,0 +1,54 @@
+#include "tasks/report/report.h"
+
+#include <filesystem>
+
+#include "tasks/report/figures.h"
+#include "tasks/session/atomic_file.h"
+
+namespace pincer::tasks {
+
+namespace {
+
+std::vector<Picture> wantedPictures(const SessionReader& session, const SessionSummary& summary, const std::vector<TrialRecord>& trials) {
+  std::vector<Picture> pictures;
+  if (!trials.empty()) {
+    pictures.push_back({measureFigure(summary, trials, kSqueezes), "", ""});
+    pictures.push_back({measureFigure(summary, trials, kTime), "", ""});
+  }
+  for (const std::string& condition : summary.conditions) {
+    const auto trial = representativeTrial(trials, condition);
+    if (!trial) continue;
+    const TrialTrace trace = traceOf(session, *trial);
+    if (trace.samples.empty()) continue;  // recorded without samples
+    pictures.push_back({trialFigure(trace), "", std::to_string(trial->trial)});
+    pictures.push_back({tactorFigure(trace), "", std::to_string(trial->trial)});
+  }
+  if (auto ticks = tickFigure(session)) pictures.push_back({*std::move(ticks), "", ""});
+  return pictures;
+}
+
+std::string writeFigure(const std::string& directory, const Picture& picture) {
+  const std::string png = directory + "/" + picture.figure.name + ".png";
+  for (const auto& [name, content] : picture.figure.data) writeAtomically(directory + "/" + name, content);
+  writeAtomically(png, picture.png);
+  return png;
+}
+
+}  // namespace
+
+ReportFiles writeReport(const SessionReader& session, const std::string& html_path, const ReportOptions& options) {
+  const std::filesystem::path path(html_path);
+  const std::string figures_name = path.stem().string() + "_figures";
+  ReportFiles files{html_path, (path.parent_path() / figures_name).string(), {}};
+  const SessionSummary summary = summariseSession(session);
+  const std::vector<TrialRecord> trials = session.trials();
+  std::vector<Picture> pictures = wantedPictures(session, summary, trials);
+  Gnuplot gnuplot(options.gnuplot);
+  for (Picture& picture : pictures) picture.png = gnuplot.plot(picture.figure);
+  makeDirectory(files.figures_directory);
+  for (const Picture& picture : pictures) files.figures.push_back(writeFigure(files.figures_directory, picture));
+  writeAtomically(html_path, reportHtml(summary, trials, pictures, figures_name));
+  return files;
+}
+
+}  // namespace pincer::tasks

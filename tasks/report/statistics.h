@@ -1,0 +1,29 @@
+// statistics: the mean of a few numbers and how well it is known.
+//
+//   mean +- t s / sqrt(n),   s^2 = sum (x - mean)^2 / (n - 1),   P(|T| < t) = 0.95 for Student's T with n - 1 degrees of freedom
+//
+// Source of the distribution: M. Abramowitz, I. A. Stegun, Handbook of Mathematical Functions, 1964, equations 26.7.3 (odd) and 26.7.4 (even
+// degrees of freedom): finite sums, exact. t follows by bisection, to round-off.
+#pragma once
+#include <vector>
+
+namespace pincer::tasks {
+
+struct Estimate {
+  int n = 0;
+  double mean = 0;        // NaN if n = 0
+  double half_width = 0;  // of the 95 % confidence interval; NaN if n < 2
+};
+
+// P(|T| < t), t >= 0, `dof` >= 1.
+double studentTwoSided(double t, int dof);
+
+// The t with P(|T| < t) = `probability` in (0, 1).
+double studentQuantile(double probability, int dof);
+
+Estimate estimateMean(const std::vector<double>& values);
+
+// The value below which a share p of `values` lies (nearest rank); NaN if there is none. 0 <= p <= 1.
+double percentile(std::vector<double> values, double p);
+
+}  // namespace pincer::tasks

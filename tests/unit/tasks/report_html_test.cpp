@@ -1,0 +1,147 @@
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+#include <regex>
+
+#include "contact/error.h"
+#include "tasks/report/report.h"
+#include "tests/support/synthetic_session.h"
+#include "tests/support/temporary_directory.h"
+
+namespace pincer::tasks {
+namespace {
+
+using tests::readFile;
+using tests::SyntheticSession;
+using tests::TemporaryDirectory;
+
+constexpr const char* kPngSignature = "\x89PNG\r\n\x1a\n";
+
+bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+int count(const std::string& text, const std::string& part) {
+  int n = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++n;
+  return n;
+}
+
+void writeSession(const std::string& path) {
+  auto writer = SessionWriter::create(path, SyntheticSession::info(5), {.block_when_full = true});
+  SyntheticSession({.seed = 5, .repetitions = 2, .frictions = {0.3, 0.9}, .rate = 100}).writeTo(writer);
+  writer.close();
+}
+
+std::string errorOf(const std::function<void()>& act) {
+  try {
+    act();
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+void expectLinksToTrials(const std::string& html, int expected) {
+  const std::regex link("href=\"#(trial-[0-9]+)\"");
+  int links = 0;
+  for (std::sregex_iterator it(html.begin(), html.end(), link), end; it != end; ++it, ++links) {
+    EXPECT_TRUE(has(html, "id=\"" + (*it)[1].str() + "\""));
+  }
+  EXPECT_EQ(links, expected);
+}
+
+TEST(Report, HoldsTheTableAndEveryFigureAndNeedsNothingElse) {
+  const TemporaryDirectory dir;  // its path holds a space
+  writeSession(dir / "a.db");
+  const ReportFiles files = writeReport(SessionReader(dir / "a.db"), dir / "it's a report.html");
+  const std::string html = readFile(files.html);
+  for (const char* figure : {"squeezes", "time", "trial_force", "tactor_force", "trial_cld_force", "tactor_cld_force", "tick_times"}) {
+    EXPECT_TRUE(has(html, std::string("id=\"figure-") + figure + "\"")) << figure;
+    const std::string beside = dir / (std::string("it's a report_figures/") + figure);
+    EXPECT_EQ(readFile(beside + ".png").substr(0, 8), kPngSignature) << figure;
+    EXPECT_GT(count(readFile(beside + ".csv"), "\n"), 2) << figure;
+  }
+  EXPECT_EQ(files.figures.size(), 7u);
+  EXPECT_EQ(count(html, "src=\"data:image/png;base64,iVBORw0KGgo"), 7);  // the signature in base64
+  EXPECT_EQ(count(html, "src="), 7);
+  EXPECT_FALSE(has(html, "http"));
+  EXPECT_FALSE(has(html, "<script"));
+  EXPECT_FALSE(has(html, "@import"));
+  for (const char* fact : {"seed", "CLD + force", "force only", "g++ 12.2.0 -O2 &amp; &lt;tests&gt;", "complete", "All trials"}) {
+    EXPECT_TRUE(has(html, fact)) << fact;
+  }
+  EXPECT_FALSE(has(html, "class=\"warning\""));
+  expectLinksToTrials(html, 4);  // two conditions, two figures each
+}
+
+TEST(Report, SaysThatTheSessionWasNotCompleted) {
+  const TemporaryDirectory dir;
+  SessionWriter::create(dir / "a.db", {}).abort("interrupted");
+  const std::string html = readFile(writeReport(SessionReader(dir / "a.db"), dir / "r.html").html);
+  EXPECT_TRUE(has(html, "class=\"warning\""));
+  EXPECT_TRUE(has(html, "aborted: interrupted"));
+}
+
+TEST(Report, IsMadeOfAnEmptySessionToo) {
+  const TemporaryDirectory dir;
+  SessionWriter::create(dir / "a.db", {}).close();
+  const ReportFiles files = writeReport(SessionReader(dir / "a.db"), dir / "r.html");
+  EXPECT_TRUE(files.figures.empty());
+  EXPECT_TRUE(has(readFile(files.html), "No trial was finished"));
+}
+
+// A trial without samples, tactors that aren't measured, one trial per cell: nothing to draw here and there, and still a report.
+TEST(Report, CopesWithWhatWasNotMeasured) {
+  const TemporaryDirectory dir;
+  auto writer = SessionWriter::create(dir / "a.db", {});
+  SampleRecord s;
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  s.trial = 1;
+  for (FingerRecord& f : s.fingers) f.place_shown_L = {kNaN, kNaN};
+  writer.pushSample(s);
+  TrialRecord t;
+  t.condition = "force";
+  writer.finishTrial(t);
+  t.trial = 1;
+  t.condition = "it's <new>";
+  t.offset_at_squeeze = t.grip_ratio = kNaN;
+  writer.finishTrial(t);
+  writer.close();
+  const ReportFiles files = writeReport(SessionReader(dir / "a.db"), dir / "r.html");
+  EXPECT_EQ(files.figures.size(), 4u);  // squeezes, time, and the second trial's two; no tick was timed
+  const std::string html = readFile(files.html);
+  EXPECT_TRUE(has(html, "it's &lt;new&gt;"));
+  EXPECT_TRUE(has(html, "measure the tactors"));
+}
+
+TEST(Report, NamesAMissingGnuplotAndLeavesNothing) {
+  const TemporaryDirectory dir;
+  writeSession(dir / "a.db");
+  const std::string error = errorOf([&] { writeReport(SessionReader(dir / "a.db"), dir / "r.html", {.gnuplot = "no-such-gnuplot"}); });
+  EXPECT_TRUE(has(error, "no-such-gnuplot")) << error;
+  EXPECT_TRUE(has(error, "apt-get install gnuplot-nox")) << error;
+  EXPECT_FALSE(std::filesystem::exists(dir / "r.html"));
+  EXPECT_FALSE(std::filesystem::exists(dir / "r_figures"));
+}
+
+TEST(Report, TellsWhatGnuplotSaid) {
+  Gnuplot gnuplot;
+  Figure figure;
+  figure.name = "wrong";
+  figure.script = "plot 'absent.csv'\n";
+  EXPECT_TRUE(has(errorOf([&] { gnuplot.plot(figure); }), "absent.csv"));
+}
+
+TEST(Report, NamesAnUnwritablePlace) {
+  const TemporaryDirectory dir;
+  SessionWriter::create(dir / "a.db", {}).close();
+  EXPECT_TRUE(has(errorOf([&] { writeReport(SessionReader(dir / "a.db"), "/proc/r.html"); }), "/proc/r_figures"));
+}
+
+TEST(GnuplotString, CanNotBeLeftByAQuoteOrALineEnd) {
+  EXPECT_EQ(gnuplotString("it's"), "'it''s'");
+  EXPECT_EQ(gnuplotString("a\nb"), "'a b'");
+}
+
+}  // namespace
+}  // namespace pincer::tasks
