@@ -6,8 +6,9 @@
 // vertex on a crease has several normals. Where the file has normals they replace n_i (weight 1 each), and an edge is sharp where the two
 // sides' normals differ at an end by more than kSameNormal; elsewhere it is sharp where the facets' angle exceeds the crease angle.
 // A fan that ends at a sharp edge sees one side of its vertex only, and its facets' mean would lean away from the edge by half a facet's
-// angle (0.1 mm of shape on a 15-degree cylinder of 25 mm). Its normal is continued instead from the neighbouring vertices q whose fan is
-// whole, as along a circular arc: n = n_q - 2 (n_q . g) g, g the direction to q; the facets' mean remains where there is no such neighbour.
+// angle (0.1 mm of shape on a 15-degree cylinder of 25 mm). Its normal is continued instead, as along a circular arc, from a neighbour q
+// across the crease whose fan is whole: n = n_q - 2 (n_q . g) g, g the direction to q; and where creases meet, from the neighbours along
+// them. The facets' mean remains where there is no such neighbour, or where it differs by more than 20 degrees.
 // Source: G. Thürmer, C. A. Wüthrich, J. Graphics Tools 3(1), 1998 (angle weights).
 #pragma once
 #include <array>

@@ -11,6 +11,10 @@ double angleBetween(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b)
 
 constexpr double kFarthestMirror = 0.35;  // [rad] 20 degrees: further away the neighbours belong to another shape
 
+constexpr double kCancelled = 1e-6;  // opposite facets cancel; what is left below this has no direction
+
+using Normals = std::vector<std::array<Vec3, 3>>;
+
 class CornerNormalFinder {
  public:
   CornerNormalFinder(const TriangleMesh& mesh, const Neighbours& neighbours, bool use_file_normals)
@@ -30,6 +34,7 @@ class CornerNormalFinder {
     const Fans fans = findFans(result.sharp);
     result.normals = averageOverFans(fans);
     continueToCreases(fans, result.normals);
+    continueToCreaseEnds(fans, result.normals);
     return result;
   }
 
@@ -56,57 +61,101 @@ class CornerNormalFinder {
   }
   Vec3 weightedNormal(std::size_t t, std::size_t i) const { return angleAt(t, i) * facet_normals_[t]; }
 
-  // Fans by their first corner, and which of them end at a sharp edge.
+  // How a fan ends: not at all (or at one edge, seen from both sides), along a crease that goes straight on, or where creases meet.
+  enum class FanEnd { none, straight, corner };
+
+  struct Fan {
+    Vec3 out = Vec3::Zero(), in = Vec3::Zero();  // unit directions to the other ends of its first and last edge, if sharp
+    FanEnd end() const {
+      constexpr double kStraight = -0.5, kSame = 0.999;  // cosines
+      const double cosine = out.dot(in);
+      if ((out.isZero() && in.isZero()) || cosine > kSame) return FanEnd::none;
+      return cosine < kStraight ? FanEnd::straight : FanEnd::corner;
+    }
+  };
   struct Fans {
-    std::vector<std::size_t> of_corner;
-    std::vector<bool> is_open;
+    std::vector<std::size_t> of_corner;  // a fan is named by its first corner
+    std::vector<Fan> fan;
   };
 
+  Vec3 direction(std::size_t t, std::size_t from, std::size_t to) const { return (corner(t, to) - corner(t, from)).normalized(); }
+
   Fans findFans(const std::vector<std::array<bool, 3>>& sharp) const {
-    UnionFind sets(3 * mesh_.triangles.size());
+    UnionFind sets(3 * sharp.size());
     for (std::size_t t = 0; t < sharp.size(); ++t) {
       for (std::size_t i = 0; i < 3; ++i) {
         if (!sharp[t][i]) joinAcross(t, i, sets);
       }
     }
-    Fans fans{std::vector<std::size_t>(3 * sharp.size()), std::vector<bool>(3 * sharp.size())};
+    Fans fans{std::vector<std::size_t>(3 * sharp.size()), std::vector<Fan>(3 * sharp.size())};
     for (std::size_t c = 0; c < fans.of_corner.size(); ++c) {
+      const std::size_t t = c / 3, i = c % 3;
       fans.of_corner[c] = static_cast<std::size_t>(sets.find(static_cast<std::int32_t>(c)));
-      if (sharp[c / 3][c % 3] || sharp[c / 3][(c + 2) % 3]) fans.is_open[fans.of_corner[c]] = true;
+      Fan& fan = fans.fan[fans.of_corner[c]];
+      if (sharp[t][i]) fan.out = direction(t, i, i + 1);
+      if (sharp[t][(i + 2) % 3]) fan.in = direction(t, i, i + 2);
     }
     return fans;
   }
 
-  std::vector<std::array<Vec3, 3>> averageOverFans(const Fans& fans) const {
+  Normals averageOverFans(const Fans& fans) const {
     const std::size_t corners = fans.of_corner.size();
     std::vector<Vec3> from_file(corners, Vec3::Zero()), from_facets(corners, Vec3::Zero());
     for (std::size_t c = 0; c < corners; ++c) {
       from_facets[fans.of_corner[c]] += weightedNormal(c / 3, c % 3);
       if (const Vec3* n = fileNormal(c / 3, c % 3)) from_file[fans.of_corner[c]] += *n;
     }
-    std::vector<std::array<Vec3, 3>> normals(mesh_.triangles.size());
+    Normals normals(mesh_.triangles.size());
     for (std::size_t c = 0; c < corners; ++c) {
       normals[c / 3][c % 3] = directionOf(from_file[fans.of_corner[c]], from_facets[fans.of_corner[c]], facet_normals_[c / 3]);
     }
     return normals;
   }
 
-  void continueToCreases(const Fans& fans, std::vector<std::array<Vec3, 3>>& normals) const {
-    const std::size_t corners = fans.of_corner.size();
-    std::vector<Vec3> mirrored(corners, Vec3::Zero());
-    for (std::size_t c = 0; c < corners; ++c) {
+  static Vec3 mirrored(const Vec3& n, const Vec3& along) { return n - 2 * n.dot(along) * along; }
+
+  // Fans that end straight take the normal of whole neighbours that lie most squarely across the crease.
+  void continueToCreases(const Fans& fans, Normals& normals) const {
+    constexpr double kAsSquare = 0.1;  // cosine
+    std::vector<double> least_along(fans.fan.size(), 2);
+    std::vector<Vec3> sum(fans.fan.size(), Vec3::Zero());
+    for (std::size_t c = 0; c < fans.of_corner.size(); ++c) {
       const std::size_t t = c / 3, i = c % 3, fan = fans.of_corner[c];
-      if (!fans.is_open[fan] || fileNormal(t, i)) continue;
+      if (fans.fan[fan].end() != FanEnd::straight || fileNormal(t, i)) continue;
+      const Vec3 crease = (fans.fan[fan].out - fans.fan[fan].in).normalized();
       for (const std::size_t j : {(i + 1) % 3, (i + 2) % 3}) {
-        if (fans.is_open[fans.of_corner[3 * t + j]]) continue;
-        const Vec3 along = (corner(t, j) - corner(t, i)).normalized();
-        const Vec3& n = normals[t][j];
-        mirrored[fan] += angleAt(t, i) * (n - 2 * n.dot(along) * along);
+        if (fans.fan[fans.of_corner[3 * t + j]].end() != FanEnd::none) continue;
+        const Vec3 g = direction(t, i, j);
+        const double along = std::abs(g.dot(crease));
+        if (along > least_along[fan] + kAsSquare) continue;
+        if (along < least_along[fan] - kAsSquare) sum[fan].setZero();
+        least_along[fan] = std::min(along, least_along[fan]);
+        sum[fan] += angleAt(t, i) * mirrored(normals[t][j], g);
       }
     }
-    for (std::size_t c = 0; c < corners; ++c) {
-      const Vec3& n = mirrored[fans.of_corner[c]];
-      if (n.norm() > 0 && angleBetween(n, normals[c / 3][c % 3]) < kFarthestMirror) normals[c / 3][c % 3] = n.normalized();
+    adopt(sum, fans, normals);
+  }
+
+  // Where creases meet, the normal comes along them.
+  void continueToCreaseEnds(const Fans& fans, Normals& normals) const {
+    std::vector<Vec3> sum(fans.fan.size(), Vec3::Zero());
+    for (std::size_t c = 0; c < fans.of_corner.size(); ++c) {
+      const std::size_t t = c / 3, i = c % 3;
+      const Fan& fan = fans.fan[fans.of_corner[c]];
+      if (fan.end() != FanEnd::corner || fileNormal(t, i)) continue;
+      for (const std::size_t j : {(i + 1) % 3, (i + 2) % 3}) {
+        const Vec3 g = direction(t, i, j);
+        const bool on_crease = g == fan.out || g == fan.in;
+        if (on_crease && fans.fan[fans.of_corner[3 * t + j]].end() != FanEnd::corner) sum[fans.of_corner[c]] += mirrored(normals[t][j], g);
+      }
+    }
+    adopt(sum, fans, normals);
+  }
+
+  void adopt(const std::vector<Vec3>& sum, const Fans& fans, Normals& normals) const {
+    for (std::size_t c = 0; c < fans.of_corner.size(); ++c) {
+      const Vec3& n = sum[fans.of_corner[c]];
+      if (n.norm() > kCancelled && angleBetween(n, normals[c / 3][c % 3]) < kFarthestMirror) normals[c / 3][c % 3] = n.normalized();
     }
   }
 
@@ -117,9 +166,8 @@ class CornerNormalFinder {
     sets.join(here_next, 3 * other + edge);
   }
 
-  // Opposite facets cancel; what is left after that has no direction, and each facet keeps its own.
+  // Where everything cancels each facet keeps its own.
   static Vec3 directionOf(const Vec3& from_file, const Vec3& from_facets, const Vec3& facet) {
-    constexpr double kCancelled = 1e-6;
     if (from_file.norm() > kCancelled) return from_file.normalized();
     if (from_facets.norm() > kCancelled) return from_facets.normalized();
     return facet;
