@@ -68,6 +68,7 @@ ContactMemory remember(const WorldModel& model, const WorldState& state, const C
   m.arm_b_W = c.arm_b_W;
   m.active = c.active();
   m.sliding = c.sliding;
+  m.closing = c.closing;
   if (m.active && !m.sliding) {
     const Eigen::Vector4d v_end_C = relativeVelocity(c, motionOf(model, state, c.a), motionOf(model, state, c.b));
     m.offset_C = c.offset_C + model.options.h * (c.closing ? v_end_C : Eigen::Vector4d(0.5 * (c.v_start_C + v_end_C)));

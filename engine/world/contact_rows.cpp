@@ -17,8 +17,10 @@ double turnOfNormal(const WorldScratch& scratch, const Contact& c, const Contact
 
 double normalBias(const WorldModel& model, const WorldState& state, const WorldScratch& scratch, Contact& c) {
   const double h = model.options.h;
-  if (c.memory >= 0 && state.contacts[c.memory].active) {
-    return std::max(kNormalCorrection * c.phi / h, -kLargestCorrection) + turnOfNormal(scratch, c, state.contacts[c.memory]);
+  const ContactMemory* memory = c.memory >= 0 ? &state.contacts[c.memory] : nullptr;
+  // What landed in the last tick still has the speed that it landed with: it is stopped like a new contact.
+  if (memory && memory->active && !memory->closing) {
+    return std::max(kNormalCorrection * c.phi / h, -kLargestCorrection) + turnOfNormal(scratch, c, *memory);
   }
   const double u_n = c.v_start_C[kNormalRow];
   const double phi_start = c.phi - 0.5 * h * u_n;

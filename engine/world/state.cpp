@@ -32,7 +32,7 @@ void add(Fnv1a& hash, const ContactMemory& c) {
   for (int i = 0; i < 4; ++i) hash.add(c.r[i]);
   for (int i = 0; i < 4; ++i) hash.add(c.offset_C[i]);
   for (const Vec3& v : {c.t1_W, c.n_W, c.arm_a_W, c.arm_b_W}) hash.add(v);
-  hash.add(static_cast<std::uint64_t>(c.active) | static_cast<std::uint64_t>(c.sliding) << 1);
+  hash.add(static_cast<std::uint64_t>(c.active) | static_cast<std::uint64_t>(c.sliding) << 1 | static_cast<std::uint64_t>(c.closing) << 2);
 }
 
 bool isFinite(const BodyStart& s) {

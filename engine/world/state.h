@@ -32,6 +32,7 @@ struct ContactMemory {
   Eigen::Vector4d offset_C = Eigen::Vector4d::Zero();   // how far a has moved past b since they stuck: along t1, t2 [m], -, about n [rad]
   bool active = false;                                  // pushed in the last tick
   bool sliding = false;
+  bool closing = false;  // it closed in the last tick
 };
 
 struct WorldState {

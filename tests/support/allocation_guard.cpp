@@ -1,0 +1,57 @@
+#include "tests/support/allocation_guard.h"
+
+#include <cerrno>
+#include <cstddef>
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define PINCER_COUNTS_ALLOCATIONS 0
+#else
+#define PINCER_COUNTS_ALLOCATIONS 1
+#endif
+
+namespace pincer::testing {
+namespace {
+thread_local std::int64_t count = 0;
+}
+
+std::int64_t allocationCount() { return count; }
+bool allocationsAreCounted() { return PINCER_COUNTS_ALLOCATIONS != 0; }
+
+#if PINCER_COUNTS_ALLOCATIONS
+namespace {
+void countOne() { ++count; }
+}  // namespace
+}  // namespace pincer::testing
+
+// The C library lets a program replace its allocator; these count and pass on. operator new calls malloc.
+extern "C" {
+void* __libc_malloc(std::size_t);
+void* __libc_calloc(std::size_t, std::size_t);
+void* __libc_realloc(void*, std::size_t);
+void* __libc_memalign(std::size_t, std::size_t);
+
+void* malloc(std::size_t size) {
+  pincer::testing::countOne();
+  return __libc_malloc(size);
+}
+void* calloc(std::size_t n, std::size_t size) {
+  pincer::testing::countOne();
+  return __libc_calloc(n, size);
+}
+void* realloc(void* p, std::size_t size) {
+  pincer::testing::countOne();
+  return __libc_realloc(p, size);
+}
+void* aligned_alloc(std::size_t alignment, std::size_t size) {
+  pincer::testing::countOne();
+  return __libc_memalign(alignment, size);
+}
+int posix_memalign(void** p, std::size_t alignment, std::size_t size) {
+  pincer::testing::countOne();
+  *p = __libc_memalign(alignment, size);
+  return *p ? 0 : ENOMEM;
+}
+}
+namespace pincer::testing {
+#endif
+}  // namespace pincer::testing
