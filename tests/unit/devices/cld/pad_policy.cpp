@@ -63,6 +63,11 @@ TEST(PadPolicy, DisregardsContactsWithoutMeaning) {
   PadState state;
   EXPECT_EQ(padCommand(kPolicy, in, 1e-3, state).place_L, Vec2(0, 0));
   EXPECT_EQ(state.mode, PadMode::kCentre);
+  PadInput near;
+  near.nearest = NearestPoint{Vec2(0, kNan), 0.01};
+  EXPECT_EQ(settled(near), Vec2(0, 0));
+  near.nearest = NearestPoint{Vec2(0.001, 0), kNan};
+  EXPECT_EQ(settled(near), Vec2(0, 0));
   EXPECT_EQ(settled(touching({{Vec2(0.001, 0), 1e308}, {Vec2(0.003, 0), 1e308}})), Vec2(0.002, 0));
 }
 
@@ -70,7 +75,7 @@ TEST(PadPolicy, GlidesFromOneModeToTheNext) {
   tests::RandomNumbers draw(1);
   PadState state;
   for (int i = 0; i < 100000; ++i) {
-    PadInput in = touching({{Vec2(draw.uniform(-0.01, 0.01), draw.uniform(-0.01, 0.01)), draw.uniform(-1, 1)}});
+    PadInput in = touching({{Vec2{draw.uniform(-0.01, 0.01), draw.uniform(-0.01, 0.01)}, draw.uniform(-1, 1)}});
     if (draw.below(2) == 0) in.nearest = NearestPoint{Vec2(draw.uniform(-0.01, 0.01), 0), draw.uniform(0, 0.06)};
     in.parked = draw.below(10) == 0;
     const Vec2 before = state.place_L;

@@ -110,6 +110,30 @@ TEST(SimCld, MovesAtItsTopSpeedAndNoFaster) {
   EXPECT_LE(fastest, cld.capabilities().speed * (1 + 1e-9));
 }
 
+// How far the actuator overshoots when it crosses the pad by `step`, read every millisecond.
+double overshoot(double step) {
+  SimCld cld;
+  cld.command({false, Vec2(-step / 2, 0)});
+  cld.advance(2);
+  cld.command({false, Vec2(step / 2, 0)});
+  double highest = 0;
+  for (int i = 0; i < 1000; ++i) {
+    cld.advance(1e-3);
+    highest = std::max(highest, cld.trueActuator_L().x());
+  }
+  return highest - step / 2;
+}
+
+// A second-order response overshoots by exp(-pi zeta / sqrt(1 - zeta^2)) = 1.5 % of a step. A long step runs at top speed until only so
+// much of it is left (4.7 mm) that a response from rest would never be faster: the limit must not store up speed and let it go later.
+TEST(SimCld, OvershootsAsASecondOrderResponseWhetherTheStepIsShortOrLong) {
+  const double zeta = 0.8, w = 2 * std::numbers::pi * 8, root = std::sqrt(1 - zeta * zeta);
+  const double share = std::exp(-std::numbers::pi * zeta / root);
+  const double never_limited = 0.1 / (w * std::exp(-std::acos(zeta) * zeta / root));
+  EXPECT_NEAR(overshoot(1e-3), share * 1e-3, 0.01 * share * 1e-3);  // 1 %: read every millisecond, limited every half
+  EXPECT_NEAR(overshoot(16e-3), share * never_limited, 0.01 * share * never_limited);
+}
+
 TEST(SimCld, MovesAnUnreachablePlaceToTheNearestReachableOneAndSaysSo) {
   SimCld cld;
   const Vec2 reach = cld.capabilities().reach;
@@ -144,7 +168,7 @@ TEST(SimCld, TactorStaysWithinThePlayAndTheReach) {
   SimCld cld;
   const Vec2 reach = cld.capabilities().reach;
   for (int i = 0; i < 200000; ++i) {
-    if (draw.below(20) == 0) cld.command({draw.below(5) == 0, Vec2(draw.uniform(-0.03, 0.03), draw.uniform(-0.03, 0.03))});
+    if (draw.below(20) == 0) cld.command({draw.below(5) == 0, Vec2{draw.uniform(-0.03, 0.03), draw.uniform(-0.03, 0.03)}});
     cld.advance(draw.uniform(1e-5, 2e-3));
     const Vec2 gap = (cld.trueTactor_L() - cld.trueActuator_L()).cwiseAbs();
     ASSERT_LE(gap.x(), 1.13e-3 / 2 * (1 + 1e-12));
