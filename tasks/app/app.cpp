@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <array>
 #include <cstdio>
+#include <system_error>
 
 #include "contact/error.h"
 #include "tasks/app/commands.h"
@@ -12,10 +13,8 @@
 namespace pincer::tasks {
 namespace {
 
-using AddCommand = void (*)(CLI::App&, int&);
-
 // The program's table of contents, in the order in which --help shows it.
-constexpr std::array<AddCommand, 0> kCommands = {};
+constexpr std::array kCommands = {addSimCommand, addPlanCommand, addMeshCommand};
 
 constexpr const char* kExamples = R"(
 Examples:
@@ -33,6 +32,13 @@ int reportUsage(const CLI::App& app, const CLI::ParseError& error) {
   return kExitUsage;
 }
 
+// What was printed may have gone to a full disk or a closed pipe.
+int flushed(int exit_code) {
+  if (std::fflush(stdout) == 0 && !std::ferror(stdout)) return exit_code;
+  fmt::print(stderr, "pincer: standard output can't be written. The disk may be full.\n");
+  return kExitBadInput;
+}
+
 }  // namespace
 
 int runApp(int argc, char** argv) {
@@ -41,7 +47,7 @@ int runApp(int argc, char** argv) {
   app.footer(kExamples);
   app.require_subcommand(1);
   int exit_code = kExitOk;
-  for (AddCommand add : kCommands) add(app, exit_code);
+  for (const auto add : kCommands) add(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -49,8 +55,11 @@ int runApp(int argc, char** argv) {
   } catch (const InputError& error) {
     fmt::print(stderr, "pincer: {}\n", error.what());
     return kExitBadInput;
+  } catch (const std::system_error& error) {  // fmt::print, when standard output can't be written
+    fmt::print(stderr, "pincer: {}\n", error.what());
+    return kExitBadInput;
   }
-  return exit_code;
+  return flushed(exit_code);
 }
 
 }  // namespace pincer::tasks

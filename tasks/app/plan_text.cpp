@@ -1,0 +1,117 @@
+#include "tasks/app/plan_text.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "contact/surface/smooth_mesh.h"
+
+namespace pincer::tasks {
+namespace {
+
+using Bodies = std::vector<engine::BodyModel>;
+
+struct ShapeName {
+  std::string operator()(const contact::Sphere& s) const { return fmt::format("sphere r {:g} mm", 1e3 * s.radius); }
+  std::string operator()(const contact::Box& b) const {
+    return fmt::format("box {:g} x {:g} x {:g} mm", 2e3 * b.half.x(), 2e3 * b.half.y(), 2e3 * b.half.z());
+  }
+  std::string operator()(const contact::Capsule& c) const {
+    return fmt::format("capsule r {:g} mm, straight part {:g} mm", 1e3 * c.radius, 2e3 * c.half_length);
+  }
+  std::string operator()(const contact::Cylinder& c) const {
+    return fmt::format("cylinder r {:g} mm, {:g} mm long", 1e3 * c.radius, 2e3 * c.half_length);
+  }
+  std::string operator()(const contact::CylinderWithFlat& c) const {
+    return fmt::format("cylinder r {:g} mm, {:g} mm long, flat at {:g} mm", 1e3 * c.radius, 2e3 * c.half_length, 1e3 * c.flat_distance);
+  }
+  std::string operator()(const contact::HalfSpace&) const { return "half-space"; }
+  std::string operator()(const contact::Dish& d) const { return fmt::format("dish r {:g} mm", 1e3 * d.radius); }
+  std::string operator()(const contact::Mesh& m) const {
+    return fmt::format("mesh of {} triangles", m.surface->triangles().triangles.size());
+  }
+};
+
+bool isMesh(const engine::BodyModel& body) { return std::holds_alternative<contact::Mesh>(body.shape); }
+bool isSphere(const engine::BodyModel& body) { return std::holds_alternative<contact::Sphere>(body.shape); }
+
+std::string rotationForm(const engine::BodyModel& body) {
+  switch (body.rotation.kind) {
+    case engine::FreeRotation::Kind::kSpherical:
+      return "rotation: spherical top, exact";
+    case engine::FreeRotation::Kind::kSymmetric:
+      return "rotation: symmetric top, exact";
+    case engine::FreeRotation::Kind::kTriaxial:
+      return "rotation: triaxial top, splitting";
+  }
+  return "";
+}
+
+std::string bodyForm(const engine::BodyModel& body) {
+  const std::string shape = nameOf(body.shape);
+  if (!body.dynamic) return fmt::format("{}; static, costs nothing by itself", shape);
+  const std::string touch = body.may_touch ? "" : "; touches nothing: moves in closed form alone";
+  return fmt::format("{}, {:.4g} g; {}{}", shape, 1e3 * body.mass, rotationForm(body), touch);
+}
+
+std::string torsionText(double torsion_radius) {
+  return torsion_radius > 0 ? fmt::format("4 rows each, torsion up to {:g} mm x friction", 1e3 * torsion_radius)
+                            : "3 rows each, no torsion";
+}
+
+std::string pairForm(const Bodies& bodies, const engine::PairModel& pair) {
+  const engine::BodyModel &a = bodies[static_cast<std::size_t>(pair.a)], &b = bodies[static_cast<std::size_t>(pair.b)];
+  const bool mesh = isMesh(a) || isMesh(b);
+  const bool sphere = isSphere(a) || isSphere(b);
+  const char* form = !mesh ? "closed form" : sphere ? "sphere on the smooth surface" : "corners of the mesh's convex hull";
+  return fmt::format("{}; {}, mu_s {:g}, mu_d {:g}", form, torsionText(pair.material.torsion_radius), pair.material.mu_s,
+                     pair.material.mu_d);
+}
+
+std::string couplingForm(const engine::DrivenPointModel& coupling, const std::array<engine::AxisForm, 3>& forms) {
+  constexpr std::array<const char*, 3> names = {"locked", "4th order", "implicit"};
+  std::vector<std::string> axes;
+  for (std::size_t i = 0; i < 3; ++i) axes.push_back(fmt::format("{} {}", "xyz"[i], names[static_cast<std::size_t>(forms[i])]));
+  return fmt::format("proxy {:g} g; coupling {}", 1e3 * coupling.mass, fmt::join(axes, ", "));
+}
+
+std::string touchForm(const engine::BodyModel& body) {
+  const char* form = isMesh(body) ? "smooth surface, warm-started search" : "closed form";
+  return fmt::format("{}; {}, mu_s {:g}, mu_d {:g}", form, torsionText(body.material.torsion_radius), body.material.mu_s,
+                     body.material.mu_d);
+}
+
+void describeFinger(const grasp::GraspModel& model, std::size_t finger, std::vector<PlanLine>& lines) {
+  const grasp::FingerModel& f = model.fingers[finger];
+  lines.push_back(
+      {"finger", f.name, fmt::format("r {:g} mm, {}", 1e3 * f.radius, couplingForm(f.coupling, model.world.point_forms[finger]))});
+  for (const engine::BodyModel& body : model.world.bodies) {
+    lines.push_back({"touch", fmt::format("{} - {}", f.name, body.name), touchForm(body)});
+  }
+}
+
+void describeSkipped(const grasp::GraspModel& model, std::vector<PlanLine>& lines) {
+  if (model.world.pairs.empty()) lines.push_back({"skipped", "body contacts", "no two bodies can touch"});
+  if (model.fingers.empty()) lines.push_back({"skipped", "finger contacts, pad places", "there are no fingers"});
+  if (model.world.pairs.empty() && model.fingers.empty()) lines.push_back({"skipped", "solve", "nothing can touch"});
+  lines.push_back({"skipped", "broad phase", "every pair is looked at: cheaper for so few bodies"});
+}
+
+}  // namespace
+
+std::string nameOf(const contact::Shape& shape) { return std::visit(ShapeName{}, shape); }
+
+std::vector<PlanLine> describePlan(const grasp::GraspModel& model) {
+  std::vector<PlanLine> lines;
+  const Bodies& bodies = model.world.bodies;
+  for (const engine::BodyModel& body : bodies) lines.push_back({"body", body.name, bodyForm(body)});
+  for (const engine::PairModel& pair : model.world.pairs) {
+    const std::string name =
+        fmt::format("{} - {}", bodies[static_cast<std::size_t>(pair.a)].name, bodies[static_cast<std::size_t>(pair.b)].name);
+    lines.push_back({"pair", name, pairForm(bodies, pair)});
+  }
+  for (std::size_t i = 0; i < model.fingers.size(); ++i) describeFinger(model, i, lines);
+  describeSkipped(model, lines);
+  return lines;
+}
+
+}  // namespace pincer::tasks

@@ -1,0 +1,21 @@
+// plan_text: what a model's plan is, in words: which bodies, pairs and fingers there are and in which specialised form each runs.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "grasp/model.h"
+
+namespace pincer::tasks {
+
+// One thing that runs in a tick, or that the plan leaves out.
+struct PlanLine {
+  std::string part;  // "body", "pair", "finger", "skipped"
+  std::string name;  // "sphere", "left - sphere"
+  std::string form;  // "free rotation: spherical, exact", ...
+};
+
+std::vector<PlanLine> describePlan(const grasp::GraspModel& model);
+
+std::string nameOf(const contact::Shape& shape);  // "sphere r 20 mm"
+
+}  // namespace pincer::tasks

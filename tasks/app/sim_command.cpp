@@ -1,0 +1,57 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "tasks/app/app.h"
+#include "tasks/app/commands.h"
+#include "tasks/app/interrupt.h"
+#include "tasks/app/progress.h"
+#include "tasks/app/sim_run.h"
+
+namespace pincer::tasks {
+namespace {
+
+constexpr const char* kExample = R"(
+Runs the bodies and fingers of a scene file (docs/scenes.md), shows where they end up, and checks what the scene expects.
+Exit code 1 if an expectation fails.
+
+Example:
+  pincer sim tasks/scenes/s4_pinch.json --out pinch.csv --every 0.1)";
+
+struct SimArguments {
+  std::string scene;
+  SimOptions options;
+  bool json = false;
+};
+
+int runSim(const SimArguments& arguments) {
+  const std::atomic<bool>& interrupted = interruptFlag();
+  Scene scene = readScene(arguments.scene);
+  applyOptions(arguments.options, scene);
+  Simulation simulation(std::move(scene));
+  SimResult result = [&] {
+    Progress progress("sim", simulation.scene().ticks());
+    return runScene(simulation, arguments.options, interrupted, [&](std::int64_t done) { progress.update(done); });
+  }();
+  fmt::print("{}", arguments.json ? simJson(simulation, result) : simText(simulation, result));
+  if (result.interrupted) return kExitInterrupted;
+  return result.broke || result.log.anyFailed() ? kExitCheckFailed : kExitOk;
+}
+
+}  // namespace
+
+void addSimCommand(CLI::App& app, int& exit_code) {
+  auto arguments = std::make_shared<SimArguments>();
+  CLI::App* command = app.add_subcommand("sim", "Plain physics of a scene: states, records, expectations");
+  command->add_option("scene", arguments->scene, "Scene file (JSON)")->required();
+  command->add_option("--duration", arguments->options.duration, "Simulated time in place of the scene's [s]")->check(CLI::PositiveNumber);
+  command->add_option("--every", arguments->options.every, "Time between recorded rows in place of the scene's [s]")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--out", arguments->options.csv, "Write the recorded quantities to this CSV file");
+  command->add_flag("--json", arguments->json, "Print the result as JSON");
+  command->footer(kExample);
+  command->callback([arguments, &exit_code] { exit_code = runSim(*arguments); });
+}
+
+}  // namespace pincer::tasks

@@ -1,0 +1,97 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "tasks/app/sim_run.h"
+#include "tasks/app/terminal.h"
+
+namespace pincer::tasks {
+namespace {
+
+std::string millimetres(const Vec3& p) { return fmt::format("{:11.6f} {:11.6f} {:11.6f}", 1e3 * p.x(), 1e3 * p.y(), 1e3 * p.z()); }
+
+std::string whenText(const Expectation& expected) {
+  return expected.tick == Expectation::kAlways ? "always" : fmt::format("at {:g} s", expected.time);
+}
+
+std::string boundText(const Expectation& expected) {
+  const std::string slack = expected.tolerance > 0 ? fmt::format(" +- {:.3g}", expected.tolerance) : "";
+  return fmt::format("{} {:.10g}{} {}", kRelationNames[static_cast<std::size_t>(expected.relation)], expected.value, slack,
+                     expected.quantity.kind->unit);
+}
+
+std::string measuredText(const Expectation& expected, const Outcome& outcome) {
+  if (!outcome.reached) return "not reached: the run ended before";
+  const std::string off =
+      expected.relation == Relation::kEqual ? fmt::format(", off by {:.3g}", std::abs(outcome.measured - expected.value)) : "";
+  const std::string when = expected.tick == Expectation::kAlways ? fmt::format(" (worst, at {:g} s)", outcome.worst_time) : "";
+  return fmt::format("measured {:.10g}{}{}", outcome.measured, off, when);
+}
+
+std::string expectationLine(const Expectation& expected, const Outcome& outcome) {
+  const std::string verdict = !outcome.reached ? "  -  " : outcome.holds() ? good(" ok  ") : bad("FAILS");
+  std::string line = fmt::format("  {} {} {} {}: {}\n", verdict, expected.quantity.name, whenText(expected), boundText(expected),
+                                 measuredText(expected, outcome));
+  if (!outcome.holds() && !expected.because.empty()) line += fmt::format("        because {}\n", expected.because);
+  return line;
+}
+
+void appendStates(const Simulation& simulation, std::string& out) {
+  const Moment moment = simulation.moment();
+  out += fmt::format("\nAt {:g} s              x [mm]      y [mm]      z [mm]\n", simulation.time());
+  for (std::size_t i = 0; i < simulation.scene().bodies.size(); ++i) {
+    const engine::BodySpec& body = simulation.scene().bodies[i];
+    if (!body.dynamic) continue;
+    const Pose X_WB = simulation.bodyPose(static_cast<int>(i));
+    out += fmt::format("  {:<14} {}   turned {:.3g} rad, {:.3g} mm/s\n", body.name, millimetres(X_WB.p),
+                       angleBetween(simulation.scene().starts[i].X_WB.q, X_WB.q), 1e3 * moment.state.world.bodies[i].v_W.norm());
+  }
+  for (std::size_t i = 0; i < simulation.scene().fingers.size(); ++i) {
+    const grasp::FingerReport& felt = moment.fingers[i];
+    const std::string contact = felt.touching ? fmt::format("presses {:.4g} N, friction {:.4g} N{}", felt.normal_force,
+                                                            felt.tangential_force, felt.sliding ? ", slides" : "")
+                                              : "touches nothing";
+    out +=
+        fmt::format("  {:<14} {}   {}\n", simulation.scene().fingers[i].model.name, millimetres(moment.state.world.points[i].p_W), contact);
+  }
+}
+
+void appendRecorded(const Simulation& simulation, std::string& out) {
+  const std::vector<Quantity>& quantities = simulation.scene().record.quantities;
+  if (quantities.empty()) return;
+  out += "\nRecorded, last values (all of them: --out FILE.csv)\n";
+  for (const Quantity& q : quantities) out += fmt::format("  {:<24} {:.10g} {}\n", q.name, q.measure(simulation.moment()), q.kind->unit);
+}
+
+void appendExpectations(const SimResult& result, std::string& out) {
+  if (result.log.expectations().empty()) return;
+  out += "\nExpected\n";
+  for (std::size_t i = 0; i < result.log.expectations().size(); ++i) {
+    out += expectationLine(result.log.expectations()[i], result.log.outcomes()[i]);
+  }
+}
+
+void appendStatuses(const SimResult& result, std::string& out) {
+  for (std::size_t i = 0; i < kStatusKinds.size(); ++i) {
+    if (result.statuses.of(i) > 0)
+      out += fmt::format("\n{} in {} ticks {}\n", bad("Note:"), result.statuses.of(i), kStatusKinds[i].sentence);
+  }
+}
+
+}  // namespace
+
+std::string simText(const Simulation& simulation, const SimResult& result) {
+  const Scene& scene = simulation.scene();
+  std::string out = scene.description.empty() ? scene.file + "\n" : fmt::format("{}\n{}\n", scene.file, scene.description);
+  appendStates(simulation, out);
+  appendRecorded(simulation, out);
+  appendExpectations(result, out);
+  appendStatuses(result, out);
+  out += fmt::format("\n{} ticks of {:g} ms, each: median {:.2f} us, p99.9 {:.2f} us, longest {:.1f} us\n", simulation.ticks(),
+                     1e3 * scene.options.h, 1e6 * result.times.quantile(0.5), 1e6 * result.times.quantile(0.999),
+                     1e6 * result.times.quantile(1));
+  if (result.interrupted) out += fmt::format("Interrupted at {:g} s of {:g} s.\n", simulation.time(), scene.duration);
+  return out;
+}
+
+}  // namespace pincer::tasks
