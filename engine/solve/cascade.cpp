@@ -10,6 +10,8 @@
 namespace pincer::engine {
 namespace {
 
+constexpr double kConeRoundOff =
+    1e-14;  // relative: an impulse on the cone isn't projected again, so a warm start that fits stays, to the bit
 constexpr double kNearSolution = 1e-8;  // residual from which Newton's method needs a step or two
 constexpr double kShiftedGap = 1e-6;    // of a problem with frozen shift, itself an approximation
 constexpr int kSweepsPerRound = 15;     // enough to leave the basin in which Newton's method failed
@@ -19,7 +21,7 @@ void project(const ContactProblem& problem, double* r) {
   for (int i = 0; i < problem.contactCount(); ++i) {
     const int rows = problem.rows(i);
     double* const r_i = r + problem.firstRow(i);
-    if (isInCone(r_i, rows, problem.friction(i))) continue;
+    if (isInCone(r_i, rows, problem.friction(i), kConeRoundOff)) continue;
     projectOntoCone(r_i, rows, problem.friction(i), r_i);
     double check = 0;
     for (int k = 0; k < rows; ++k) check += r_i[k];

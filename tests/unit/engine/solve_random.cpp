@@ -1,0 +1,149 @@
+// The contact solver on many random scenes: it converges, obeys the law, and agrees with itself.
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <string>
+
+#include "engine/solve/cone.h"
+#include "engine/solve/gauss_seidel.h"
+#include "engine/solve/local_contact.h"
+#include "tests/support/contact_problems.h"
+
+namespace pincer::engine {
+namespace {
+
+using tests::OwnedContactProblem;
+using tests::RandomScenes;
+using tests::solve;
+using tests::Solved;
+
+struct Family {
+  std::string name;
+  std::function<OwnedContactProblem(RandomScenes&)> draw;
+  int problems;
+  double converging;  // share that must converge from a cold start
+};
+
+void PrintTo(const Family& family, std::ostream* out) { *out << family.name; }
+
+class RandomProblems : public testing::TestWithParam<Family> {};
+
+// |r_T| <= mu r_n to 1e-12, u = W r + q to round-off of its terms, for every row finite: whatever the outcome.
+void expectSound(const OwnedContactProblem& p, const Solved& s) {
+  ASSERT_TRUE(s.r.allFinite() && s.u.allFinite());
+  for (std::size_t i = 0; i < p.mu.size(); ++i)
+    EXPECT_TRUE(isInCone(s.r.data() + p.first_row[i], p.first_row[i + 1] - p.first_row[i], p.mu[i], 1e-12));
+  EXPECT_LE((p.W * s.r + p.q - s.u).norm(), 1e-13 * (p.W.norm() * s.r.norm() + p.q.norm()));
+}
+
+TEST_P(RandomProblems, ConvergeAndStayInTheCones) {
+  RandomScenes random(11);
+  int failures = 0;
+  for (int n = 0; n < GetParam().problems; ++n) {
+    OwnedContactProblem p = GetParam().draw(random);
+    const Solved s = solve(p);
+    expectSound(p, s);
+    if (s.result.converged)
+      EXPECT_LE(s.result.residual, 1e-10);
+    else
+      ++failures;
+  }
+  EXPECT_LE(failures, (1 - GetParam().converging) * GetParam().problems);
+}
+
+// The answer is where the next tick starts: no iteration is spent on what hasn't changed.
+TEST_P(RandomProblems, AreRecognisedWhenTheyComeAgain) {
+  RandomScenes random(12);
+  for (int n = 0; n < 50; ++n) {
+    OwnedContactProblem p = GetParam().draw(random);
+    const Solved first = solve(p);
+    if (!first.result.converged) continue;
+    const Solved again = solve(p, {}, &first.r);
+    EXPECT_EQ(again.result.method, SolveMethod::kWarmStart);
+    EXPECT_EQ(again.result.iterations, 0);
+    EXPECT_EQ(again.r, first.r);
+  }
+}
+
+TEST_P(RandomProblems, GiveTheSameBitsAgain) {
+  RandomScenes random(13);
+  for (int n = 0; n < 20; ++n) {
+    OwnedContactProblem p = GetParam().draw(random);
+    const Solved a = solve(p), b = solve(p);
+    EXPECT_EQ(a.r, b.r);
+    EXPECT_EQ(a.u, b.u);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Families, RandomProblems,
+    testing::Values(
+        Family{"two fingers", [](RandomScenes& s) { return s.grasp(2, 1, false); }, 1000, 1},
+        Family{"two fingers, mass ratio 1e4", [](RandomScenes& s) { return s.grasp(2, 1e4, false); }, 1000, 1},
+        Family{"two to ten fingers", [](RandomScenes& s) { return s.grasp(s.integer(2, 10), 1e3, false); }, 300, 0.999},
+        Family{"soft fingers", [](RandomScenes& s) { return s.grasp(s.integer(2, 5), 1, true); }, 500, 0.999},
+        Family{"box on corners", [](RandomScenes& s) { return s.stack(1, 1, std::pow(10, s.uniform(-4, 0))); }, 1000, 0.999},
+        Family{"ring of redundant contacts", [](RandomScenes& s) { return s.ring(s.integer(4, 12), 0.01); }, 300, 0.999},
+        Family{"stack, heavier above", [](RandomScenes& s) { return s.stack(3, 10, std::pow(10, s.uniform(-4, -1))); }, 100, 0.99},
+        Family{"cluster", [](RandomScenes& s) { return s.cluster(s.integer(1, 6), s.integer(1, 12), 10, 1, false); }, 500, 0.998},
+        Family{"cluster, mu to 3, torsion", [](RandomScenes& s) { return s.cluster(s.integer(1, 6), s.integer(1, 12), 100, 3, true); }, 200,
+               0.99}));
+
+// Where the velocities are unique (fingers on bodies of their own, mu small), Newton and Gauss-Seidel find the same.
+TEST(Solver, NewtonAndGaussSeidelAgree) {
+  RandomScenes random(14);
+  const SolverOptions slow{
+      .tolerance = 1e-10, .newton_iterations = 0, .interior_point_iterations = 0, .shift_updates = 0, .gauss_seidel_sweeps = 9000};
+  int compared = 0;
+  for (int n = 0; n < 200; ++n) {
+    OwnedContactProblem p = random.grasp(2, 1, n % 2 == 1);
+    const Solved newton = solve(p), gauss_seidel = solve(p, slow);
+    if (!newton.result.converged || !gauss_seidel.result.converged) continue;
+    ++compared;
+    EXPECT_NE(gauss_seidel.result.method, SolveMethod::kNewton);
+    EXPECT_LE((newton.u - gauss_seidel.u).norm(), 1e-7 * p.q.norm());  // both to 1e-10, times the condition of W
+  }
+  EXPECT_GE(compared, 190);
+}
+
+// Alone, a contact is solved exactly in one pass, in every mode.
+TEST(Solver, GaussSeidelIsExactForOneContact) {
+  RandomScenes random(15);
+  for (int n = 0; n < 2000; ++n) {
+    OwnedContactProblem p = random.cluster(1, 1, 1, 3, false);
+    const int rows = static_cast<int>(p.q.size());
+    Eigen::VectorXd r(rows), u(rows);
+    solveOneContact(p.W.data(), rows, p.q.data(), rows, p.mu[0], r.data());
+    EXPECT_LE(contactResidual(p.view(), r, u), 1e-12) << n;
+  }
+}
+
+TEST(Solver, GaussSeidelIsExactForOneSoftContact) {
+  RandomScenes random(16);
+  for (int n = 0; n < 2000; ++n) {
+    OwnedContactProblem p = random.grasp(1, 1, true);
+    Eigen::VectorXd r(4), u(4);
+    solveOneContact(p.W.data(), 4, p.q.data(), 4, p.mu[0], r.data());
+    EXPECT_LE(contactResidual(p.view(), r, u), 1e-12) << n;
+  }
+}
+
+// A stack of three whose top is a million times as heavy as its base, resting: the interface forces are the weights.
+TEST(Solver, CarriesTheWeightsAtAnyMassRatio) {
+  for (const double ratio : {1.0, 1e2, 1e4, 1e6}) {
+    RandomScenes random(17);
+    OwnedContactProblem p = random.stack(3, ratio, 0);
+    const Solved s = solve(p);
+    ASSERT_TRUE(s.result.converged) << ratio;
+    double above = 0;  // impulse on the interface above
+    for (int k = 2; k >= 0; --k) {
+      const double on_top = s.r[12 * k + 2] + s.r[12 * k + 5] + s.r[12 * k + 8] + s.r[12 * k + 11];
+      EXPECT_GT(on_top, above);
+      above = on_top;
+    }
+    EXPECT_LE(s.u.cwiseAbs().maxCoeff(), 1e-9 * (1 + 1e-4 * ratio) * 9.81e-3);  // see contactResidual for ratios above 1e4
+  }
+}
+
+}  // namespace
+}  // namespace pincer::engine
