@@ -27,7 +27,7 @@ struct JointLimits {
   double elbow = 1.3;  // largest |q2 - q3|
 };
 
-// A box that lies within the stops, clear of the singular postures (dexterity > 0.5), where the bare arm's apparent mass is 27 to 160 g [m].
+// A box [m] within the stops, clear of singular postures (dexterity > 0.5), where the bare arm's apparent mass is 27 to 160 g.
 // Ours; the maker's 191 x 267 x 381 mm is the extent of a workspace that isn't a box.
 inline const Vec3 kWorkspaceMin_D{-0.10, -0.06, -0.06};
 inline const Vec3 kWorkspaceMax_D{0.10, 0.10, 0.05};

@@ -1,4 +1,4 @@
-// force_gate: the last stage before a motor. Whatever comes in, what goes out is finite, bounded and slow enough; any doubt is zero, latched.
+// force_gate: the last stage before a motor. Whatever comes in, what goes out is finite, bounded and slow; any doubt is zero, latched.
 //
 //   trips      not finite, fault before, invalid sample, over-speed, missed deadline, stale sample: zero at once, until an operator arms
 //   peak       |f| <= peak_force, direction kept
