@@ -57,9 +57,17 @@ void PickupJudge::watchHeight(const PickupView& view) {
 void PickupJudge::watchSlip(const PickupView& view, double dt) {
   for (std::size_t i = 0; i < view.fingers.size(); ++i) {
     const auto& finger = view.fingers[i];
-    const bool loaded = finger.on_object && finger.normal_force > rules_.loaded_force;
-    if (loaded && finger.sliding && stuck_for_[i] >= rules_.stick_time) ++counts_.slips;
-    stuck_for_[i] = loaded && !finger.sliding ? stuck_for_[i] + dt : 0;
+    Slide& slide = slides_[i];
+    if (!finger.on_object || finger.normal_force <= rules_.loaded_force) {
+      slide = Slide();
+      continue;
+    }
+    slide.stuck_for = finger.sliding ? 0 : slide.stuck_for + dt;
+    if (slide.stuck_for >= rules_.stick_time) slide = {0, slide.stuck_for, true, false};
+    if (finger.sliding) slide.distance += finger.slide_speed * dt;
+    if (!slide.stuck || slide.counted || slide.distance < rules_.slip_distance) continue;
+    slide.counted = true;
+    ++counts_.slips;
   }
 }
 

@@ -4,7 +4,8 @@
 //            has carried less than half of it for 0.1 s: one squeeze per attempt, however the forces ring
 //   lift     the object's bottom was off the dish and is back; what is still up when the trial ends isn't counted
 //   try_5mm  the bottom has cleared 5 mm and touches again
-//   slip     a loaded finger that had stuck for a while begins to slide
+//   slip     a loaded finger that had stuck begins to slide, and slides further than 0.2 mm before it has stuck again for 20 ms. (Without that
+//            distance one would count micro-slips: a grip near the limit of friction or torsion creeps at every step of an encoder)
 //   drop     held over 5 mm, then no finger touches the object before it is back on the dish
 //   success  the bottom stays over 50 mm for 1 s;   timeout: 60 s without (censored data)
 //
@@ -28,7 +29,8 @@ struct PickupRules {
   double back_clearance = 5e-5;   // and back on it under this [m] (ours)
   double try_clearance = 5e-3;    // [m]
   double loaded_force = 0.2;      // a finger that carries more is loaded [N] (ours)
-  double stick_time = 0.02;       // stuck for so long before a slide is a slip [s] (ours)
+  double slip_distance = 2e-4;    // [m] (ours)
+  double stick_time = 0.02;       // ends a slide [s] (ours)
   double success_height = 0.050;  // [m]
   double hold_time = 1.0;         // [s]
   double timeout = 60;            // [s]
@@ -40,6 +42,7 @@ struct PickupView {
     bool on_object = false;
     bool sliding = false;
     double normal_force = 0;   // [N]
+    double slide_speed = 0;    // of the finger over the object [m/s]
     Vec3 p_WC = Vec3::Zero();  // [m]
   };
   double time = 0;  // since the start tone [s]
@@ -80,8 +83,14 @@ class PickupJudge {
   bool off_ = false, cleared_ = false;  // since it was last on the dish: off it; over try_clearance
   bool held_ = false;                   // over try_clearance with a finger on it
   bool dropped_ = false;
-  std::array<double, 2> stuck_for_{};  // [s]
-  double over_since_ = -1;             // when it went over the success height [s]; negative: it isn't
+  struct Slide {
+    double distance = 0;   // since the finger last stuck [m]
+    double stuck_for = 0;  // [s]
+    bool stuck = false;    // it was stuck before this slide
+    bool counted = false;
+  };
+  std::array<Slide, 2> slides_{};
+  double over_since_ = -1;  // when it went over the success height [s]; negative: it isn't
   double grip_time_ = 0, grip_integral_ = 0;
 };
 

@@ -121,13 +121,18 @@ PickupView PickupTrial::view(bool wants_lift, double now) const {
   PickupView view;
   view.time = now - start_;
   view.wants_lift = wants_lift;
+  const engine::WorldState& world = state_.grasp.world;
+  const engine::BodyState& object = world.bodies[kObjectBody];
+  const Vec3 w_WB = engine::bodyAngularVelocity(scene_.model.grasp.world, world, kObjectBody);
   for (std::size_t i = 0; i < view.fingers.size(); ++i) {
     const grasp::FingerReport& finger = scratch_.grasp.fingers[i];
     const bool on_object = finger.touching && finger.body == kObjectBody;
-    view.fingers[i] = {on_object, finger.sliding, on_object ? finger.normal_force : 0, finger.p_WC};
+    const Vec3 v_W = world.points[i].v_W - object.v_W - w_WB.cross(finger.p_WC - object.X_WI.p);
+    const double slide_speed = (v_W - v_W.dot(finger.n_W) * finger.n_W).norm();
+    view.fingers[i] = {on_object, finger.sliding, on_object ? finger.normal_force : 0, slide_speed, finger.p_WC};
   }
-  view.p_WBcm = state_.grasp.world.bodies[kObjectBody].X_WI.p;
-  view.clearance = clearanceOverDish(scene_, engine::bodyPose(scene_.model.grasp.world, state_.grasp.world, kObjectBody));
+  view.p_WBcm = object.X_WI.p;
+  view.clearance = clearanceOverDish(scene_, engine::bodyPose(scene_.model.grasp.world, world, kObjectBody));
   return view;
 }
 

@@ -3,15 +3,13 @@
 #include <cmath>
 
 namespace pincer::tasks {
-namespace {
 
-Quat rotation(const Vec3& a) {
+Quat drawRotation(double sd, Random& random) {
+  const Vec3 a = sd * random.normal3();
   const double angle = a.norm();
   if (angle == 0) return Quat::Identity();
   return Quat(Eigen::AngleAxisd(angle, a / angle));
 }
-
-}  // namespace
 
 Body drawBody(const HandRanges& ranges, std::uint64_t seed) {
   Random random(seed);
@@ -30,7 +28,7 @@ BodySense drawBodySense(const SensingLimits& limits, Random& random) {
   const Vec3 between = limits.placement_between_sd * random.normal3();
   BodySense sense;
   sense.misplacement_W = {Vec3(shared - 0.5 * between), Vec3(shared + 0.5 * between)};
-  for (auto& q : sense.q_felt_true) q = rotation(limits.orientation_sd * random.normal3());
+  for (auto& q : sense.q_felt_true) q = drawRotation(limits.orientation_sd, random);
   return sense;
 }
 

@@ -27,6 +27,7 @@ struct SensingLimits {
   double orientation_sd = 0.0524;      // felt finger orientation, per axis, constant in a trial [rad], 3 degrees (choice)
   double placement_sd = 7e-3;          // of the pinch line, per axis, constant in a trial [m] (choice)
   double placement_between_sd = 4e-3;  // between the fingers, per axis, constant in a trial [m] (choice)
+  double direction_sd = 0.349;         // of a felt force's direction, per axis [rad], 20 degrees (design: 28.4 / sqrt 2)
   double force_sd = 0.10;              // of a felt magnitude, relative [-] (choice, near Weber fractions of 7-10 % for force)
   double force_floor = 0.1;            // a lighter touch isn't felt [N] (choice)
   double force_lag = 0.02;             // time constant of felt force [s] (choice)
@@ -40,6 +41,9 @@ struct Body {
   std::array<devices::HandPull, kHandFingers> hands;  // p_D unused
   double speed = 0.05;                                // mean speed of a reach [m/s]
 };
+// A small rotation whose components are independent with standard deviation `sd` [rad].
+Quat drawRotation(double sd, Random& random);
+
 Body drawBody(const HandRanges& ranges, std::uint64_t seed);
 
 // What is wrong with the body's sense of itself in one trial.

@@ -29,6 +29,7 @@ void ScriptedPickup::begin(const TrialCues& cues) {
   home_ = {0.5 * (cues.fingers[0].home_W + cues.fingers[1].home_W), 0.5 * span_W.norm()};
   posture_ = home_;
   place_W_ = cues.place_W;
+  lowest_z_ = cues.lowest_z;
   wanted_grip_ = options_.grip_safety * cues.mass * options_.gravity / (2 * options_.expected_mu);
   shifts_ = 0;
   now_ = dt_ = contact_time_ = 0;
@@ -81,13 +82,18 @@ void ScriptedPickup::listen() {
 }
 
 void ScriptedPickup::goAlong() {
+  if (phase_ == PickupPhase::kReach && standsOnDish()) return;
   posture_ = reach_.at(now_);
   if (reach_.over(now_)) enter(phase_ == PickupPhase::kReach ? PickupPhase::kClose : PickupPhase::kRest);
 }
 
-// Inwards and down to the believed place, then straight inwards. Fingertips that meet have found nothing between them.
+// Inwards and down to the believed place, then straight inwards; a finger that touches alone waits for the other. Fingertips that meet have
+// found nothing between them.
 void ScriptedPickup::close() {
-  posture_.half -= options_.close_speed * dt_;
+  if (standsOnDish()) return;
+  const double step = options_.close_speed * dt_;
+  posture_.half -= step;
+  if (touch_.feels(0) != touch_.feels(1)) place_W_ += (touch_.feels(0) ? -step : step) * axis_W_;
   const double above = std::max(posture_.half - touchingHalf(), 0.0) / options_.clearance;
   posture_.centre_W = place_W_ + above * options_.approach_height * Vec3::UnitZ();
   contact_time_ = touch_.feelsBoth() ? contact_time_ + dt_ : 0;
@@ -146,6 +152,17 @@ bool ScriptedPickup::lostIt() {
   return true;
 }
 
+bool ScriptedPickup::standsOnDish() {
+  const auto finger = touch_.pushedFromBelow(random_);
+  if (!finger) return false;
+  const double height = touch_.feltTip_W(*finger).z();
+  if (height > cues_.lowest_z + options_.farthest_shift) return false;  // the dish can't be so high: it is the object
+  lowest_z_ = height;
+  shiftPinch((lowest_z_ + cues_.place_W.z() - cues_.lowest_z - place_W_.z()) * Vec3::UnitZ());
+  enterReach(aboveThePinch(), PickupPhase::kReach);
+  return true;
+}
+
 void ScriptedPickup::retry(bool harder) {
   if (harder) wanted_grip_ = std::min(wanted_grip_ * options_.grip_growth, options_.grip_max);
   shifts_ = 0;
@@ -158,7 +175,7 @@ void ScriptedPickup::shiftPinch(const Vec3& shift_W) {
   const Vec3 across_W = shift_W - shift_W.dot(axis_W_) * axis_W_;
   const double limit = options_.farthest_shift;
   for (int i = 0; i < 3; ++i) place_W_[i] = std::clamp(place_W_[i] + across_W[i], cues_.place_W[i] - limit, cues_.place_W[i] + limit);
-  place_W_.z() = std::max(place_W_.z(), cues_.lowest_z);
+  place_W_.z() = std::max(place_W_.z(), lowest_z_);
 }
 
 Posture ScriptedPickup::aboveThePinch() const {

@@ -3,10 +3,12 @@
 //   listen - reach - close - read - (shift: reach) - squeeze - lift - hold - return - rest
 //                ^-------------------- force lost, or nothing found --------'
 //
-// close    both fingers move inwards until both feel a contact
+// close    both fingers move inwards until both feel a contact; the one that feels it first waits for the other
 // read     hold still, then read the pads; when the object seems further than `shift_threshold` from the middle between the fingertips,
 //          open, shift the pinch by gain x estimate and close again; where the tactors stand still there is nothing to read
 // squeeze  go on inwards until the felt grip is the wanted one; lift straight up; hold until the tone
+// A finger that is pushed from below while reaching or closing stands on the dish: the object's middle is higher than believed by what it is
+// above a fingertip on the dish; open and begin again there.
 // A loss of force for longer than the reflex time means that the object got away (slipped out, dropped, or was expelled): open, go down,
 // shift by a random step, and grip 1.3 times as hard. The same plan in every condition; no parameter knows an outcome.
 //
@@ -65,6 +67,7 @@ class ScriptedPickup final : public Participant {
   void shiftPinch(const Vec3& shift_W);
   void retry(bool harder);
   bool lostIt();
+  bool standsOnDish();
   Posture aboveThePinch() const;
   double touchingHalf() const;
   devices::HandPull pullOf(int finger) const;
@@ -85,6 +88,7 @@ class ScriptedPickup final : public Participant {
   double contact_time_ = 0;      // how long both fingers have felt something [s]
   Vec3 axis_W_ = Vec3::UnitX();  // of the pinch, from finger 0 to finger 1
   Vec3 place_W_ = Vec3::Zero();  // believed place of the object's centre [m]
+  double lowest_z_ = 0;          // believed height of a fingertip that stands on the dish [m]
   Posture home_, posture_;       // of the equilibria
   Reach reach_;
   double wanted_grip_ = 0;  // [N]

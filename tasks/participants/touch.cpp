@@ -9,6 +9,7 @@ void Touch::begin(const SensingLimits& limits, const TrialCues& cues, const Body
   *this = Touch();
   limits_ = limits;
   cues_ = cues;
+  push_W_.fill(Vec3::Zero());
   sense_ = sense;
 }
 
@@ -19,8 +20,9 @@ void Touch::feel(const Percept& percept) {
   for (int i = 0; i < kHandFingers; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const FingerPercept& finger = percept.fingers[k];
-    const double pressed = std::max(0.0, -(cues_.fingers[k].q_WD * finger.f_D).dot(padAxis_W(i, cues_.fingers[k].pad_normal_F)));
-    force_[k] += (pressed - force_[k]) * dt / (limits_.force_lag + dt);
+    push_W_[k] += (cues_.fingers[k].q_WD * finger.f_D - push_W_[k]) * dt / (limits_.force_lag + dt);
+    force_[k] = std::max(0.0, -push_W_[k].dot(padAxis_W(i, cues_.fingers[k].pad_normal_F)));
+    touched_for_[k] = push_W_[k].norm() > limits_.force_floor ? touched_for_[k] + dt : 0;
     const auto& place = finger.tactile.place_L;
     if (!finger.tactile.valid || !place) continue;
     if (!place_at_start_[k]) place_at_start_[k] = place;
@@ -33,6 +35,24 @@ Vec3 Touch::padAxis_W(int finger, const Vec3& axis_F) const {
   const auto k = static_cast<std::size_t>(finger);
   const Quat q_DF = percept_.fingers[k].arm.q_DF.value_or(Quat::Identity());
   return sense_.q_felt_true[k] * (cues_.fingers[k].q_WD * (q_DF * axis_F));
+}
+
+std::optional<int> Touch::pushedFromBelow(Random& random) {
+  std::optional<int> from_below;
+  for (int i = 0; i < kHandFingers; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    if (touched_for_[k] < limits_.reflex_time) continue;
+    touched_for_[k] = limits_.reflex_time - limits_.reading_time;
+    const Vec3 felt_W = drawRotation(limits_.direction_sd, random) * push_W_[k];
+    if (felt_W.z() > -felt_W.dot(padAxis_W(i, cues_.fingers[k].pad_normal_F))) from_below = i;
+  }
+  return from_below;
+}
+
+Vec3 Touch::feltTip_W(int finger) const {
+  const auto k = static_cast<std::size_t>(finger);
+  const FingerCue& cue = cues_.fingers[k];
+  return cue.q_WD * percept_.fingers[k].arm.p_DF + cue.p_WD - sense_.misplacement_W[k];
 }
 
 std::optional<Vec3> Touch::readPlace(Random& random) const {

@@ -7,8 +7,8 @@
 //   d  direction from the fingertip's centre to the contact, p_fo  from the fingertip to the object's centre, across the pad [m].
 // A spherical fingertip on a spherical object touches on the line of the centres, hence the second equation.
 //
-// The direction of the force is not read: in a quasi-static pinch both forces lie along the line that joins the contacts, wherever these
-// are, so that it doesn't tell whether the fingers oppose each other.
+// The direction of a force tells only whether a finger stands on the dish or touches the object's side. It doesn't tell where on the object:
+// in a quasi-static pinch both forces lie along the line that joins the contacts, whether or not the fingers oppose each other.
 #pragma once
 #include <array>
 #include <optional>
@@ -31,6 +31,12 @@ class Touch {
   // How long at least one finger has felt nothing [s].
   double lossTime() const { return loss_time_; }
 
+  // Reads the direction of the push on a finger that has felt one for the reflex time, and again every reading time. Returns a finger whose
+  // push seems to come from below rather than against its pad.
+  std::optional<int> pushedFromBelow(Random& random);
+  // Where the body believes a fingertip's centre is [m].
+  Vec3 feltTip_W(int finger) const;
+
   // A deliberate reading of the pads: where the object's centre lies from the middle between the fingertips, across the pads [m], W.
   // Absent unless both tactors have moved since the trial began: a still one tells nothing.
   std::optional<Vec3> readPlace(Random& random) const;
@@ -43,7 +49,9 @@ class Touch {
   TrialCues cues_;
   BodySense sense_;
   Percept percept_;
-  std::array<double, kHandFingers> force_{};
+  std::array<double, kHandFingers> force_{};        // against the pad [N]
+  std::array<Vec3, kHandFingers> push_W_;           // felt push [N]
+  std::array<double, kHandFingers> touched_for_{};  // [s]
   std::array<bool, kHandFingers> moved_{};
   std::array<std::optional<Vec2>, kHandFingers> place_at_start_;
   double loss_time_ = 0;
