@@ -1,15 +1,18 @@
 // connectivity: which triangle lies across each edge, which edges are sharp, and the normal at each corner.
 //
-//   n_corner = normalised sum over the corner's fan of alpha_i n_i,  alpha_i  the triangle's angle there [rad], n_i  its normal
+//   n_corner = normalised sum over the corner's fan of  (e_i x f_i / |e_i||f_i|) (|e_i||f_i|)^p,   e_i, f_i  a triangle's two edges there [m]
+//   p = -1 where the fan's edges are of about one length (up to 2 : 1), +1 where they aren't (from 6 : 1), between in the logarithm
 //
 // Edge i of a triangle goes from its corner i to corner (i + 1) mod 3. A fan is the triangles around a vertex between two sharp edges, so a
-// vertex on a crease has several normals. Where the file has normals they replace n_i (weight 1 each), and an edge is sharp where the two
+// vertex on a crease has several normals. Where the file has normals their mean replaces that sum, and an edge is sharp where the two
 // sides' normals differ at an end by more than kSameNormal; elsewhere it is sharp where the facets' angle exceeds the crease angle.
 // A fan that ends at a sharp edge sees one side of its vertex only, and its facets' mean would lean away from the edge by half a facet's
 // angle (0.1 mm of shape on a 15-degree cylinder of 25 mm). Its normal is continued instead, as along a circular arc, from a neighbour q
 // across the crease whose fan is whole: n = n_q - 2 (n_q . g) g, g the direction to q; and where creases meet, from the neighbours along
 // them. The facets' mean remains where there is no such neighbour, or where it differs by more than 20 degrees.
-// Source: G. Thürmer, C. A. Wüthrich, J. Graphics Tools 3(1), 1998 (angle weights).
+// Source for p = -1: N. Max, "Weights for computing vertex normals from facet normals", J. Graphics Tools 4(2), 1999: exact on spheres, where
+// weights by angle lean by up to 0.6 degrees, which a finger feels as 23 um instead of 3 on a sphere of 320 triangles and 20 mm. But where
+// a large plane meets a small rounding it takes the rounding's side; p = +1, weights by area, takes the plane's.
 #pragma once
 #include <array>
 #include <cstdint>

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <limits>
 
 #include "contact/mesh/connectivity.h"
 #include "contact/mesh/union_find.h"
@@ -56,16 +57,18 @@ class CornerNormalFinder {
     return angleBetween(facet_normals_[t], facet_normals_[s]) > crease_angle;
   }
 
-  double angleAt(std::size_t t, std::size_t i) const {
-    return angleBetween(corner(t, i + 1) - corner(t, i), corner(t, i + 2) - corner(t, i));
-  }
-  Vec3 weightedNormal(std::size_t t, std::size_t i) const { return angleAt(t, i) * facet_normals_[t]; }
-
   // How a fan ends: not at all (or at one edge, seen from both sides), along a crease that goes straight on, or where creases meet.
   enum class FanEnd { none, straight, corner };
 
   struct Fan {
     Vec3 out = Vec3::Zero(), in = Vec3::Zero();  // unit directions to the other ends of its first and last edge, if sharp
+    double shortest = std::numeric_limits<double>::infinity(), longest = 0;  // of its edges at the vertex [m]
+
+    // The exponent p of the edges' lengths in the weights.
+    double exponent() const {
+      constexpr double kEven = 2, kUneven = 6;  // longest over shortest
+      return std::clamp(2 * std::log(longest / shortest / kEven) / std::log(kUneven / kEven), 0.0, 2.0) - 1;
+    }
     FanEnd end() const {
       constexpr double kStraight = -0.5, kSame = 0.999;  // cosines
       const double cosine = out.dot(in);
@@ -94,20 +97,35 @@ class CornerNormalFinder {
       Fan& fan = fans.fan[fans.of_corner[c]];
       if (sharp[t][i]) fan.out = direction(t, i, i + 1);
       if (sharp[t][(i + 2) % 3]) fan.in = direction(t, i, i + 2);
+      for (const std::size_t j : {i + 1, i + 2}) {
+        const double length = (corner(t, j) - corner(t, i)).norm();
+        fan.shortest = std::min(fan.shortest, length);
+        fan.longest = std::max(fan.longest, length);
+      }
     }
     return fans;
+  }
+
+  Vec3 weightedNormal(std::size_t t, std::size_t i, const Fan& fan) const {
+    const Vec3 e = corner(t, i + 1) - corner(t, i), f = corner(t, i + 2) - corner(t, i);
+    const double ef = e.norm() * f.norm();
+    return e.cross(f) / ef * std::pow(ef / (fan.longest * fan.longest), fan.exponent());
   }
 
   Normals averageOverFans(const Fans& fans) const {
     const std::size_t corners = fans.of_corner.size();
     std::vector<Vec3> from_file(corners, Vec3::Zero()), from_facets(corners, Vec3::Zero());
+    std::vector<double> weight(corners, 0);
     for (std::size_t c = 0; c < corners; ++c) {
-      from_facets[fans.of_corner[c]] += weightedNormal(c / 3, c % 3);
+      const Vec3 weighted = weightedNormal(c / 3, c % 3, fans.fan[fans.of_corner[c]]);
+      from_facets[fans.of_corner[c]] += weighted;
+      weight[fans.of_corner[c]] += weighted.norm();
       if (const Vec3* n = fileNormal(c / 3, c % 3)) from_file[fans.of_corner[c]] += *n;
     }
     Normals normals(mesh_.triangles.size());
     for (std::size_t c = 0; c < corners; ++c) {
-      normals[c / 3][c % 3] = directionOf(from_file[fans.of_corner[c]], from_facets[fans.of_corner[c]], facet_normals_[c / 3]);
+      const std::size_t fan = fans.of_corner[c];
+      normals[c / 3][c % 3] = directionOf(from_file[fan], from_facets[fan] / weight[fan], facet_normals_[c / 3]);
     }
     return normals;
   }
@@ -130,7 +148,7 @@ class CornerNormalFinder {
         if (along > least_along[fan] + kAsSquare) continue;
         if (along < least_along[fan] - kAsSquare) sum[fan].setZero();
         least_along[fan] = std::min(along, least_along[fan]);
-        sum[fan] += angleAt(t, i) * mirrored(normals[t][j], g);
+        sum[fan] += mirrored(normals[t][j], g);
       }
     }
     adopt(sum, fans, normals);

@@ -74,11 +74,11 @@ EdgeFoot footOnEdge(const SharpEdge& edge, const Vec3& C, double s) {
     const double flat = x.E1.dot(x.D);
     const double slope = std::max(flat - R.dot(x.D1), 0.1 * flat);
     double next = std::clamp(s + g / slope, 0.0, 1.0);
+    const bool is_solved = std::abs(next - s) * x.E1.norm() < kEdgeTolerance;
     const bool end_unknown = (next == 0 && low == 0) || (next == 1 && high == 1);  // an end may be tried, an inner bracket not be left
-    if (!end_unknown && (next <= low || next >= high)) next = 0.5 * (low + high);
-    const double moved = std::abs(next - s) * x.E1.norm();
+    if (!is_solved && !end_unknown && (next <= low || next >= high)) next = 0.5 * (low + high);
     s = next;
-    if (moved < kEdgeTolerance) break;
+    if (is_solved) break;
   }
   return describe(edge, C, s);
 }

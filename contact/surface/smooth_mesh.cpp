@@ -70,7 +70,7 @@ struct SmoothMesh::Data {
   double concave_radius;
 
   bool isContact(const ShellContact& followed, const Vec3& C, double r, const Foot& start) const;
-  ShellContact nearestWithin(const Vec3& C, double bound) const;
+  ShellContact nearestWithin(const Vec3& C, double r, double bound) const;
 };
 
 // Whether the followed solution is one that the finger touches. A centre that begins well above the surface and ends below it has been led
@@ -80,11 +80,19 @@ bool SmoothMesh::Data::isContact(const ShellContact& followed, const Vec3& C, do
   return followed.h >= 0 || tangentContact(net, C, start).h < 0.25 * r;
 }
 
-// The nearest solution; not converged if there is none nearer than `bound`.
-ShellContact SmoothMesh::Data::nearestWithin(const Vec3& C, double bound) const {
+// The nearest solution; not converged if there is none nearer than `bound`. In free space a seed that leads to no solution as near (shading
+// normals may point past the nearest place by a few degrees) stands for itself: far from contact the distance counts, not the direction.
+ShellContact SmoothMesh::Data::nearestWithin(const Vec3& C, double r, double bound) const {
+  constexpr double kStrayed = 20e-6;  // [m]
   const SurfaceSeed seed = search.nearest(net, C, bound);
-  ShellContact contact;
-  if (seed.found) contact = solveShell(net, C, seed.foot);
+  if (!seed.found) return {};
+  ShellContact contact = solveShell(net, C, seed.foot);
+  const bool strayed = !contact.converged || std::abs(contact.h) > seed.distance + kStrayed;
+  if (strayed && seed.distance > r) {
+    const PatchPoint x = evaluate(net.cell(seed.foot.triangle).patch, seed.foot.b[1], seed.foot.b[2]);
+    const double sign = (C - x.S).dot(x.N) < 0 ? -1 : 1;
+    return {seed.foot, sign / seed.distance * (C - x.S), sign * seed.distance, true};
+  }
   contact.converged = contact.converged && std::abs(contact.h) < bound;
   return contact;
 }
@@ -109,7 +117,7 @@ SurfaceContact SmoothMesh::querySphere(const Vec3& p_BC, double r, SurfaceTracke
   if (tracked) followed = solveShell(d.net, p_BC, start);
   if (d.isContact(followed, p_BC, r, start)) return report(followed, p_BC, r, kQueryOk, tracker);
 
-  const ShellContact nearest = d.nearestWithin(p_BC, followed.converged ? std::abs(followed.h) : kInfinity);
+  const ShellContact nearest = d.nearestWithin(p_BC, r, followed.converged ? std::abs(followed.h) : kInfinity);
   if (followed.converged) return report(nearest.converged ? nearest : followed, p_BC, r, kQueryOk, tracker);
 
   // A contact that was lost may come back on its own side only: the far side of a thin wall is as near as this one.

@@ -48,8 +48,7 @@ TEST(Connectivity, ABoxHasOneNormalPerSideAtEachCorner) {
   }
 }
 
-// A regular solid's symmetry makes the angle-weighted mean exact; vertices of its subdivision haven't got it all, and their normals lean by
-// up to 0.6 degrees (coarse) and less (fine).
+// Max's weights are exact where the vertices lie on a sphere.
 TEST(Connectivity, NormalsOfAnIcospherePointOutwards) {
   for (const int level : {1, 2, 3}) {
     const TriangleMesh mesh = icosphere(0.02, level);
@@ -61,7 +60,7 @@ TEST(Connectivity, NormalsOfAnIcospherePointOutwards) {
         worst = std::max(worst, corners.normals[t][i].cross(radial).norm());
       }
     }
-    EXPECT_LT(worst, 0.011) << level;
+    EXPECT_LT(worst, 1e-14) << level;
   }
 }
 
