@@ -14,7 +14,6 @@ using Vec4 = Eigen::Vector4d;
 
 constexpr double kRoundOff = 1e-15;  // 4 ulp of a number of size 1
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 struct Sample {
   Vec4 y = Vec4::Zero();  // the fourth is 0 in a contact of three rows
