@@ -1,7 +1,6 @@
 #include "tasks/experiments/pickup_scene.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "contact/shape/pair_query.h"
 #include "engine/world/state.h"
@@ -42,13 +41,6 @@ grasp::FingerModel fingerModel(const SpherePickupOptions& options, int finger) {
   return model;
 }
 
-// The height under which a fingertip beside the object touches the dish.
-double lowestFinger(const SpherePickupOptions& options, double half_width) {
-  const double beside = half_width + options.finger_radius;
-  const double inner = options.dish_radius - options.finger_radius;
-  return options.dish_radius - std::sqrt(std::max(inner * inner - beside * beside, 0.0));
-}
-
 TrialCues cuesOf(const SpherePickupOptions& options, const PickupObject& object, const PickupScene& scene, std::uint64_t seed) {
   TrialCues cues;
   cues.seed = seed;
@@ -56,7 +48,7 @@ TrialCues cuesOf(const SpherePickupOptions& options, const PickupObject& object,
   cues.half_width = object.half_width;
   cues.mass = options.mass;
   cues.lift_height = options.success_height;
-  cues.lowest_z = lowestFinger(options, object.half_width);
+  cues.dish_radius = options.dish_radius;
   for (std::size_t i = 0; i < cues.fingers.size(); ++i) {
     const grasp::FingerModel& finger = scene.model.grasp.fingers[i];
     const Pose& X_WD = scene.model.mounts[i].X_WD;

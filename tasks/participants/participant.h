@@ -51,7 +51,7 @@ struct TrialCues {
   double half_width = 0.02;     // of the object between the fingers [m]
   double mass = 0.075;          // of the object [kg]
   double lift_height = 0.050;   // to lift it at least so high [m]
-  double lowest_z = 0;          // under this height a fingertip's centre can't get beside the object [m]
+  double dish_radius = 0.15;    // of curvature of the dish that the object lies in, its lowest point at W's origin [m]
 };
 
 // What the participant is doing; for records and for the judge, who counts as squeezes only what was meant to lift.

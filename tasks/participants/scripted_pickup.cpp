@@ -28,8 +28,8 @@ void ScriptedPickup::begin(const TrialCues& cues) {
   axis_W_ = span_W.normalized();
   home_ = {0.5 * (cues.fingers[0].home_W + cues.fingers[1].home_W), 0.5 * span_W.norm()};
   posture_ = home_;
-  place_W_ = cues.place_W;
-  lowest_z_ = cues.lowest_z;
+  believed_W_ = cues.place_W;
+  step_W_.setZero();
   wanted_grip_ = options_.grip_safety * cues.mass * options_.gravity / (2 * options_.expected_mu);
   shifts_ = 0;
   now_ = dt_ = contact_time_ = 0;
@@ -78,7 +78,7 @@ HandAction ScriptedPickup::act(const Percept& percept) {
 
 void ScriptedPickup::listen() {
   if (cue_ == Cue::kStart) heard_ = now_;
-  if (heard_ != kNotHeard && now_ >= heard_ + limits_.reaction_time) enterReach(aboveThePinch(), PickupPhase::kReach);
+  if (heard_ != kNotHeard && now_ >= heard_ + limits_.reaction_time) enterReach(besideThePinch(), PickupPhase::kReach);
 }
 
 void ScriptedPickup::goAlong() {
@@ -87,18 +87,19 @@ void ScriptedPickup::goAlong() {
   if (reach_.over(now_)) enter(phase_ == PickupPhase::kReach ? PickupPhase::kClose : PickupPhase::kRest);
 }
 
-// Inwards and down to the believed place, then straight inwards; a finger that touches alone waits for the other. Fingertips that meet have
-// found nothing between them.
+// Inwards; a finger that touches alone waits for the other. Fingertips that meet have found nothing between them.
 void ScriptedPickup::close() {
   if (standsOnDish()) return;
   const double step = options_.close_speed * dt_;
   posture_.half -= step;
-  if (touch_.feels(0) != touch_.feels(1)) place_W_ += (touch_.feels(0) ? -step : step) * axis_W_;
-  const double above = std::max(posture_.half - touchingHalf(), 0.0) / options_.clearance;
-  posture_.centre_W = place_W_ + above * options_.approach_height * Vec3::UnitZ();
+  if (touch_.feels(0) != touch_.feels(1)) {
+    const Vec3 shift_W = (touch_.feels(0) ? -step : step) * axis_W_;
+    posture_.centre_W += shift_W;
+    believed_W_ += shift_W;
+  }
   contact_time_ = touch_.feelsBoth() ? contact_time_ + dt_ : 0;
   if (contact_time_ >= options_.contact_time) return enter(PickupPhase::kRead);
-  if (posture_.half <= cues_.fingers[0].tip_radius) retry(false);
+  if (posture_.half <= cues_.fingers[0].tip_radius) retry(options_.search_shift_sd);
 }
 
 void ScriptedPickup::read() {
@@ -107,8 +108,9 @@ void ScriptedPickup::read() {
   const bool worth_a_shift = offset_W && offset_W->norm() > options_.shift_threshold;
   if (worth_a_shift && shifts_ < options_.max_shifts) {
     ++shifts_;
-    shiftPinch(options_.shift_gain * *offset_W);
-    return enterReach(aboveThePinch(), PickupPhase::kReach);
+    believe(believed_W_ + step_W_ + options_.shift_gain * *offset_W);
+    step_W_.setZero();
+    return enterReach(besideThePinch(), PickupPhase::kReach);
   }
   felt_factor_ = 1 + limits_.force_sd * random_.normal();
   enter(PickupPhase::kSqueeze);
@@ -148,39 +150,45 @@ void ScriptedPickup::raise(double height) { enterReach({posture_.centre_W + heig
 
 bool ScriptedPickup::lostIt() {
   if (touch_.lossTime() < limits_.reflex_time) return false;
-  retry(true);
+  wanted_grip_ = std::min(wanted_grip_ * options_.grip_growth, options_.grip_max);
+  retry(options_.random_shift_sd);
   return true;
 }
 
 bool ScriptedPickup::standsOnDish() {
   const auto finger = touch_.pushedFromBelow(random_);
   if (!finger) return false;
-  const double height = touch_.feltTip_W(*finger).z();
-  if (height > cues_.lowest_z + options_.farthest_shift) return false;  // the dish can't be so high: it is the object
-  lowest_z_ = height;
-  shiftPinch((lowest_z_ + cues_.place_W.z() - cues_.lowest_z - place_W_.z()) * Vec3::UnitZ());
-  enterReach(aboveThePinch(), PickupPhase::kReach);
+  const Vec3 felt_W = touch_.feltTip_W(*finger);
+  const double error = felt_W.z() - heightOnDish((felt_W - posture_.centre_W).norm());
+  if (std::abs(error) > options_.farthest_shift) return false;  // the dish can't be there: it is the object
+  believe({believed_W_.x(), believed_W_.y(), cues_.place_W.z() + error});
+  step_W_.z() = std::max(step_W_.z(), 0.0);
+  enterReach(besideThePinch(), PickupPhase::kReach);
   return true;
 }
 
-void ScriptedPickup::retry(bool harder) {
-  if (harder) wanted_grip_ = std::min(wanted_grip_ * options_.grip_growth, options_.grip_max);
+// Where a fingertip's centre is when it stands on the dish so far beside the middle [m].
+double ScriptedPickup::heightOnDish(double beside) const {
+  const double inner = cues_.dish_radius - cues_.fingers[0].tip_radius;
+  return cues_.dish_radius - std::sqrt(std::max(inner * inner - beside * beside, 0.0));
+}
+
+void ScriptedPickup::retry(double step_sd) {
   shifts_ = 0;
-  shiftPinch(options_.random_shift_sd * random_.normal3());
-  enterReach(aboveThePinch(), PickupPhase::kReach);
+  step_W_ = step_sd * random_.normal3();
+  step_W_ -= step_W_.dot(axis_W_) * axis_W_;
+  enterReach(besideThePinch(), PickupPhase::kReach);
 }
 
-// Only across the pinch, no further from the place first believed than one's own placement can be wrong, and not into the table.
-void ScriptedPickup::shiftPinch(const Vec3& shift_W) {
-  const Vec3 across_W = shift_W - shift_W.dot(axis_W_) * axis_W_;
-  const double limit = options_.farthest_shift;
-  for (int i = 0; i < 3; ++i) place_W_[i] = std::clamp(place_W_[i] + across_W[i], cues_.place_W[i] - limit, cues_.place_W[i] + limit);
-  place_W_.z() = std::max(place_W_.z(), lowest_z_);
+// No further across the pinch from the place told than one's own placement can be wrong.
+void ScriptedPickup::believe(const Vec3& place_W) {
+  const Vec3 shift_W = place_W - cues_.place_W;
+  const Vec3 along_W = shift_W.dot(axis_W_) * axis_W_;
+  const Vec3 across_W = shift_W - along_W;
+  believed_W_ = cues_.place_W + along_W + across_W * std::min(1.0, options_.farthest_shift / std::max(across_W.norm(), 1e-9));
 }
 
-Posture ScriptedPickup::aboveThePinch() const {
-  return {place_W_ + options_.approach_height * Vec3::UnitZ(), touchingHalf() + options_.clearance};
-}
+Posture ScriptedPickup::besideThePinch() const { return {believed_W_ + step_W_, touchingHalf() + options_.clearance}; }
 
 double ScriptedPickup::touchingHalf() const { return cues_.fingers[0].tip_radius + cues_.half_width; }
 

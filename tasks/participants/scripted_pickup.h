@@ -10,7 +10,8 @@
 // A finger that is pushed from below while reaching or closing stands on the dish: the object's middle is higher than believed by what it is
 // above a fingertip on the dish; open and begin again there.
 // A loss of force for longer than the reflex time means that the object got away (slipped out, dropped, or was expelled): open, go down,
-// shift by a random step, and grip 1.3 times as hard. The same plan in every condition; no parameter knows an outcome.
+// grip 1.3 times as hard, a random step away from where the object is believed to be. What is believed changes by readings, by the dish and by
+// the first touch alone, never by a random step. The same plan in every condition; no parameter knows an outcome.
 //
 // The hand pulls each fingertip towards a place (its equilibrium); grip comes from equilibria inside the object.
 #pragma once
@@ -24,14 +25,14 @@ namespace pincer::tasks {
 
 struct ScriptedPickupOptions {
   double clearance = 0.015;        // between fingertip and believed surface before closing [m] (choice)
-  double approach_height = 0.010;  // above the pinch place before closing [m] (choice)
   double close_speed = 0.032;      // [m/s], the slowest that Doxon (2014) measured
   double contact_time = 0.05;      // both fingers must feel something for so long [s] (choice)
   double shift_threshold = 5e-3;   // [m] (design)
   double shift_gain = 0.75;        // placement_sd^2 / (placement_sd^2 + error^2 of a reading, 4 mm): the best linear estimate [-]
   int max_shifts = 3;              // per attempt (choice)
-  double random_shift_sd = 5e-3;   // after a failure, per axis across the pinch [m]: as far as what is worth a shift (choice)
-  double farthest_shift = 0.014;   // from the first believed place, per axis [m]: twice the placement error's SD
+  double random_shift_sd = 5e-3;   // after a loss, per axis across the pinch [m]: as far as what is worth a shift (choice)
+  double search_shift_sd = 14e-3;  // after nothing was found [m]: as far as the placement can be wrong (choice)
+  double farthest_shift = 14e-3;   // from the place told, per axis [m]: twice the placement error's SD
   double expected_mu = 0.52;       // before the first failure [-]: geometric mean of the frictions met in training, 0.3 .. 0.9
   double grip_safety = 2.0;        // wanted grip over m g / (2 expected_mu) [-] (choice)
   double grip_growth = 1.3;        // after a failure [-] (design)
@@ -64,11 +65,12 @@ class ScriptedPickup final : public Participant {
   void enter(PickupPhase phase);
   void enterReach(const Posture& goal, PickupPhase phase);
   void raise(double height);
-  void shiftPinch(const Vec3& shift_W);
-  void retry(bool harder);
+  void believe(const Vec3& place_W);
+  void retry(double step_sd);
   bool lostIt();
   bool standsOnDish();
-  Posture aboveThePinch() const;
+  Posture besideThePinch() const;
+  double heightOnDish(double beside) const;
   double touchingHalf() const;
   devices::HandPull pullOf(int finger) const;
 
@@ -82,14 +84,14 @@ class ScriptedPickup final : public Participant {
 
   PickupPhase phase_ = PickupPhase::kListen;
   Cue cue_ = Cue::kNone;
-  double now_ = 0, dt_ = 0;      // [s]
-  double entered_ = 0;           // when the phase began [s]
-  double heard_ = 0;             // when the start tone sounded [s], negative before
-  double contact_time_ = 0;      // how long both fingers have felt something [s]
-  Vec3 axis_W_ = Vec3::UnitX();  // of the pinch, from finger 0 to finger 1
-  Vec3 place_W_ = Vec3::Zero();  // believed place of the object's centre [m]
-  double lowest_z_ = 0;          // believed height of a fingertip that stands on the dish [m]
-  Posture home_, posture_;       // of the equilibria
+  double now_ = 0, dt_ = 0;         // [s]
+  double entered_ = 0;              // when the phase began [s]
+  double heard_ = 0;                // when the start tone sounded [s], negative before
+  double contact_time_ = 0;         // how long both fingers have felt something [s]
+  Vec3 axis_W_ = Vec3::UnitX();     // of the pinch, from finger 0 to finger 1
+  Vec3 believed_W_ = Vec3::Zero();  // place of the object's centre [m]
+  Vec3 step_W_ = Vec3::Zero();      // random step from there to where the pinch is tried [m]
+  Posture home_, posture_;          // of the equilibria
   Reach reach_;
   double wanted_grip_ = 0;  // [N]
   double felt_factor_ = 1;  // of felt over true magnitude, in this squeeze [-]
