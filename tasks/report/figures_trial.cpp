@@ -166,7 +166,7 @@ Figure trialFigure(const TrialTrace& trace) {
   figure.name = "trial_" + fileNamePart(trace.trial.condition);
   figure.title = fmt::format("{}: a representative trial", conditionLabel(trace.trial.condition));
   figure.caption = fmt::format(
-      "This is {}; its {} squeezes are the median of the condition. From the top: events; height of the object above its start; normal "
+      "This is {}; squeezes: {}, the median of the condition. From the top: events; height of the object above its start; normal "
       "force "
       "of both fingers; tangential force of the index finger and of the thumb with the limit µₛ N (N: normal force) beyond which a contact "
       "slides, shaded while it does.",
