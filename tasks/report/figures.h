@@ -1,7 +1,7 @@
 // figures: the pictures of a sphere-pickup session, as gnuplot scripts with their data.
 //
-// Data files keep SI units but for what is drawn in mm (then the column says so). Colours: M. Okabe, K. Ito, "Color universal design", 2008,
-// distinguishable with any colour vision; finger 0 is the index finger, finger 1 the thumb.
+// Data files keep SI units but for what is drawn in mm (then the column says so). Colours: M. Okabe, K. Ito, "Color universal design",
+// 2008, distinguishable with any colour vision; finger 0 is the index finger, finger 1 the thumb.
 #pragma once
 #include <array>
 #include <optional>

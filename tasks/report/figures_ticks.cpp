@@ -38,7 +38,8 @@ struct Percentile {
 };
 constexpr Percentile kPercentiles[] = {{"median", 0.5}, {"99 % ≤", 0.99}, {"99.9 % ≤", 0.999}, {"largest", 1.0}};
 
-// Labels step down the page, above the bars, so that close percentiles don't overprint each other; those in the right half end at their line.
+// Labels step down the page, above the bars, so that close percentiles don't overprint each other; those in the right half end at their
+// line.
 std::string percentileLines(const std::vector<double>& times, double middle) {
   std::string script;
   double height = 0.96;

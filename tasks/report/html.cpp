@@ -10,14 +10,16 @@ namespace pincer::tasks {
 namespace {
 
 constexpr const char* kStyle = R"(
-body { margin: 2rem auto; max-width: 60rem; padding: 0 1rem; background: #fff; color: #222; font: 16px/1.5 "DejaVu Sans", Verdana, sans-serif; }
+body { margin: 2rem auto; max-width: 60rem; padding: 0 1rem; }
+body { background: #fff; color: #222; font: 16px/1.5 "DejaVu Sans", Verdana, sans-serif; }
 h1 { font-size: 1.6rem; } h2 { font-size: 1.2rem; margin-top: 2.5rem; }
 table { border-collapse: collapse; font-size: 0.8rem; font-variant-numeric: tabular-nums; }
 td, th { padding: 0.25rem 0.55rem; text-align: right; border-bottom: 1px solid #e2e2e2; white-space: nowrap; }
 td:first-child, th:first-child { text-align: left; }
 tr.all td { font-weight: bold; border-bottom: 2px solid #999; }
 tr:target td { background: #fff3cd; }
-.facts th { text-align: left; font-weight: normal; color: #666; } .facts td { text-align: left; white-space: normal; overflow-wrap: anywhere; }
+.facts th { text-align: left; font-weight: normal; color: #666; }
+.facts td { text-align: left; white-space: normal; overflow-wrap: anywhere; }
 .wide { overflow-x: auto; }
 figure { margin: 1rem 0; } img { width: 100%; height: auto; } figcaption, .note { font-size: 0.85rem; color: #444; }
 .warning { border-left: 0.4rem solid #D55E00; background: #fdf1e9; padding: 0.6rem 1rem; }

@@ -3,8 +3,8 @@
 //   <name>.html            what was run, the table, all figures inside it as PNG
 //   <name>_figures/        each figure as PNG and the numbers that it draws as CSV
 //
-// Files appear whole or not at all and replace older ones. Needs gnuplot. Throws InputError (path or program, cause, remedy). A session that
-// was killed or aborted gets its report too; it says so at the top.
+// Files appear whole or not at all and replace older ones. Needs gnuplot. Throws InputError (path or program, cause, remedy). A session
+// that was killed or aborted gets its report too; it says so at the top.
 #pragma once
 #include <string>
 #include <vector>

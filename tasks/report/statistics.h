@@ -2,8 +2,8 @@
 //
 //   mean +- t s / sqrt(n),   s^2 = sum (x - mean)^2 / (n - 1),   P(|T| < t) = 0.95 for Student's T with n - 1 degrees of freedom
 //
-// Source of the distribution: M. Abramowitz, I. A. Stegun, Handbook of Mathematical Functions, 1964, equations 26.7.3 (odd) and 26.7.4 (even
-// degrees of freedom): finite sums, exact. t follows by bisection, to round-off.
+// Source of the distribution: M. Abramowitz, I. A. Stegun, Handbook of Mathematical Functions, 1964, equations 26.7.3 (odd) and 26.7.4
+// (even degrees of freedom): finite sums, exact. t follows by bisection, to round-off.
 #pragma once
 #include <vector>
 

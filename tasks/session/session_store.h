@@ -2,9 +2,10 @@
 //
 //   tick --pushSample--> ring --> writer thread --a transaction at least every 50 ms--> file (write-ahead log)
 //
-// A finished trial is committed and synchronised to the disk before finishTrial() returns; samples and events reach the file within 50 ms and
-// so survive a kill of the process (after a power cut the last ones may be missing). The column `state` of table `session` reads "running"
-// until close() writes "complete" or a failure "aborted: <why>"; a killed session therefore stays "running", and a reader says so.
+// A finished trial is committed and synchronised to the disk before finishTrial() returns; samples and events reach the file within 50 ms
+// and so survive a kill of the process (after a power cut the last ones may be missing). The column `state` of table `session` reads
+// "running" until close() writes "complete" or a failure "aborted: <why>"; a killed session therefore stays "running", and a reader says
+// so.
 //
 // Errors: InputError with path, cause and remedy. What fails in the writer thread is thrown by the next call and by close().
 #pragma once
@@ -35,8 +36,8 @@ class SessionWriter {
   SessionWriter& operator=(SessionWriter&&) = delete;
   ~SessionWriter();  // without close(): state "aborted: ..."
 
-  // From one thread, the tick's. Never throws; without block_when_full also never waits. False: the sample is lost, because the ring is full
-  // (counted) or the store has failed or is closed.
+  // From one thread, the tick's. Never throws; without block_when_full also never waits. False: the sample is lost, because the ring is
+  // full (counted) or the store has failed or is closed.
   bool pushSample(const SampleRecord& sample) noexcept;
   std::uint64_t droppedSamples() const noexcept;
 
@@ -54,7 +55,7 @@ class SessionWriter {
 
 struct SampleFilter {
   std::optional<std::int64_t> trial{};  // only this trial's
-  std::int64_t stride = 1;            // every stride-th of those, the first included; >= 1
+  std::int64_t stride = 1;              // every stride-th of those, the first included; >= 1
 };
 
 // Reads a finished, a killed or even a still running session.

@@ -27,8 +27,8 @@ SampleRecord sampleAt(std::int64_t trial, std::int64_t tick) {
   return s;
 }
 
-// A child that writes trials of 100 ticks at 1 kHz until it is killed, and tells through a pipe each tick that it is about to push (>= 0) and
-// each trial that is finished (< 0).
+// A child that writes trials of 100 ticks at 1 kHz until it is killed, and tells through a pipe each tick that it is about to push (>= 0)
+// and each trial that is finished (< 0).
 [[noreturn]] void runChild(const std::string& path, int pipe) {
   const auto tell = [&](std::int64_t number) {
     if (::write(pipe, &number, sizeof number) != sizeof number) ::_exit(1);
