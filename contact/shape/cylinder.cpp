@@ -29,8 +29,7 @@ SectionPoint nearestOnCutDisc(double radius, double flat_distance, const Vec2& q
   }
   const SectionPoint round = nearestOnDisc(radius, q);
   const double beyond_flat = q.x() - flat_distance;
-  if (beyond_flat > round.distance) return {{flat_distance, q.y()}, Vec2::UnitX(), beyond_flat};
-  return round;
+  return beyond_flat > round.distance ? SectionPoint{{flat_distance, q.y()}, Vec2::UnitX(), beyond_flat} : round;
 }
 
 // The section drawn out to |z| <= half_length.
