@@ -20,7 +20,7 @@ struct SolidFrame {
   Vec3 p_WA;
 
   explicit SolidFrame(const Pose& X_WA) : R_WA(X_WA.q.toRotationMatrix()), p_WA(X_WA.p) {}
-  // Written out by columns: Eigen's 3x3 product is a call of its own, 3 times as slow here.
+  // Written out by columns: Eigen's 3x3 product is a call of its own here and cost a resting box 15 ns of 95.
   Vec3 toWorld(const Vec3& v_A) const { return v_A.x() * R_WA.col(0) + v_A.y() * R_WA.col(1) + v_A.z() * R_WA.col(2); }
   Vec3 fromWorld(const Vec3& v_W) const { return {R_WA.col(0).dot(v_W), R_WA.col(1).dot(v_W), R_WA.col(2).dot(v_W)}; }
 };
