@@ -77,9 +77,50 @@ ContactMemory remember(const WorldModel& model, const WorldState& state, const C
   return m;
 }
 
+bool isStuckAlike(const ContactMemory& x, const ContactMemory& y) {
+  constexpr double kSamePlane = 0.9999;  // cosine of the angle between the normals
+  return x.id >> 32 == y.id >> 32 && y.active && !y.sliding && x.n_W.dot(y.n_W) > kSamePlane;
+}
+
+// Makes the offsets of one face's contacts those of one rigid motion in its plane, d + theta n x rho: what no motion can undo would wedge
+// the body against its own friction, and the solver against the round-off of it. Least squares, all points alike.
+void alignOffsets(std::span<ContactMemory> face) {
+  Vec3 centre = Vec3::Zero(), d = Vec3::Zero();
+  const auto offset_W = [](const ContactMemory& m) { return Vec3(m.t1_W * m.offset_C[0] + m.n_W.cross(m.t1_W) * m.offset_C[1]); };
+  const auto count = static_cast<double>(face.size());
+  for (const ContactMemory& m : face) {
+    centre += m.arm_a_W / count;
+    d += offset_W(m) / count;
+  }
+  double turn = 0, spread = 0;
+  for (const ContactMemory& m : face) {
+    const Vec3 rho = m.arm_a_W - centre;
+    turn += m.n_W.dot(rho.cross(offset_W(m)));
+    spread += rho.squaredNorm();
+  }
+  const double theta = spread > 0 ? turn / spread : 0;
+  for (ContactMemory& m : face) {
+    const Vec3 offset = d + theta * m.n_W.cross(m.arm_a_W - centre);
+    m.offset_C[0] = m.t1_W.dot(offset);
+    m.offset_C[1] = m.n_W.cross(m.t1_W).dot(offset);
+  }
+}
+
+// Contacts of one pair follow each other, sorted by id; a face is a run of them that stick in one plane.
+void alignFaces(std::span<ContactMemory> contacts) {
+  for (std::size_t first = 0; first < contacts.size();) {
+    std::size_t end = first + 1;
+    const bool stuck = contacts[first].active && !contacts[first].sliding;
+    while (stuck && end < contacts.size() && isStuckAlike(contacts[first], contacts[end])) ++end;
+    if (end > first + 1) alignOffsets(contacts.subspan(first, end - first));
+    first = end;
+  }
+}
+
 void rememberContacts(const WorldModel& model, WorldState& state, const WorldScratch& scratch) {
   state.contact_count = 0;
   for (const Contact& c : scratch.contacts) state.contacts[state.contact_count++] = remember(model, state, c);
+  alignFaces({state.contacts.data(), static_cast<std::size_t>(state.contact_count)});
 }
 
 bool touches(const WorldScratch& scratch, int point, bool closing_only) {
