@@ -98,6 +98,7 @@ void addMeshCommand(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<MeshArguments>();
   CLI::App* mesh = app.add_subcommand("mesh", "What a mesh file holds");
   mesh->require_subcommand(1);
+  mesh->footer("\nExample:\n  pincer mesh info bunny.obj --units m");
   CLI::App* info = mesh->add_subcommand("info", "Size, mass properties and faults of a mesh");
   info->add_option("file", arguments->file, "Mesh file (OBJ)")->required();
   info->add_option("--units", arguments->units, "Length unit of the file's coordinates")

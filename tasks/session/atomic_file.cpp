@@ -10,8 +10,20 @@
 #include "contact/error.h"
 
 namespace pincer::tasks {
+namespace {
 
-AtomicFile::AtomicFile(std::string path) : path_(std::move(path)), part_(path_ + ".part"), file_(std::fopen(part_.c_str(), "wb")) {
+// The rename of commit() would put a plain file in the place of a device or a pipe.
+std::string notSpecial(std::string path) {
+  std::error_code ignored;
+  const std::filesystem::file_status status = std::filesystem::status(path, ignored);
+  if (!exists(status) || is_regular_file(status) || is_directory(status)) return path;
+  throw InputError(fmt::format("{}: is a device or a pipe, not a file. Choose the name of a file.", path));
+}
+
+}  // namespace
+
+AtomicFile::AtomicFile(std::string path)
+    : path_(notSpecial(std::move(path))), part_(path_ + ".part"), file_(std::fopen(part_.c_str(), "wb")) {
   if (!file_) fail("make");
 }
 

@@ -1,0 +1,194 @@
+// The command line: exit codes, one-line complaints, and output for machines that parses.
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+
+#include "engine/world/stage_clock.h"
+#include "tasks/app/app.h"
+#include "tasks/app/interrupt.h"
+#include "tasks/app/json_writer.h"
+#include "tasks/app/progress.h"
+#include "tasks/app/tick_times.h"
+#include "tasks/scene/strict_json.h"
+#include "tests/support/temporary_directory.h"
+
+namespace pincer::tasks {
+namespace {
+
+const std::string kScenes = PINCER_SOURCE_DIR "/tasks/scenes/";
+
+struct Result {
+  int exit_code;
+  std::string out, error;
+};
+
+Result run(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), "pincer");
+  std::vector<char*> argv;
+  for (std::string& argument : arguments) argv.push_back(argument.data());
+  ::testing::internal::CaptureStdout();
+  ::testing::internal::CaptureStderr();
+  const int exit_code = runApp(static_cast<int>(argv.size()), argv.data());
+  return {exit_code, ::testing::internal::GetCapturedStdout(), ::testing::internal::GetCapturedStderr()};
+}
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+int linesOf(const std::string& text) { return static_cast<int>(std::count(text.begin(), text.end(), '\n')); }
+
+TEST(CommandLine, HelpsEverywhereWithAnExample) {
+  for (const std::vector<std::string>& command : std::vector<std::vector<std::string>>{{}, {"sim"}, {"plan"}, {"mesh"}, {"mesh", "info"}}) {
+    std::vector<std::string> arguments = command;
+    arguments.push_back("--help");
+    const Result help = run(arguments);
+    EXPECT_EQ(help.exit_code, kExitOk);
+    EXPECT_TRUE(contains(help.out, "pincer ")) << help.out;
+    EXPECT_EQ(help.error, "");
+    EXPECT_TRUE(contains(help.out, "Example")) << help.out;
+  }
+  EXPECT_EQ(run({"--version"}).out.substr(0, 7), "pincer ");
+}
+
+TEST(CommandLine, ComplainsAboutUsageInOneLine) {
+  for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{{},
+                                                                                         {"simulate"},
+                                                                                         {"sim"},
+                                                                                         {"sim", "s.json", "--durations", "1"},
+                                                                                         {"sim", "s.json", "--duration", "-1"},
+                                                                                         {"mesh", "info", "x.obj"},
+                                                                                         {"mesh", "info", "x.obj", "--units", "furlong"},
+                                                                                         {"plan", "s.json", "--ticks", "many"}}) {
+    const Result wrong = run(arguments);
+    EXPECT_EQ(wrong.exit_code, kExitUsage);
+    EXPECT_EQ(wrong.out, "");
+    EXPECT_EQ(linesOf(wrong.error), 1) << wrong.error;
+    EXPECT_TRUE(contains(wrong.error, "--help")) << wrong.error;
+  }
+}
+
+TEST(CommandLine, ReportsBadInputAndUnwritableOutput) {
+  EXPECT_EQ(run({"sim", "/nowhere/s.json"}).exit_code, kExitBadInput);
+  EXPECT_TRUE(contains(run({"sim", "/nowhere/s.json"}).error, "/nowhere/s.json"));
+  EXPECT_EQ(run({"mesh", "info", "/nowhere/m.obj", "--units", "m"}).exit_code, kExitBadInput);
+  const Result unwritable = run({"sim", kScenes + "s4_pinch_098.json", "--out", "/nowhere/out.csv"});
+  EXPECT_EQ(unwritable.exit_code, kExitBadInput);
+  EXPECT_TRUE(contains(unwritable.error, "/nowhere/out.csv")) << unwritable.error;
+  EXPECT_EQ(run({"sim", kScenes + "s4_pinch.json", "--duration", "0.0005"}).exit_code, kExitBadInput);
+}
+
+// A plain file would take the pipe's place: the file is renamed into it once it is whole.
+TEST(SimCommand, DoesNotWriteOverAPipeOrDevice) {
+  const tests::TemporaryDirectory directory;
+  const std::string pipe = directory / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  const Result result = run({"sim", kScenes + "s4_pinch_098.json", "--out", pipe});
+  EXPECT_EQ(result.exit_code, kExitBadInput);
+  EXPECT_TRUE(contains(result.error, "pipe, not a file")) << result.error;
+  EXPECT_TRUE(std::filesystem::is_fifo(pipe));
+}
+
+TEST(SimCommand, ChecksExpectations) {
+  const Result good = run({"sim", kScenes + "s4_pinch_098.json"});
+  EXPECT_EQ(good.exit_code, kExitOk) << good.out;
+  const tests::TemporaryDirectory directory;
+  std::ofstream(directory / "s.json") << R"({"version": 1, "duration": 0.1, "bodies": [
+    {"name": "ball", "shape": {"type": "sphere", "radius": 0.02}, "mass": 1}],
+    "expect": [{"quantity": "ball.p_z", "time": "end", "value": 0, "tolerance": 1e-3, "because": "it floats"}]})";
+  const Result failed = run({"sim", directory / "s.json"});
+  EXPECT_EQ(failed.exit_code, kExitCheckFailed);
+  EXPECT_TRUE(contains(failed.out, "FAILS ball.p_z")) << failed.out;
+  EXPECT_TRUE(contains(failed.out, "because it floats")) << failed.out;
+  EXPECT_EQ(run({"sim", directory / "s.json", "--duration", "0.01"}).exit_code, kExitOk);  // its time doesn't come
+}
+
+TEST(SimCommand, WritesCsvAndJson) {
+  const tests::TemporaryDirectory directory;
+  const std::string csv = directory / "out.csv";
+  const Result result = run({"sim", kScenes + "s4_pinch_098.json", "--duration", "0.01", "--every", "0.002", "--out", csv, "--json"});
+  ASSERT_EQ(result.exit_code, kExitOk) << result.error;
+  std::ifstream in(csv);
+  const std::string table{std::istreambuf_iterator<char>(in), {}};
+  EXPECT_EQ(linesOf(table), 7);  // heading, 0, 2, ..., 10 ms
+  EXPECT_TRUE(contains(table, "time [s],sphere.p_z [m],")) << table;
+  const JsonValue json = parseJson(result.out, "stdout");
+  EXPECT_EQ(json.at("ticks").number(), 10);
+  EXPECT_EQ(json.at("bodies").array()[0].at("name").text(), "sphere");
+  EXPECT_GT(json.at("tick_us").at("median").number(), 0);
+  EXPECT_FALSE(json.at("expectations").array()[0].at("reached").boolean());
+}
+
+TEST(PlanCommand, NamesFormsAndMeasuresStages) {
+  const Result text = run({"plan", kScenes + "pickup.json", "--ticks", "200"});
+  ASSERT_EQ(text.exit_code, kExitOk) << text.error;
+  EXPECT_TRUE(contains(text.out, "sphere r 20 mm, 75 g; rotation: spherical top, exact")) << text.out;
+  EXPECT_TRUE(contains(text.out, "thumb - sphere")) << text.out;
+  const JsonValue json = parseJson(run({"plan", kScenes + "s1_tumbling_box.json", "--ticks", "100", "--json"}).out, "stdout");
+  EXPECT_EQ(json.at("stages").array().size(), engine::kStageCount + 1u);
+  EXPECT_EQ(json.at("ticks").number(), 100);
+}
+
+TEST(MeshCommand, MeasuresATetrahedron) {
+  const tests::TemporaryDirectory directory;
+  const std::string obj = directory / "tetra.obj";
+  std::ofstream(obj) << "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+  const JsonValue json = parseJson(run({"mesh", "info", obj, "--units", "cm", "--density", "6000", "--json"}).out, "stdout");
+  EXPECT_NEAR(json.at("volume").number(), 1e-6 / 6, 1e-20);
+  EXPECT_NEAR(json.at("mass").at("mass").number(), 1e-3, 1e-17);
+  EXPECT_NEAR(json.at("mass").at("p_BBcm").vector().x(), 0.0025, 1e-16);
+  EXPECT_TRUE(json.at("closed").boolean());
+}
+
+// In a process of its own, for the flag stays up.
+[[noreturn]] void interruptARun() {
+  interruptFlag();
+  std::raise(SIGINT);
+  std::string program = "pincer", command = "sim", scene = kScenes + "s4_pinch.json";
+  std::array<char*, 3> argv = {program.data(), command.data(), scene.data()};
+  std::exit(runApp(3, argv.data()));
+}
+
+TEST(Interrupt, EndsARunCleanlyWithItsOwnExitCode) { EXPECT_EXIT(interruptARun(), ::testing::ExitedWithCode(kExitInterrupted), ""); }
+
+TEST(JsonWriter, WritesWhatAStrictReaderReads) {
+  JsonWriter json;
+  json.beginObject()
+      .key("a \"quoted\"\n")
+      .value(0.1)
+      .key("nan")
+      .value(std::nan(""))
+      .key("list")
+      .beginArray()
+      .value(1)
+      .value(true)
+      .value(Vec3(1, 2, 3));
+  json.endArray().key("empty").beginObject().endObject().endObject();
+  const JsonValue read = parseJson(json.text(), "writer");
+  EXPECT_EQ(read.at("a \"quoted\"\n").number(), 0.1);
+  EXPECT_EQ(read.at("nan").kind(), JsonValue::Kind::kNull);
+  EXPECT_EQ(read.at("list").array()[2].vector(), Vec3(1, 2, 3));
+}
+
+TEST(TickTimes, GivesQuantilesByNearestRank) {
+  TickTimes times(100);
+  for (int i = 100; i >= 1; --i) times.add(i);
+  EXPECT_EQ(times.quantile(0.5), 50);
+  EXPECT_EQ(times.quantile(0.999), 100);
+  EXPECT_EQ(times.quantile(1), 100);
+  EXPECT_EQ(times.quantile(0), 1);
+  EXPECT_TRUE(std::isnan(TickTimes(0).quantile(0.5)));
+}
+
+TEST(ProgressLine, ShowsShareAndRemainingTime) {
+  EXPECT_EQ(progressLine("sim", 1, 2, 10), "sim [###############---------------]  50 %, 10 s left");
+  EXPECT_EQ(progressLine("sim", 0, 2, 10), "sim [------------------------------]   0 %");
+  EXPECT_EQ(progressLine("sim", 2, 2, 10), "sim [##############################] 100 %, 0 s left");
+}
+
+}  // namespace
+}  // namespace pincer::tasks

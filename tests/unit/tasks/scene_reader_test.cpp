@@ -1,0 +1,215 @@
+// The scene reader: what it makes of a good file, and one line of complaint for each thing that can be wrong with one.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "tasks/scene/scene.h"
+#include "tasks/scene/scene_keys.h"
+#include "tasks/scene/strict_json.h"
+#include "tests/support/temporary_directory.h"
+
+namespace pincer::tasks {
+namespace {
+
+const std::string kSourceDir = PINCER_SOURCE_DIR;
+
+std::string contentOf(const std::string& path) {
+  std::ifstream in(path);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::string messageFor(const std::string& json) {
+  try {
+    parseScene(json, "s.json");
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+// A scene of one body whose further keys are `body`, with further keys `scene`.
+std::string sceneWith(const std::string& body, const std::string& scene = "") {
+  return "{\"version\": 1, \"duration\": 1, \"bodies\": [{\"shape\": {\"type\": \"sphere\", \"radius\": 0.02}" + body + "}]" + scene + "}";
+}
+std::string sceneWithShape(const std::string& shape) {
+  return "{\"version\": 1, \"duration\": 1, \"bodies\": [{\"mass\": 1, \"shape\": " + shape + "}]}";
+}
+std::string sceneWithFinger(const std::string& finger) { return sceneWith(", \"mass\": 1", ", \"fingers\": [{" + finger + "}]"); }
+std::string sceneExpecting(const std::string& expectation) { return sceneWith(", \"mass\": 1", ", \"expect\": [{" + expectation + "}]"); }
+
+TEST(SceneReader, UnderstandsTheExampleOfTheManual) {
+  const std::string manual = contentOf(kSourceDir + "/docs/scenes.md");
+  const std::size_t begin = manual.find("```jsonc\n") + 9;
+  const Scene scene = parseScene(manual.substr(begin, manual.find("```", begin) - begin), "docs/scenes.md");
+  ASSERT_EQ(scene.bodies.size(), 2u);
+  EXPECT_FALSE(scene.bodies[0].dynamic);
+  EXPECT_EQ(scene.bodies[1].name, "ball");
+  EXPECT_EQ(scene.bodies[1].mass, 0.075);
+  EXPECT_EQ(scene.bodies[1].material.mu_d, 0.5);
+  EXPECT_EQ(scene.bodies[1].material.torsion_radius, 0.0033);
+  EXPECT_EQ(scene.starts[1].v_W, Vec3(0.1, 0, 0));
+  EXPECT_NEAR(2 * std::atan2(scene.starts[1].X_WB.q.z(), scene.starts[1].X_WB.q.w()), 1.5708, 1e-15);
+  ASSERT_EQ(scene.fingers.size(), 1u);
+  EXPECT_TRUE(scene.fingers[0].model.coupling.locked[1]);
+  EXPECT_FALSE(scene.fingers[0].model.coupling.locked[0]);
+  EXPECT_EQ(scene.fingers[0].trajectory.at(1).p_W, Vec3(0.15, 0, 0.02));
+  EXPECT_EQ(scene.record.every, 10);
+  EXPECT_EQ(scene.record.quantities.size(), 3u);
+  EXPECT_EQ(scene.expectations[0].tick, Expectation::kAlways);
+  EXPECT_EQ(scene.expectations[1].tick, 2000);
+  EXPECT_EQ(buildWorld(scene).fingers.size(), 1u);
+}
+
+TEST(SceneReader, ReadsEverySceneOfTheRepository) {
+  int scenes = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(kSourceDir + "/tasks/scenes")) {
+    if (entry.path().extension() != ".json") continue;
+    EXPECT_NO_THROW(buildWorld(readScene(entry.path().string()))) << entry.path();
+    ++scenes;
+  }
+  EXPECT_GE(scenes, 10);
+}
+
+TEST(SceneReader, GivesShapesTheirHalves) {
+  const auto shape = [](const std::string& json) { return parseScene(sceneWithShape(json), "s.json").bodies[0].shape; };
+  EXPECT_EQ(std::get<contact::Box>(shape(R"({"type": "box", "size": [0.02, 0.04, 0.08]})")).half, Vec3(0.01, 0.02, 0.04));
+  EXPECT_EQ(std::get<contact::Capsule>(shape(R"({"type": "capsule", "radius": 0.01, "length": 0})")).half_length, 0);
+  EXPECT_EQ(std::get<contact::Cylinder>(shape(R"({"type": "cylinder", "radius": 0.01, "length": 0.08})")).half_length, 0.04);
+  const auto flat = std::get<contact::CylinderWithFlat>(
+      shape(R"({"type": "cylinder_with_flat", "radius": 0.02, "length": 0.08, "flat_distance": 0.014})"));
+  EXPECT_EQ(flat.half_length, 0.04);
+  EXPECT_EQ(flat.flat_distance, 0.014);
+}
+
+TEST(SceneReader, TurnsAHalfSpacesNormalToItsPlace) {
+  const Scene scene = parseScene(R"({"version": 1, "duration": 1, "bodies": [
+      {"shape": {"type": "half_space", "normal": [3, 0, 4], "point": [1, 2, 3]}}]})",
+                                 "s.json");
+  EXPECT_NEAR((scene.starts[0].X_WB.q * Vec3(0, 0, 1) - Vec3(0.6, 0, 0.8)).norm(), 0, 1e-15);
+  EXPECT_EQ(scene.starts[0].X_WB.p, Vec3(1, 2, 3));
+  EXPECT_FALSE(scene.bodies[0].dynamic);
+}
+
+TEST(SceneReader, MultipliesDensityByVolume) {
+  const Scene scene = parseScene(sceneWith(", \"density\": 1000"), "s.json");
+  EXPECT_NEAR(scene.bodies[0].mass, 1000 * 4.0 / 3 * 3.14159265358979 * 8e-6, 1e-15);
+}
+
+TEST(SceneReader, ReadsAMeshAndATrajectoryBesideTheScene) {
+  const tests::TemporaryDirectory directory;
+  std::ofstream(directory / "tetra.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+  std::ofstream(directory / "way.csv") << "time,x,y,z\n0,1,0,0\n1,2,0,0\n";
+  std::ofstream(directory / "s.json") << R"({"version": 1, "duration": 1,
+    "bodies": [{"shape": {"type": "mesh", "file": "tetra.obj", "units": "cm", "scale": 2}, "density": 1000}],
+    "fingers": [{"trajectory": {"csv": "way.csv"}}]})";
+  const Scene scene = readScene(directory / "s.json");
+  EXPECT_NEAR(scene.bodies[0].mass, 1000 * 8e-6 / 6, 1e-15);  // edges of 20 mm: V = a^3/6
+  EXPECT_EQ(scene.fingers[0].trajectory.at(1).p_W, Vec3(2, 0, 0));
+}
+
+struct Complaint {
+  const char* name;
+  std::string json;
+  std::string message;
+};
+
+class SceneComplaints : public testing::TestWithParam<Complaint> {};
+TEST_P(SceneComplaints, NamePlaceValueRangeAndRemedy) { EXPECT_EQ(messageFor(GetParam().json), GetParam().message); }
+
+const std::vector<Complaint> kComplaints = {
+    {"NegativeFriction", sceneWith(",\n\"mass\": 1, \"material\": {\n\"mu_s\": -0.3}"),
+     "s.json:3: bodies[0].material.mu_s = -0.3 is out of range [0, inf). A friction coefficient can't be negative; typical: skin on "
+     "plastic 0.6."},
+    {"NegativeMass", sceneWith(", \"mass\": -1"),
+     "s.json:1: bodies[0].mass = -1 is out of range (0, 1000000]. Masses are in kilograms: 75 g is 0.075."},
+    {"UnknownKey", sceneWith(", \"mas\": 1"), "s.json:1: bodies[0].mas isn't a known key. Did you mean \"mass\"?"},
+    {"NoMass", sceneWith(""), "s.json:1: bodies[0] lacks the key \"mass\" [kg] (or \"density\" [kg/m^3], or \"static\": true)."},
+    {"MassAndDensity", sceneWith(", \"mass\": 1, \"density\": 1"),
+     "s.json:1: bodies[0].density = 1 says again what \"mass\" says. Keep one of the two."},
+    {"DynamicAboveStaticFriction", sceneWith(", \"mass\": 1, \"material\": {\"mu_s\": 0.3, \"mu_d\": 0.4}"),
+     "s.json:1: bodies[0].material.mu_d = 0.4 is out of range [0, 0.3]. Dynamic friction isn't larger than static friction (mu_s)."},
+    {"WrongVersion", "{\"version\": 2}", "s.json:1: version = 2 is out of range [1, 1]. This program reads version 1."},
+    {"NoVersion", "{}", "s.json:1: the whole file lacks the key \"version\". This program reads version 1."},
+    {"UnknownShape", sceneWithShape("{\"type\": \"spere\"}"),
+     "s.json:1: bodies[0].shape.type = \"spere\" isn't known. Did you mean \"sphere\"?"},
+    {"RadiusInMillimetres", sceneWithShape("{\"type\": \"sphere\", \"radius\": 200}"),
+     "s.json:1: bodies[0].shape.radius = 200 is out of range (0, 100]. Lengths are in metres: 20 mm is 0.02."},
+    {"FlatOutside", sceneWithShape("{\"type\": \"cylinder_with_flat\", \"radius\": 0.02, \"length\": 0.1, \"flat_distance\": 0.02}"),
+     "s.json:1: bodies[0].shape.flat_distance = 0.02 isn't smaller than the radius 0.02: nothing would be cut off. Use the type "
+     "\"cylinder\"."},
+    {"FractionOfATick", "{\"version\": 1, \"duration\": 0.0005, \"bodies\": []}",
+     "s.json:1: duration = 0.0005 isn't a whole number of ticks of 0.001 s."},
+    {"EmptyWorld", "{\"version\": 1, \"duration\": 1, \"bodies\": []}",
+     "s.json:1: bodies is empty, and there is no finger: nothing could happen."},
+    {"StaticWithVelocity", sceneWith(", \"static\": true, \"velocity\": [1, 0, 0]"),
+     "s.json:1: bodies[0].velocity doesn't go with a body that never moves. Remove the key."},
+    {"LooseFinger", sceneWithFinger("\"position\": [0, 0, 1], \"stiffness\": [100, 0, 100]"),
+     "s.json:1: fingers[0] has neither mass nor stiffness along y: nothing says where it is. Give it a mass or a stiffness, or lock the "
+     "axis."},
+    {"FingerNowhere", sceneWithFinger("\"radius\": 0.01"),
+     "s.json:1: fingers[0] needs \"position\" [m] for a finger that rests, or \"trajectory\"."},
+    {"BackwardsKeyframes",
+     sceneWithFinger("\"trajectory\": {\"keyframes\": [{\"time\": 1, \"position\": [0, 0, 0]}, {\"time\": 1, \"position\": [0, 0, 0]}]}"),
+     "s.json:1: fingers[0].trajectory.keyframes[1].time = 1 doesn't come after 1. Keyframes go forward in time."},
+    {"UnknownAxis", sceneWithFinger("\"position\": [0, 0, 1], \"locked\": [\"w\"]"),
+     "s.json:1: fingers[0].locked[0] = \"w\" isn't known. Did you mean \"x\"?"},
+    {"SameName", sceneWithFinger("\"position\": [0, 0, 1], \"name\": \"body0\""),
+     "s.json:1: fingers[0].name = \"body0\" can't be called \"body0\": another body or finger is. Names tell them apart in quantities."},
+    {"UnknownOwner", sceneExpecting("\"quantity\": \"bodi0.p_z\", \"time\": 1, \"value\": 1, \"tolerance\": 1"),
+     "s.json:1: expect[0].quantity = \"bodi0.p_z\" names no body or finger of this scene. Did you mean \"body0\"?"},
+    {"UnknownQuantity", sceneExpecting("\"quantity\": \"enrgy\", \"time\": 1, \"value\": 1, \"tolerance\": 1"),
+     "s.json:1: expect[0].quantity = \"enrgy\" isn't known. Did you mean \"energy\"?"},
+    {"EqualWithoutTolerance", sceneExpecting("\"quantity\": \"energy\", \"time\": 1, \"value\": 1"),
+     "s.json:1: expect[0] lacks the key \"tolerance\": how far the measured value may lie from \"value\", in its unit."},
+    {"AfterTheEnd", sceneExpecting("\"quantity\": \"energy\", \"time\": 2, \"value\": 1, \"tolerance\": 1"),
+     "s.json:1: expect[0].time = 2 is out of range [0, 1]. Within the scene's duration."},
+};
+
+INSTANTIATE_TEST_SUITE_P(One, SceneComplaints, testing::ValuesIn(kComplaints),
+                         [](const auto& complaint) { return std::string(complaint.param.name); });
+
+TEST(SceneReader, SaysWhereTheSceneNamesABadMesh) {
+  const std::string missing = messageFor(sceneWithShape("\n{\"type\": \"mesh\", \"file\": \"none.obj\", \"units\": \"mm\"}"));
+  EXPECT_EQ(missing.substr(0, missing.find("none.obj")), "s.json:2: bodies[0].shape can't be used: ");
+  const std::string unit = messageFor(sceneWithShape("{\"type\": \"mesh\", \"file\": \"none.obj\", \"units\": \"furlong\"}"));
+  EXPECT_NE(unit.find("furlong"), std::string::npos) << unit;
+}
+
+// The schema that editors use and the reader know the same keys.
+TEST(SceneSchema, NamesExactlyTheKeysThatTheReaderKnows) {
+  const JsonValue schema = readJson(kSourceDir + "/docs/scene.schema.json");
+  const std::vector<std::pair<std::string, std::span<const std::string_view>>> parts = {{"scene", keys::kScene},
+                                                                                        {"solver", keys::kSolver},
+                                                                                        {"body", keys::kBody},
+                                                                                        {"material", keys::kMaterial},
+                                                                                        {"finger", keys::kFinger},
+                                                                                        {"trajectory", keys::kTrajectory},
+                                                                                        {"keyframe", keys::kKeyframe},
+                                                                                        {"record", keys::kRecord},
+                                                                                        {"expectation", keys::kExpectation},
+                                                                                        {"sphere", keys::kSphere},
+                                                                                        {"box", keys::kBox},
+                                                                                        {"capsule", keys::kCapsule},
+                                                                                        {"cylinder", keys::kCylinder},
+                                                                                        {"cylinder_with_flat", keys::kCylinderWithFlat},
+                                                                                        {"half_space", keys::kHalfSpace},
+                                                                                        {"dish", keys::kDish},
+                                                                                        {"mesh", keys::kMesh}};
+  for (const auto& [name, words] : parts) {
+    const std::vector<std::string>& found = schema.at("$defs").at(name).at("properties").keys();
+    EXPECT_EQ(std::vector<std::string>(words.begin(), words.end()), found) << name;
+  }
+  EXPECT_EQ(schema.at("$defs").at("shape").at("oneOf").array().size(), keys::kShapeTypes.size());
+}
+
+// The manual names every quantity.
+TEST(SceneManual, NamesEveryQuantity) {
+  const std::string manual = contentOf(kSourceDir + "/docs/scenes.md");
+  for (const auto& kinds : {worldQuantities(), bodyQuantities(), fingerQuantities()}) {
+    for (const QuantityKind& kind : kinds) EXPECT_NE(manual.find('`' + std::string(kind.name) + '`'), std::string::npos) << kind.name;
+  }
+}
+
+}  // namespace
+}  // namespace pincer::tasks
