@@ -38,8 +38,7 @@ struct Percentile {
 };
 constexpr Percentile kPercentiles[] = {{"median", 0.5}, {"99 % ≤", 0.99}, {"99.9 % ≤", 0.999}, {"largest", 1.0}};
 
-// Labels step down the page, above the bars, so that close percentiles don't overprint each other; those in the right half end at their
-// line.
+// Labels step down the page, above the bars, so that close percentiles don't overprint each other; in the right half they end at the line.
 std::string percentileLines(const std::vector<double>& times, double middle) {
   std::string script;
   double height = 0.96;

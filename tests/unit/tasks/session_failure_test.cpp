@@ -68,9 +68,9 @@ Told killAfter(pid_t child, int pipe, std::int64_t ticks) {
   return told;
 }
 
-class KilledSession : public testing::TestWithParam<int> {};
+class SessionKilledAt : public testing::TestWithParam<int> {};
 
-TEST_P(KilledSession, KeepsEveryFinishedTrialAndSaysThatItWasNotCompleted) {
+TEST_P(SessionKilledAt, KeepsEveryFinishedTrialAndSaysThatItWasNotCompleted) {
   const TemporaryDirectory dir;
   int ends[2];
   ASSERT_EQ(::pipe(ends), 0);
@@ -94,11 +94,39 @@ TEST_P(KilledSession, KeepsEveryFinishedTrialAndSaysThatItWasNotCompleted) {
   std::int64_t count = 0;
   reader.forEachSample({}, [&](const SampleRecord& s) { EXPECT_EQ(s.tick, count++); });
   EXPECT_GE(count, 100 * told.finished_trials);  // a finished trial has all its samples
-  // The child sleeps 1 ms or more per tick, so 100 ms are at most 100 samples; the ring and one open transaction hold the lost ones.
-  EXPECT_GE(count, told.last_tick + 1 - 100);
 }
 
-INSTANTIATE_TEST_SUITE_P(AtAnyMoment, KilledSession, testing::Values(0, 57, 99, 100, 250, 333));
+INSTANTIATE_TEST_SUITE_P(AnyTick, SessionKilledAt, testing::Values(0, 57, 99, 100, 250, 333));
+
+// Samples reach the file without anybody finishing a trial. The wait has a generous end, and no time is asserted.
+TEST(KilledSession, KeepsTheSamplesOfAnUnfinishedTrial) {
+  const TemporaryDirectory dir;
+  const std::string path = dir / "a.db";
+  SessionWriter::create(dir / "other.db", {}).close();  // the parent has used the store before it forks, as a study may
+  const pid_t child = ::fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    auto writer = SessionWriter::create(path, {});
+    for (std::int64_t tick = 0; tick < 300; ++tick) writer.pushSample(sampleAt(0, tick));
+    writer.addEvent({0, 0.3, "squeeze", ""});
+    for (;;) ::pause();
+  }
+  const auto stored = [&]() -> std::size_t {
+    try {
+      const SessionReader reader(path);
+      std::size_t samples = 0;
+      reader.forEachSample({}, [&](const SampleRecord&) { ++samples; });
+      return samples + reader.events().size();
+    } catch (const InputError&) {
+      return 0;  // the child is still making the file
+    }
+  };
+  for (int k = 0; k < 1000 && stored() < 301; ++k) std::this_thread::sleep_for(10ms);
+  ::kill(child, SIGKILL);
+  ::waitpid(child, nullptr, 0);
+  EXPECT_EQ(stored(), 301u);
+  EXPECT_EQ(SessionReader(path).state(), "running");
+}
 
 // SQLite reports SQLITE_FULL at the page limit exactly as on a full disk.
 TEST(FullSession, FailsWithTheCauseAndMarksTheFile) {
