@@ -20,7 +20,7 @@ void Touch::feel(const Percept& percept) {
   for (int i = 0; i < kHandFingers; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const FingerPercept& finger = percept.fingers[k];
-    push_W_[k] += (cues_.fingers[k].q_WD * finger.f_D - push_W_[k]) * dt / (limits_.force_lag + dt);
+    if (dt > 0) push_W_[k] += (cues_.fingers[k].q_WD * finger.f_D - push_W_[k]) * dt / (limits_.force_lag + dt);
     force_[k] = std::max(0.0, -push_W_[k].dot(padAxis_W(i, cues_.fingers[k].pad_normal_F)));
     touched_for_[k] = push_W_[k].norm() > limits_.force_floor ? touched_for_[k] + dt : 0;
     const auto& place = finger.tactile.place_L;
