@@ -4,7 +4,6 @@
 // Source: R. E. Tarjan, J. ACM 22(2), 1975; path halving, no ranks (log n per operation).
 #pragma once
 #include <cstdint>
-#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -12,7 +11,10 @@ namespace pincer::contact {
 
 class UnionFind {
  public:
-  explicit UnionFind(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0); }
+  explicit UnionFind(std::size_t n) {
+    parent_.reserve(n);
+    for (std::size_t i = 0; i < n; ++i) parent_.push_back(static_cast<std::int32_t>(i));
+  }
 
   std::int32_t find(std::int32_t i) {
     while (parent(i) != i) i = parent(i) = parent(parent(i));

@@ -15,7 +15,7 @@ struct FlatPoint {
 
 // Ericson's regions: three corners, three edges, the inside.
 FlatPoint closestOnTriangle(const std::array<Vec3, 3>& corners, const Vec3& p) {
-  const auto& [a, b, c] = corners;
+  const Vec3 &a = corners[0], &b = corners[1], &c = corners[2];
   const auto at = [&](double wa, double wb, double wc) -> FlatPoint {
     return {{wa, wb, wc}, (p - (wa * a + wb * b + wc * c)).squaredNorm()};
   };

@@ -6,6 +6,7 @@
 
 #include "contact/mesh/obj_reader.h"
 #include "contact/surface/smooth_mesh.h"
+#include "tests/support/allocation_guard.h"
 #include "tests/support/mesh_generators.h"
 
 namespace pincer::contact {
@@ -246,6 +247,15 @@ TEST(SurfaceQuery, RemembersNothingButTheTracker) {
     ASSERT_EQ(a[i].n_B, b[i].n_B);
     ASSERT_EQ(a[i].phi, b[i].phi);
   }
+}
+
+TEST(SurfaceQuery, AllocatesNothing) {
+  if (!pincer::testing::allocationsAreCounted()) GTEST_SKIP() << "this build can't count allocations";
+  const auto object = asObject(cylinderWithFlat(0.025, 0.03, 0.018, 20, 6));
+  SurfaceTracker tracker;
+  const std::int64_t before = pincer::testing::allocationCount();
+  for (int i = 0; i < 500; ++i) object->querySphere((0.03 + 0.01 * (i % 3)) * onSphere(i, 500), kFinger, tracker);
+  EXPECT_EQ(pincer::testing::allocationCount(), before);
 }
 
 TEST(SurfaceQuery, HoldsTheContactWhereThereIsNoAnswer) {
