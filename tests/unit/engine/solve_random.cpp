@@ -7,6 +7,7 @@
 #include "engine/solve/cone.h"
 #include "engine/solve/gauss_seidel.h"
 #include "engine/solve/local_contact.h"
+#include "tests/support/allocation_guard.h"
 #include "tests/support/contact_problems.h"
 
 namespace pincer::engine {
@@ -26,7 +27,7 @@ struct Family {
 
 void PrintTo(const Family& family, std::ostream* out) { *out << family.name; }
 
-class RandomProblems : public testing::TestWithParam<Family> {};
+class RandomProblems : public ::testing::TestWithParam<Family> {};
 
 // |r_T| <= mu r_n to 1e-12, u = W r + q to round-off of its terms, for every row finite: whatever the outcome.
 void expectSound(const OwnedContactProblem& p, const Solved& s) {
@@ -77,7 +78,7 @@ TEST_P(RandomProblems, GiveTheSameBitsAgain) {
 
 INSTANTIATE_TEST_SUITE_P(
     Families, RandomProblems,
-    testing::Values(
+    ::testing::Values(
         Family{"two fingers", [](RandomScenes& s) { return s.grasp(2, 1, false); }, 1000, 1},
         Family{"two fingers, mass ratio 1e4", [](RandomScenes& s) { return s.grasp(2, 1e4, false); }, 1000, 1},
         Family{"two to ten fingers", [](RandomScenes& s) { return s.grasp(s.integer(2, 10), 1e3, false); }, 300, 0.999},
@@ -126,6 +127,27 @@ TEST(Solver, GaussSeidelIsExactForOneSoftContact) {
     solveOneContact(p.W.data(), 4, p.q.data(), 4, p.mu[0], r.data());
     EXPECT_LE(contactResidual(p.view(), r, u), 1e-12) << n;
   }
+}
+
+// Every stage of the cascade works in the scratch it is given.
+TEST(Solver, AllocatesNothing) {
+  if (!pincer::testing::allocationsAreCounted()) GTEST_SKIP() << "the sanitizer owns the allocator";
+  RandomScenes random(18);
+  SolverScratch scratch(28);
+  int methods[6] = {};
+  for (int n = 0; n < 300; ++n) {
+    OwnedContactProblem p =
+        n % 10 == 0 ? random.ring(28, 0.01) : random.cluster(random.integer(1, 6), random.integer(1, 12), 100, 3, n % 2 == 0);
+    const ContactProblem view = p.view();
+    Eigen::VectorXd r = Eigen::VectorXd::Zero(p.q.size()), u = r;
+    const VectorMap r_map(r.data(), r.size()), u_map(u.data(), u.size());
+    const std::int64_t before = pincer::testing::allocationCount();
+    const SolveResult result = solveContacts(view, {}, scratch, r_map, u_map);
+    EXPECT_EQ(pincer::testing::allocationCount(), before);
+    ++methods[static_cast<int>(result.method)];
+  }
+  EXPECT_GT(methods[static_cast<int>(SolveMethod::kNewton)], 0);
+  EXPECT_GT(methods[static_cast<int>(SolveMethod::kInteriorPoint)], 0);
 }
 
 // A stack of three whose top is a million times as heavy as its base, resting: the interface forces are the weights.
