@@ -14,12 +14,12 @@ namespace pincer::tasks {
 namespace {
 
 // The program's table of contents, in the order in which --help shows it.
-constexpr std::array kCommands = {addSimCommand, addPlanCommand, addMeshCommand};
+constexpr std::array kCommands = {addRunCommand, addReportCommand, addExportCommand, addSimCommand, addPlanCommand, addMeshCommand};
 
 constexpr const char* kExamples = R"(
 Examples:
-  pincer run sphere-pickup --seed 1 --out session.db     a simulated participant picks up spheres
-  pincer report session.db                               the session as a page with plots
+  pincer run sphere-pickup --out out/first               a simulated participant picks up spheres
+  pincer report out/first/session.db                     the session as a table and a page with plots
   pincer sim tasks/scenes/s4_pinch.json                  plain physics of a scene, its expectations checked
   pincer plan tasks/scenes/s4_pinch.json                 what runs in a tick, and what it costs
   pincer mesh info bunny.obj --units m                   what a mesh is, and what is wrong with it

@@ -32,7 +32,7 @@ std::string expectationLine(const Expectation& expected, const Outcome& outcome)
   const std::string verdict = !outcome.reached ? "  -  " : outcome.holds() ? good(" ok  ") : bad("FAILS");
   std::string line = fmt::format("  {} {} {} {}: {}\n", verdict, expected.quantity.name, whenText(expected), boundText(expected),
                                  measuredText(expected, outcome));
-  if (!outcome.holds() && !expected.because.empty()) line += fmt::format("        because {}\n", expected.because);
+  if (outcome.reached && !outcome.holds() && !expected.because.empty()) line += fmt::format("        because {}\n", expected.because);
   return line;
 }
 

@@ -43,7 +43,8 @@ bool contains(const std::string& text, const std::string& part) { return text.fi
 int linesOf(const std::string& text) { return static_cast<int>(std::count(text.begin(), text.end(), '\n')); }
 
 TEST(CommandLine, HelpsEverywhereWithAnExample) {
-  for (const std::vector<std::string>& command : std::vector<std::vector<std::string>>{{}, {"sim"}, {"plan"}, {"mesh"}, {"mesh", "info"}}) {
+  for (const std::vector<std::string>& command :
+       std::vector<std::vector<std::string>>{{}, {"run"}, {"report"}, {"export"}, {"sim"}, {"plan"}, {"mesh"}, {"mesh", "info"}}) {
     std::vector<std::string> arguments = command;
     arguments.push_back("--help");
     const Result help = run(arguments);
@@ -121,6 +122,30 @@ TEST(SimCommand, WritesCsvAndJson) {
   EXPECT_EQ(json.at("bodies").array()[0].at("name").text(), "sphere");
   EXPECT_GT(json.at("tick_us").at("median").number(), 0);
   EXPECT_FALSE(json.at("expectations").array()[0].at("reached").boolean());
+}
+
+TEST(RunCommand, LeavesASessionThatReportAndExportRead) {
+  const tests::TemporaryDirectory directory;
+  const std::string out = directory / "first";
+  const std::vector<std::string> command = {"run", "sphere-pickup", "--condition", "cld+force", "--friction", "0.9", "--repetitions",
+                                            "1",   "--no-report",   "--json",      "--out",     out};
+  const Result result = run(command);
+  ASSERT_EQ(result.exit_code, kExitOk) << result.error;
+  EXPECT_EQ(parseJson(result.out, "stdout").at("trials").number(), 1);
+  const Result again = run(command);
+  EXPECT_EQ(again.exit_code, kExitBadInput);  // a session is never overwritten
+  const Result tables = run({"export", out + "/session.db", "--every", "100"});
+  EXPECT_EQ(tables.exit_code, kExitOk) << tables.error;
+  EXPECT_TRUE(std::filesystem::exists(out + "/csv/trial.csv"));
+}
+
+TEST(RunCommand, RefusesBadOptionsBeforeItWritesAnything) {
+  const tests::TemporaryDirectory directory;
+  const std::string out = directory / "first";
+  EXPECT_EQ(run({"run", "sphere-pickup", "--mass", "-1", "--out", out}).exit_code, kExitBadInput);
+  EXPECT_FALSE(std::filesystem::exists(out));
+  EXPECT_EQ(run({"run", "sphere-pickup", "--object", "/nowhere/cow.obj", "--out", out}).exit_code, kExitBadInput);
+  EXPECT_FALSE(std::filesystem::exists(out));
 }
 
 TEST(PlanCommand, NamesFormsAndMeasuresStages) {

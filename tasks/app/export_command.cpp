@@ -1,0 +1,48 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+
+#include "tasks/app/app.h"
+#include "tasks/app/commands.h"
+#include "tasks/session/csv_export.h"
+
+namespace pincer::tasks {
+namespace {
+
+constexpr const char* kExample = R"(
+Writes session.csv, trial.csv, sample.csv and event.csv, with units in the column names.
+
+Example:
+  pincer export out/first/session.db --trial 3 --every 10 --out trial3)";
+
+struct ExportArguments {
+  std::string session, directory;
+  SampleFilter filter;
+};
+
+int exportSession(const ExportArguments& arguments) {
+  const SessionReader session(arguments.session);
+  const std::string beside = (std::filesystem::path(arguments.session).parent_path() / "csv").string();
+  for (const std::string& file : exportCsv(session, arguments.directory.empty() ? beside : arguments.directory, arguments.filter)) {
+    fmt::print("{}\n", file);
+  }
+  if (!session.warning().empty()) fmt::print(stderr, "pincer: {}\n", session.warning());
+  return kExitOk;
+}
+
+}  // namespace
+
+void addExportCommand(CLI::App& app, int& exit_code) {
+  auto arguments = std::make_shared<ExportArguments>();
+  CLI::App* command = app.add_subcommand("export", "A session as CSV tables");
+  command->add_option("session", arguments->session, "Session file")->required();
+  command->add_option("--out", arguments->directory, "Directory for the tables (default: csv beside the session)");
+  command->add_option("--trial", arguments->filter.trial, "Samples of this trial only");
+  command->add_option("--every", arguments->filter.stride, "Every n-th sample only")->check(CLI::PositiveNumber)->capture_default_str();
+  command->footer(kExample);
+  command->callback([arguments, &exit_code] { exit_code = exportSession(*arguments); });
+}
+
+}  // namespace pincer::tasks

@@ -1,0 +1,47 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+
+#include "tasks/app/app.h"
+#include "tasks/app/commands.h"
+#include "tasks/report/report.h"
+
+namespace pincer::tasks {
+namespace {
+
+constexpr const char* kExample = R"(
+The table of a session, and a page with plots (needs gnuplot). Sessions that were killed or interrupted get theirs too.
+
+Example:
+  pincer report out/first/session.db --html first.html)";
+
+struct ReportArguments {
+  std::string session, html;
+  bool json = false;
+};
+
+int report(const ReportArguments& arguments) {
+  const SessionReader session(arguments.session);
+  const SessionSummary summary = summariseSession(session);
+  fmt::print("{}\n", arguments.json ? summaryJson(summary) : formatTable(summary));
+  const std::string beside = (std::filesystem::path(arguments.session).parent_path() / "report.html").string();
+  const ReportFiles files = writeReport(session, arguments.html.empty() ? beside : arguments.html);
+  fmt::print(arguments.json ? stderr : stdout, "Report: {}\n", files.html);
+  return kExitOk;
+}
+
+}  // namespace
+
+void addReportCommand(CLI::App& app, int& exit_code) {
+  auto arguments = std::make_shared<ReportArguments>();
+  CLI::App* command = app.add_subcommand("report", "The table and the plots of a session");
+  command->add_option("session", arguments->session, "Session file")->required();
+  command->add_option("--html", arguments->html, "Where to write the page (default: report.html beside the session)");
+  command->add_flag("--json", arguments->json, "Print the table as JSON");
+  command->footer(kExample);
+  command->callback([arguments, &exit_code] { exit_code = report(*arguments); });
+}
+
+}  // namespace pincer::tasks

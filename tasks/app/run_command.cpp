@@ -1,0 +1,118 @@
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <ctime>
+#include <memory>
+
+#include "tasks/app/app.h"
+#include "tasks/app/commands.h"
+#include "tasks/app/interrupt.h"
+#include "tasks/app/pickup_session.h"
+#include "tasks/app/progress.h"
+#include "tasks/experiments/pickup_object.h"
+#include "tasks/report/report.h"
+#include "tasks/session/atomic_file.h"
+
+namespace pincer::tasks {
+namespace {
+
+constexpr const char* kExample = R"(
+A simulated participant on simulated arms and contact location displays does the task; every tick is kept in DIR/session.db, a page with
+plots in DIR/report.html.
+
+Example:
+  pincer run sphere-pickup --repetitions 2 --seed 7 --out out/first)";
+
+struct RunArguments {
+  std::string task, out, condition = "both", object, units = "mm";
+  SpherePickupOptions study;
+  bool real_time = false, json = false, report = true;
+};
+
+std::string freshDirectory(const std::string& task) {
+  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  return fmt::format("out/{}-{:%Y%m%d-%H%M%S}", task, fmt::localtime(now));
+}
+
+SpherePickupOptions studyOf(const RunArguments& arguments) {
+  SpherePickupOptions options = arguments.study;
+  if (arguments.condition != "both") options.conditions = {pickupConditionOf(arguments.condition)};
+  if (!arguments.object.empty()) options.object = ObjectFile{arguments.object, arguments.units};
+  return options;
+}
+
+PickupSessionResult runStudy(const RunArguments& arguments, const std::string& session, const std::atomic<bool>& interrupted) {
+  ServoOptions servo;
+  servo.real_time = arguments.real_time;
+  std::unique_ptr<Progress> line;
+  return runPickupSession(studyOf(arguments), servo, session, interrupted, [&](const PickupProgress& progress) {
+    if (!line) line = std::make_unique<Progress>("trials", static_cast<std::int64_t>(progress.total));
+    line->update(static_cast<std::int64_t>(progress.done));
+  });
+}
+
+std::int64_t faultsIn(const SessionSummary& summary) {
+  std::int64_t faults = 0;
+  for (const CellSummary& cell : summary.cells) faults += cell.allFrictions() ? cell.faults : 0;
+  return faults;
+}
+
+int show(const RunArguments& arguments, const std::string& directory, const PickupSessionResult& result) {
+  const SessionReader session(directory + "/session.db");
+  const SessionSummary summary = summariseSession(session);
+  fmt::print("{}\n", arguments.json ? summaryJson(summary) : formatTable(summary));
+  const auto say = [&](const std::string& line) { fmt::print(arguments.json ? stderr : stdout, "{}\n", line); };
+  say(fmt::format("Session: {}", session.path()));
+  if (result.interrupted) {
+    say(fmt::format("Interrupted after {} trials; they are safe. See them: pincer report {}", result.trials, session.path()));
+    return kExitInterrupted;
+  }
+  if (arguments.report) say(fmt::format("Report: {}", writeReport(session, directory + "/report.html").html));
+  const std::int64_t faults = faultsIn(summary);
+  if (faults > 0) say(fmt::format("{} trials ended in a fault; their events say why: pincer export {}", faults, session.path()));
+  return faults > 0 ? kExitCheckFailed : kExitOk;
+}
+
+int run(const RunArguments& arguments) {
+  const std::atomic<bool>& interrupted = interruptFlag();
+  const std::string directory = arguments.out.empty() ? freshDirectory(arguments.task) : arguments.out;
+  makePickupObject(studyOf(arguments));  // bad options and objects are named before anything is written
+  makeDirectory(directory);
+  return show(arguments, directory, runStudy(arguments, directory + "/session.db", interrupted));
+}
+
+void addStudyOptions(CLI::App& command, RunArguments& arguments) {
+  SpherePickupOptions& study = arguments.study;
+  command.add_option("--condition", arguments.condition, "What the fingers feel")
+      ->check(CLI::IsMember({"force", "cld+force", "both"}))
+      ->capture_default_str();
+  command.add_option("--participants", study.participants, "How many simulated participants")->capture_default_str();
+  command.add_option("--repetitions", study.repetitions, "Of every friction per condition")->capture_default_str();
+  command.add_option("--friction", study.frictions, "Static frictions of the object")->capture_default_str();
+  command.add_option("--mass", study.mass, "Of the object [kg]")->capture_default_str();
+  command.add_option("--radius", study.radius, "Of the sphere [m]")->capture_default_str();
+  command.add_option("--object", arguments.object, "Closed OBJ mesh to pick up in place of the sphere");
+  command.add_option("--units", arguments.units, "Length unit of the mesh")
+      ->check(CLI::IsMember({"m", "cm", "mm", "in"}))
+      ->capture_default_str();
+  command.add_option("--seed", study.seed, "Of all that varies; the same seed gives the same session")->capture_default_str();
+}
+
+}  // namespace
+
+void addRunCommand(CLI::App& app, int& exit_code) {
+  auto arguments = std::make_shared<RunArguments>();
+  CLI::App* command = app.add_subcommand("run", "An experiment, with a simulated participant");
+  command->add_option("task", arguments->task, "Which experiment: sphere-pickup")->required()->check(CLI::IsMember({"sphere-pickup"}));
+  addStudyOptions(*command, *arguments);
+  command->add_option("--out", arguments->out, "New directory for session and report (default: out/TASK-DATE-TIME)");
+  command->add_flag("--real-time", arguments->real_time, "At 1 kHz of the wall clock in place of as fast as it goes");
+  command->add_flag("!--no-report", arguments->report, "Only the session and the table");
+  command->add_flag("--json", arguments->json, "Print the table as JSON");
+  command->footer(kExample);
+  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+}
+
+}  // namespace pincer::tasks
