@@ -8,7 +8,7 @@
 //
 // With I_i = I_j the last part vanishes: exact for symmetric and spherical bodies. Else the last two alternate in a composition of order 4:
 // I. Omelyan, I. Mryglod, R. Folk, Comput. Phys. Commun. 146 (2002) 188-202 (position-extended Forest-Ruth-like). Splitting: R. McLachlan,
-// H. Zanna, Found. Comput. Math. 5 (2005) 87-123, and E. Celledoni, F. Fasso, N. Saefstroem, A. Zanna, SIAM J. Sci. Comput. 30 (2008).
+// A. Zanna, Found. Comput. Math. 5 (2005) 87-123, and E. Celledoni, F. Fasso, N. Saefstroem, A. Zanna, SIAM J. Sci. Comput. 30 (2008).
 // Measured on a 20 x 40 x 80 mm box at 20 rad/s about its middle axis, 1 ms, angle after 1 s: Strang 3e-6, triple jump 5e-10, this 9e-12 rad.
 #pragma once
 #include "contact/math.h"

@@ -5,7 +5,7 @@
 //
 // with Nesterov-Todd's scaling N: N x = N^-1 z = lambda, and Mehrotra's predictor and corrector. The shift |u_T| is part of z and of its
 // derivative, so that the fixed point is the true, non-convex law and not its convex relaxation.
-// Sources: L. Vandenberghe, "The CVXOPT linear and quadratic cone program solvers" (2010), sections 4-5; the shift: V. Acary, P. Armand,
+// Sources: L. Vandenberghe, "The CVXOPT linear and quadratic cone program solvers" (2010); the shift: V. Acary, P. Armand,
 // H. M. Nguyen, M. Shpakovych, Optim. Methods Softw. 39 (2024).
 #pragma once
 #include "engine/solve/scaled_problem.h"

@@ -3,7 +3,7 @@
 //   A x = b,   A n x n, column-major without gaps
 //
 // The order of every sum is fixed: the same bits with every compiler. Source: G. Golub, C. Van Loan, Matrix Computations, 4th ed. (2013),
-// algorithms 3.4.1 (outer-product LU with partial pivoting) and 4.1.2 (LDL^T).
+// sections 3.4 (LU with partial pivoting) and 4.1 (LDL^T).
 #pragma once
 
 namespace pincer::engine {

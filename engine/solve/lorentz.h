@@ -3,7 +3,7 @@
 //   a o b = (a_n b_T + b_n a_T, a . b),   e = (0, 0, 1[, 0]),   det v = v_n^2 - |v_T|^2
 //
 // Source: F. Alizadeh, D. Goldfarb, "Second-order cone programming", Math. Program. 95 (2003) 3-51, section 4; Nesterov-Todd scaling:
-// L. Vandenberghe, "The CVXOPT linear and quadratic cone program solvers" (2010), section 4.2.
+// L. Vandenberghe, "The CVXOPT linear and quadratic cone program solvers" (2010).
 #pragma once
 #include <algorithm>
 #include <cmath>
