@@ -35,7 +35,7 @@ struct FingerReport {
   bool sliding = false;
   Vec2 place_L = Vec2::Zero();          // contact on the pad: arc length (distal, radial) from the pad's centre [m]
   double gap = 0;                       // to the nearest body [m]; larger than `reach`: a lower bound
-  Vec2 nearest_place_L = Vec2::Zero();  // where the nearest point would touch the pad [m]
+  Vec2 nearest_place_L = Vec2::Zero();  // where the nearest point would touch the pad, while nothing does [m]
 };
 
 struct GraspScratch {

@@ -36,7 +36,10 @@ void recall(const WorldState& state, WorldScratch& scratch, Contact& c) {
 }  // namespace
 
 void recallContacts(const WorldState& state, WorldScratch& scratch) {
-  std::sort(scratch.contacts.begin(), scratch.contacts.end(), [](const Contact& x, const Contact& y) { return x.id < y.id; });
+  const auto by_id = [](const Contact& x, const Contact& y) { return x.id < y.id; };
+  if (!std::is_sorted(scratch.contacts.begin(), scratch.contacts.end(), by_id)) {  // nearly always they come sorted
+    std::sort(scratch.contacts.begin(), scratch.contacts.end(), by_id);
+  }
   int old = 0;
   for (Contact& c : scratch.contacts) {
     while (old < state.contact_count && state.contacts[old].id < c.id) ++old;

@@ -10,7 +10,7 @@ WorldScratch::WorldScratch(const WorldModel& model) : solver(model.options.max_c
   bodies.resize(model.bodies.size());
   points.resize(model.points.size());
   contacts.reserve(contact_count);
-  rows.resize(row_count);
+  columns.resize(contact_count);
   first_row.resize(contact_count + 1);
   mu.resize(contact_count);
   W.resize(row_count * row_count);
@@ -27,7 +27,8 @@ std::uint64_t contactId(int kind, int a, int b, std::uint32_t feature) {
 Eigen::Vector4d relativeVelocity(const Contact& c, const Motion& a, const Motion& b) {
   const Vec3 v_W = a.v_W + a.w_W.cross(c.arm_a_W) - (b.v_W + b.w_W.cross(c.arm_b_W));
   Eigen::Vector4d v_C;
-  v_C << c.R_WC.transpose() * v_W, c.n_W().dot(a.w_W - b.w_W);
+  v_C.head<3>() = c.R_WC.transpose() * v_W;
+  v_C[3] = c.n_W().dot(a.w_W - b.w_W);
   return v_C;
 }
 

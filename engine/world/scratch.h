@@ -43,11 +43,15 @@ struct Contact {
   bool active() const { return r[2] > 0; }
 };
 
-// One row of the Jacobian: u_row = lin . (v_a - v_b) + ang_a . w_a - ang_b . w_b.
-struct ContactRow {
-  Vec3 lin, ang_a, ang_b;
-  Vec3 mlin_a, mlin_b;  // M^-1 J^T: inverse masses times lin, and
-  Vec3 mang_a, mang_b;  // inverse inertias times ang
+// Jacobian of one contact, a column per row of the problem (t1, t2, n, torsion): u = lin^T (v_a - v_b) + ang_a^T w_a - ang_b^T w_b.
+using Columns = Eigen::Matrix<double, 3, kMaxContactRows>;
+struct SideColumns {
+  Columns ang;         // arm x lin [m]
+  Columns mlin, mang;  // inverse mass times lin, inverse inertia times ang
+};
+struct ContactColumns {
+  Columns lin;
+  std::array<SideColumns, 2> sides;  // of a, of b
 };
 
 // A body or point in this tick.
@@ -75,7 +79,7 @@ struct WorldScratch {
   std::vector<PointScratch> points;
   std::vector<Contact> contacts;  // capacity options.max_contacts
   bool contacts_dropped = false;
-  std::vector<ContactRow> rows;
+  std::vector<ContactColumns> columns;
   std::vector<int> first_row;
   std::vector<double> mu, W, q, r, u;
   SolverScratch solver;
