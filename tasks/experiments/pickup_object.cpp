@@ -19,7 +19,8 @@ namespace {
 constexpr double kSmallest = 0.010, kLargest = 0.100;  // extent of an object that two fingers pick up [m]
 constexpr double kSettleTime = 20;                     // [s]
 constexpr double kDampingTime = 0.1;                   // of the settling motion [s]
-constexpr double kAtRest = 1e-4;                       // slower than this, with the damping on, is at rest [m/s]
+constexpr double kRestTime = 0.5;                      // an object rests whose points have moved so little in that time [s]
+constexpr double kRestDistance = 1e-3;                 // [m]
 
 contact::TriangleMesh readCentred(const SpherePickupOptions& options) {
   contact::TriangleMesh mesh = contact::readObj(options.object->path, contact::metresPerUnit(options.object->units));
@@ -53,6 +54,9 @@ double heightAboveDish(const contact::TriangleMesh& mesh, double dish_radius) {
   return height;
 }
 
+// How far a point at most `reach` from the centre may have moved from one pose to the other.
+double movement(const Pose& from, const Pose& to, double reach) { return (to.p - from.p).norm() + reach * from.q.angularDistance(to.q); }
+
 Pose settle(const SpherePickupOptions& options, const contact::Shape& shape, double height) {
   const double mu = options.frictions.front();
   const engine::WorldModel model = pickupWorld(options, shape, mu, options.dynamic_ratio * mu).build();
@@ -60,15 +64,16 @@ Pose settle(const SpherePickupOptions& options, const contact::Shape& shape, dou
   engine::WorldScratch scratch(model);
   engine::BodyState& body = state.bodies[kObjectBody];
   const double keep = std::exp(-model.options.h / kDampingTime);
-  const double reach = model.bodies[kObjectBody].bounding_radius;
-  double quiet = 0;
-  while (state.time < kSettleTime) {
+  Pose last = engine::bodyPose(model, state, kObjectBody);
+  for (double next = kRestTime; state.time < kSettleTime;) {
     engine::step(model, state, scratch);
     body.v_W *= keep;
     body.L_W *= keep;
-    const double speed = body.v_W.norm() + reach * engine::bodyAngularVelocity(model, state, kObjectBody).norm();
-    quiet = speed < kAtRest ? quiet + model.options.h : 0;
-    if (quiet > 0.2) return engine::bodyPose(model, state, kObjectBody);
+    if (state.time < next) continue;
+    const Pose pose = engine::bodyPose(model, state, kObjectBody);
+    if (movement(last, pose, model.bodies[kObjectBody].bounding_radius) < kRestDistance) return pose;
+    last = pose;
+    next += kRestTime;
   }
   throw InputError(fmt::format("{}: the object finds no rest in the dish within {} s. Check that it is closed and of even density.",
                                options.object->path, kSettleTime));
