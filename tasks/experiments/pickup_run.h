@@ -3,7 +3,6 @@
 #pragma once
 #include <atomic>
 #include <functional>
-#include <memory>
 
 #include "tasks/experiments/pickup_trial.h"
 #include "tasks/experiments/simulated_hands.h"

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
-#include <limits>
 
 #include "engine/world/state.h"
 #include "tasks/experiments/pickup_records.h"
