@@ -70,13 +70,13 @@ class Search {
   int iterations() const { return iterations_; }
 
  private:
-  // Newton's method from `current`; true if it converges.
+  // Newton's method from `current`; true if what it finds will do.
   bool finish(const SolverOptions& options) {
     const double tolerance = 0.5 * options.tolerance;  // leaves room for the round-off of scaling back
     keepBest();
     iterations_ += iterateNewton(problem_, tolerance, options.newton_iterations, scratch_, current_, trial_);
     keepBest();
-    return best_.residual <= tolerance;
+    return best_.residual <= std::max(tolerance, options.contentment);
   }
 
   bool iterateOnShift(const SolverOptions& options) {
@@ -149,7 +149,7 @@ SolveResult solveContacts(const ContactProblem& problem, const SolverOptions& op
   search.write(r.data());
   project(problem, r.data());
   residual = contactResidual(problem, r, u);
-  if (!(residual <= options.tolerance)) {
+  if (!(residual <= std::max(options.tolerance, options.contentment))) {
     method = SolveMethod::kNotConverged;
     removeAddedEnergy(problem, r, u);
     residual = contactResidual(problem, r, u);

@@ -14,20 +14,22 @@
 namespace pincer::engine {
 
 struct SolverOptions {
-  double tolerance = 1e-10;            // on the residual, see contactResidual [-]; range [1e-14, 1e-2]
-  int newton_iterations = 20;          // each time that Newton's method is tried
+  double tolerance = 1e-10;    // on the residual, see contactResidual [-]; range [1e-14, 1e-2]
+  double contentment = 1e-8;   // residual at which no costlier method is tried any more [-]; 1e-8 of a speed is far below anything felt
+  int newton_iterations = 20;  // each time that Newton's method is tried
   int interior_point_iterations = 30;  // each time that the interior-point method is tried
-  int shift_updates = 20;              // of the interior-point method with frozen shift
-  int gauss_seidel_sweeps = 300;
+  int shift_updates = 3;               // of the interior-point method with frozen shift
+  int gauss_seidel_sweeps = 60;
 };
 
 enum class SolveMethod : std::uint8_t { kNoContact, kWarmStart, kNewton, kInteriorPoint, kGaussSeidel, kNotConverged };
 
 struct SolveResult {
   SolveMethod method = SolveMethod::kNoContact;
-  int iterations = 0;     // of all methods together
-  double residual = 0;    // of the returned impulses [-]
-  bool converged = true;  // false: the returned r is the best iterate in the cones, scaled so that it adds no energy
+  int iterations = 0;   // of all methods together
+  double residual = 0;  // of the returned impulses [-]
+  bool converged =
+      true;  // to the tolerance, or to contentment by the costlier methods; false: the returned r is the best iterate in the cones, scaled so that it adds no energy
 };
 
 // Working memory, sized once for at most `max_contacts`; what it holds means nothing between calls.
