@@ -18,7 +18,7 @@
 
 #include "contact/math.h"
 #include "contact/mesh/triangle_mesh.h"
-#include "contact/shape/finger_query.h"
+#include "contact/surface/surface_contact.h"
 
 namespace pincer::contact {
 
