@@ -1,4 +1,5 @@
-// body: what a hand is made of and what it can't feel exactly. Every figure has its source, or says that it is a choice.
+// body: what a hand is made of and what it can't feel exactly. Every figure says where it comes from: a source, the
+// design of the tasks, or a choice of ours.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -10,8 +11,7 @@
 namespace pincer::tasks {
 
 // Hands differ; each finger's impedance is drawn once per participant, uniformly between these.
-// Source of the ranges: A. Z. Hajian, R. D. Howe, J. Biomech. Eng. 119(1), 1997, 109-114 (fingertip mass, damping and stiffness under
-// light to moderate force); narrowed to the part that a relaxed precision grip uses (choice).
+// The ranges of mass, stiffness and damping are the design's (no source checked yet).
 struct HandRanges {
   double mass_min = 0.05, mass_max = 0.10;          // [kg]
   double stiffness_min = 200, stiffness_max = 600;  // [N/m]
@@ -28,12 +28,12 @@ struct SensingLimits {
   double placement_sd = 7e-3;          // of the pinch line, per axis, constant in a trial [m] (choice)
   double placement_between_sd = 4e-3;  // between the fingers, per axis, constant in a trial [m] (choice)
   double direction_sd = 0.349;         // of a felt force's direction, per axis [rad], 20 degrees (design: 28.4 / sqrt 2)
-  double force_sd = 0.10;              // of a felt magnitude, relative [-] (choice, near Weber fractions of 7-10 % for force)
+  double force_sd = 0.10;              // of a felt magnitude, relative [-] (design; no source checked yet)
   double force_floor = 0.1;            // a lighter touch isn't felt [N] (choice)
   double force_lag = 0.02;             // time constant of felt force [s] (choice)
-  double reflex_time = 0.07;    // from a loss of force to its effect [s] (R. S. Johansson, G. Westling, Exp. Brain Res. 56, 1984: 60-80 ms)
-  double reading_time = 0.35;   // a deliberate reading [s] (choice)
-  double reaction_time = 0.25;  // to a tone [s] (choice)
+  double reflex_time = 0.07;           // from a loss of force to its effect [s] (design; no source checked yet)
+  double reading_time = 0.35;          // a deliberate reading [s] (choice)
+  double reaction_time = 0.25;         // to a tone [s] (choice)
 };
 
 // One participant's constants.
