@@ -16,14 +16,19 @@ struct Posture {
   double half = 0;               // half the distance of the fingertips' centres [m]
 };
 
+// s above, 0 before its time and 1 after it.
+inline double minimumJerk(double time, double duration) {
+  const double x = duration > 0 ? std::clamp(time / duration, 0.0, 1.0) : 1;
+  return x * x * x * (10 + x * (6 * x - 15));
+}
+
 struct Reach {
   Posture from, to;
   double start = 0;     // [s]
   double duration = 0;  // [s], >= 0
 
   Posture at(double time) const {
-    const double x = duration > 0 ? std::clamp((time - start) / duration, 0.0, 1.0) : 1;
-    const double s = x * x * x * (10 + x * (6 * x - 15));
+    const double s = minimumJerk(time - start, duration);
     return {from.centre_W + s * (to.centre_W - from.centre_W), from.half + s * (to.half - from.half)};
   }
   bool over(double time) const { return time >= start + duration; }

@@ -195,9 +195,10 @@ double ScriptedPickup::touchingHalf() const { return cues_.fingers[0].tip_radius
 devices::HandPull ScriptedPickup::pullOf(int finger) const {
   const auto k = static_cast<std::size_t>(finger);
   const double side = finger == 0 ? -1 : 1;
+  const Vec3 misplacement_W = minimumJerk(now_, options_.settle_time) * sense_.misplacement_W[k];
   const Vec3 felt_W = posture_.centre_W + side * posture_.half * axis_W_;
   devices::HandPull pull = body_.hands[k];
-  pull.p_D = cues_.fingers[k].q_WD.conjugate() * (felt_W + sense_.misplacement_W[k] - cues_.fingers[k].p_WD);
+  pull.p_D = cues_.fingers[k].q_WD.conjugate() * (felt_W + misplacement_W - cues_.fingers[k].p_WD);
   return pull;
 }
 

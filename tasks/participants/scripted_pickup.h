@@ -24,9 +24,10 @@
 namespace pincer::tasks {
 
 struct ScriptedPickupOptions {
-  double clearance = 0.015;        // between fingertip and believed surface before closing [m] (choice)
-  double close_speed = 0.032;      // [m/s], the slowest that Doxon (2014) measured
-  double contact_time = 0.05;      // both fingers must feel something for so long [s] (choice)
+  double settle_time = 1.0;    // in which the hand, put to its place by the arms, drifts to where it believes that place to be [s] (choice)
+  double clearance = 0.015;    // between fingertip and believed surface before closing [m] (choice)
+  double close_speed = 0.032;  // [m/s], the slowest that Doxon (2014) measured
+  double contact_time = 0.05;  // both fingers must feel something for so long [s] (choice)
   double shift_threshold = 5e-3;   // [m] (design)
   double shift_gain = 0.75;        // placement_sd^2 / (placement_sd^2 + error^2 of a reading, 4 mm): the best linear estimate [-]
   int max_shifts = 3;              // per attempt (choice)
