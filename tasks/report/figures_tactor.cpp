@@ -92,11 +92,11 @@ Figure tactorFigure(const TrialTrace& trace) {
   figure.caption = caption(trace);
   figure.height = 900;
   figure.data = {{figure.name + ".csv", placesCsv(trace)}};
-  figure.script =
-      figurePrelude(figure.name) +
-      "set multiplot layout 1,2\nset size ratio -1\nset grid xtics ytics lt 1 lw 0.5 lc rgb '#e2e2e2'\nset xtics 1\nset ytics 1\n"
-      "set xlabel 'towards the radial side [mm]'\nset ylabel 'towards the fingertip [mm]'\n" +
-      padPanel(0, half, last) + padPanel(1, half, last) + "unset multiplot\n";
+  figure.script = figurePrelude(figure.name) +
+                  "set multiplot layout 1,2\nset size ratio -1\nset grid xtics ytics lt 1 lw 0.5 lc rgb '#e2e2e2'\n" +
+                  fmt::format("set xtics {0}\nset ytics {0}\n", half > 6 ? 4 : 1) +
+                  "set xlabel 'towards the radial side [mm]'\nset ylabel 'towards the fingertip [mm]'\n" + padPanel(0, half, last) +
+                  padPanel(1, half, last) + "unset multiplot\n";
   return figure;
 }
 

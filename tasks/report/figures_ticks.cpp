@@ -38,6 +38,8 @@ struct Percentile {
 };
 constexpr Percentile kPercentiles[] = {{"median", 0.5}, {"99 % ≤", 0.99}, {"99.9 % ≤", 0.999}, {"largest", 1.0}};
 
+std::string threeDigits(double value) { return value < 1000 ? fmt::format("{:.3g}", value) : fmt::format("{:.0f}", value); }
+
 // Labels step down the page, above the bars, so that close percentiles don't overprint each other; in the right half they end at the line.
 std::string percentileLines(const std::vector<double>& times, double middle) {
   std::string script;
@@ -46,19 +48,19 @@ std::string percentileLines(const std::vector<double>& times, double middle) {
     const double t = percentile(times, p.share);
     script +=
         fmt::format("set arrow from {0}, graph 0 to {0}, graph {1} nohead front lw 0.8 dt 2 lc rgb '{2}'\n", t, height, palette::kInk);
-    script += fmt::format("set label '{} {:.3g} µs' at {}, graph {} {} front textcolor rgb '{}' font ',18'\n", p.label, t, t, height,
-                          t > middle ? "right offset character -0.5,0" : "left offset character 0.5,0", palette::kInk);
+    script += fmt::format("set label '{} {} µs' at {}, graph {} {} front textcolor rgb '{}' font ',18'\n", p.label, threeDigits(t), t,
+                          height, t > middle ? "right offset character -0.5,0" : "left offset character 0.5,0", palette::kInk);
     height -= 0.065;
   }
   return script;
 }
 
-// Several in each decade: a range is often shorter than one.
-std::string timeTics() {
+// Several in each decade where the range is short, else one.
+std::string timeTics(double least, double most) {
+  const std::vector<double> digits = most < 100 * least ? std::vector<double>{1, 1.5, 2, 3, 4, 5, 7} : std::vector<double>{1};
   std::string tics;
   for (double decade = 1e-2; decade < 1e7; decade *= 10) {
-    for (const double digit : {1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0})
-      tics += fmt::format("{}'{:g}' {}", tics.empty() ? "" : ", ", digit * decade, digit * decade);
+    for (const double digit : digits) tics += fmt::format("{}'{:g}' {}", tics.empty() ? "" : ", ", digit * decade, digit * decade);
   }
   return fmt::format("set xtics ({})\n", tics);
 }
@@ -84,7 +86,7 @@ std::optional<Figure> tickFigure(const SessionReader& session) {
   figure.height = 800;
   figure.data = {{"tick_times.csv", histogramCsv(times)}, {"tick_times_percentiles.csv", percentilesCsv(times)}};
   figure.script =
-      figurePrelude(figure.name) + percentileLines(times, std::sqrt(*least * *most)) + timeTics() +
+      figurePrelude(figure.name) + percentileLines(times, std::sqrt(*least * *most)) + timeTics(*least, *most) +
       fmt::format(
           "set logscale xy\nset xrange [{0}:{1}]\nset yrange [{2}:2e4]\nset xlabel 'tick time [µs]'\nset ylabel 'share of ticks [%]'\n"
           "set ytics ('100' 100, '10' 10, '1' 1, '0.1' 0.1, '0.01' 0.01, '0.001' 0.001, '0.0001' 0.0001)\n"
