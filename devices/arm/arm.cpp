@@ -1,5 +1,7 @@
 #include "devices/arm/arm.h"
 
+#include <cmath>
+
 namespace pincer::devices {
 
 std::string nameOf(DeviceState state) {
@@ -16,6 +18,11 @@ std::string nameOf(DeviceState state) {
       return "faulted";
   }
   return "unknown";
+}
+
+bool isFinite(const ArmSample& sample) {
+  return std::isfinite(sample.time) && sample.p_DF.allFinite() && (!sample.v_DF || sample.v_DF->allFinite()) &&
+         (!sample.q_DF || sample.q_DF->coeffs().allFinite());
 }
 
 }  // namespace pincer::devices

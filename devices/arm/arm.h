@@ -34,6 +34,9 @@ struct ArmSample {
   std::optional<std::uint32_t> switches;  // bit per button
 };
 
+// Whether every number in `sample` that is there is one.
+bool isFinite(const ArmSample& sample);
+
 class Arm {
  public:
   virtual ~Arm() = default;

@@ -27,7 +27,7 @@ Trip findTrip(const GateLimits& limits, const GateInput& in, const GateState& st
   if (!in.f_D.allFinite() || !in.v_DF.allFinite()) return Trip::kNotFinite;
   if (!in.physics_ok) return Trip::kException;
   if (!in.sample.valid) return Trip::kInvalidSample;
-  if (!in.sample.p_DF.allFinite()) return Trip::kNotFinite;
+  if (!isFinite(in.sample)) return Trip::kNotFinite;
   if (!(in.v_DF.norm() <= limits.top_speed)) return Trip::kOverSpeed;
   if (!clockIsSound(limits, in.dt)) return Trip::kMissedDeadline;
   if (!isFresh(limits, in, state.sample_time)) return Trip::kStaleSample;

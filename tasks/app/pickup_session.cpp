@@ -1,5 +1,10 @@
 #include "tasks/app/pickup_session.h"
 
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "contact/error.h"
 #include "tasks/app/json_writer.h"
 #include "tasks/session/session_store.h"
 
@@ -8,13 +13,17 @@ namespace {
 
 class SessionSink final : public RecordSink {
  public:
-  explicit SessionSink(SessionWriter& writer) : writer_(writer) {}
-  void sample(const SampleRecord& sample) override { writer_.pushSample(sample); }  // a lost one is counted by the store
+  // Keeps every `stride`-th tick.
+  SessionSink(SessionWriter& writer, std::int64_t stride) : writer_(writer), stride_(stride) {}
+  void sample(const SampleRecord& sample) override {
+    if (sample.tick % stride_ == 0) writer_.pushSample(sample);  // a lost one is counted by the store
+  }
   void event(const EventRecord& event) override { writer_.addEvent(event); }
   void trial(const TrialRecord& trial) override { writer_.finishTrial(trial); }
 
  private:
   SessionWriter& writer_;
+  const std::int64_t stride_;
 };
 
 void writeObject(const SpherePickupOptions& o, JsonWriter& json) {
@@ -37,15 +46,15 @@ std::string sceneJson(const SpherePickupOptions& o) {
   return json.endObject().text();
 }
 
-std::string devicesJson(const ServoOptions& servo) {
+std::string devicesJson(const PickupSessionOptions& o) {
   JsonWriter json;
-  json.beginObject().key("arms").value("simulated").key("tactile_displays").value("simulated").key("rate").value(servo.rate);
-  return json.key("real_time").value(servo.real_time).endObject().text();
+  json.beginObject().key("arms").value("simulated").key("tactile_displays").value("simulated").key("rate").value(o.servo.rate);
+  return json.key("sample_rate").value(o.sample_rate).key("real_time").value(o.servo.real_time).endObject().text();
 }
 
-SessionInfo sessionInfo(const SpherePickupOptions& options, const ServoOptions& servo) {
-  return {"sphere-pickup",    options.seed,          PINCER_VERSION,    "compiler " __VERSION__,
-          sceneJson(options), protocolJson(options), devicesJson(servo)};
+SessionInfo sessionInfo(const PickupSessionOptions& o) {
+  return {"sphere-pickup",    o.study.seed,          PINCER_VERSION, "compiler " __VERSION__,
+          sceneJson(o.study), protocolJson(o.study), devicesJson(o)};
 }
 
 }  // namespace
@@ -60,16 +69,27 @@ std::string protocolJson(const SpherePickupOptions& o) {
   return json.key("hold_time").value(o.hold_time).key("timeout").value(o.timeout).endObject().text();
 }
 
-PickupSessionResult runPickupSession(const SpherePickupOptions& options, const ServoOptions& servo, const std::string& path,
-                                     const std::atomic<bool>& interrupted, const std::function<void(const PickupProgress&)>& progress) {
+void validate(const PickupSessionOptions& options) {
+  validate(options.study);
+  const int rate = options.sample_rate;
+  if (rate >= 1 && rate <= 1000 && std::fmod(options.servo.rate, rate) == 0) return;
+  throw InputError(
+      fmt::format("sphere-pickup: sample_rate = {} is out of range: an integer in [1, 1000] Hz that divides the {:g} ticks of a "
+                  "second. Take for example 1000, 500, 200 or 100.",
+                  rate, options.servo.rate));
+}
+
+PickupSessionResult runPickupSession(const PickupSessionOptions& options, const std::string& path, const std::atomic<bool>& interrupted,
+                                     const std::function<void(const PickupProgress&)>& progress) {
   validate(options);
   SessionOptions store;
-  store.block_when_full = !servo.real_time;
-  SessionWriter writer = SessionWriter::create(path, sessionInfo(options, servo), store);
-  SessionSink sink(writer);
+  store.block_when_full = !options.servo.real_time;
+  SessionWriter writer = SessionWriter::create(path, sessionInfo(options), store);
+  SessionSink sink(writer, std::lround(options.servo.rate) / options.sample_rate);
   PickupSessionResult result;
-  result.trials = runPickupStudy(options, servo, sink, interrupted, progress);
-  result.interrupted = interrupted.load();
+  const auto served = [&](const ServoReport& trial) { result.servo.add(trial); };
+  result.trials = runPickupStudy(options.study, options.servo, sink, interrupted, progress, served);
+  result.interrupted = result.servo.interrupted;
   if (result.interrupted) {
     writer.abort("interrupted by the user");
   } else {

@@ -11,6 +11,7 @@
 #include "tasks/app/interrupt.h"
 #include "tasks/app/pickup_session.h"
 #include "tasks/app/progress.h"
+#include "tasks/app/servo_text.h"
 #include "tasks/experiments/pickup_object.h"
 #include "tasks/report/report.h"
 #include "tasks/session/atomic_file.h"
@@ -19,16 +20,16 @@ namespace pincer::tasks {
 namespace {
 
 constexpr const char* kExample = R"(
-A simulated participant on simulated arms and contact location displays does the task; every tick is kept in DIR/session.db, a page with
-plots in DIR/report.html.
+A simulated participant on simulated arms and contact location displays does the task; trials, events and samples are kept in
+DIR/session.db, a page with plots in DIR/report.html.
 
 Example:
   pincer run sphere-pickup --repetitions 2 --seed 7 --out out/first)";
 
 struct RunArguments {
   std::string task, out, condition = "both", object, units = "mm";
-  SpherePickupOptions study;
-  bool real_time = false, json = false, report = true;
+  PickupSessionOptions session;
+  bool json = false, report = true;
 };
 
 std::string freshDirectory(const std::string& task) {
@@ -36,18 +37,16 @@ std::string freshDirectory(const std::string& task) {
   return fmt::format("out/{}-{:%Y%m%d-%H%M%S}", task, fmt::localtime(now));
 }
 
-SpherePickupOptions studyOf(const RunArguments& arguments) {
-  SpherePickupOptions options = arguments.study;
-  if (arguments.condition != "both") options.conditions = {pickupConditionOf(arguments.condition)};
-  if (!arguments.object.empty()) options.object = ObjectFile{arguments.object, arguments.units};
+PickupSessionOptions optionsOf(const RunArguments& arguments) {
+  PickupSessionOptions options = arguments.session;
+  if (arguments.condition != "both") options.study.conditions = {pickupConditionOf(arguments.condition)};
+  if (!arguments.object.empty()) options.study.object = ObjectFile{arguments.object, arguments.units};
   return options;
 }
 
-PickupSessionResult runStudy(const RunArguments& arguments, const std::string& session, const std::atomic<bool>& interrupted) {
-  ServoOptions servo;
-  servo.real_time = arguments.real_time;
+PickupSessionResult runSession(const PickupSessionOptions& options, const std::string& session, const std::atomic<bool>& interrupted) {
   std::unique_ptr<Progress> line;
-  return runPickupSession(studyOf(arguments), servo, session, interrupted, [&](const PickupProgress& progress) {
+  return runPickupSession(options, session, interrupted, [&](const PickupProgress& progress) {
     if (!line) line = std::make_unique<Progress>("trials", static_cast<std::int64_t>(progress.total));
     line->update(static_cast<std::int64_t>(progress.done));
   });
@@ -64,6 +63,8 @@ int show(const RunArguments& arguments, const std::string& directory, const Pick
   const SessionSummary summary = summariseSession(session);
   fmt::print("{}\n", arguments.json ? summaryJson(summary) : formatTable(summary));
   const auto say = [&](const std::string& line) { fmt::print(arguments.json ? stderr : stdout, "{}\n", line); };
+  const ServoOptions& servo = arguments.session.servo;
+  if (servo.real_time) say(servoText(result.servo, 1 / servo.rate));
   say(fmt::format("Session: {}", session.path()));
   if (result.interrupted) {
     say(fmt::format("Interrupted after {} trials; they are safe. See them: pincer report {}", result.trials, session.path()));
@@ -71,20 +72,22 @@ int show(const RunArguments& arguments, const std::string& directory, const Pick
   }
   if (arguments.report) say(fmt::format("Report: {}", writeReport(session, directory + "/report.html").html));
   const std::int64_t faults = faultsIn(summary);
-  if (faults > 0) say(fmt::format("{} trials ended in a fault; their events say why: pincer export {}", faults, session.path()));
+  if (faults > 0) say(fmt::format("Trials that ended in a fault: {}; their events say why: pincer export {}", faults, session.path()));
   return faults > 0 ? kExitCheckFailed : kExitOk;
 }
 
 int run(const RunArguments& arguments) {
   const std::atomic<bool>& interrupted = interruptFlag();
   const std::string directory = arguments.out.empty() ? freshDirectory(arguments.task) : arguments.out;
-  makePickupObject(studyOf(arguments));  // bad options and objects are named before anything is written
+  const PickupSessionOptions options = optionsOf(arguments);
+  validate(options);
+  makePickupObject(options.study);  // bad options and objects are named before anything is written
   makeDirectory(directory);
-  return show(arguments, directory, runStudy(arguments, directory + "/session.db", interrupted));
+  return show(arguments, directory, runSession(options, directory + "/session.db", interrupted));
 }
 
 void addStudyOptions(CLI::App& command, RunArguments& arguments) {
-  SpherePickupOptions& study = arguments.study;
+  SpherePickupOptions& study = arguments.session.study;
   command.add_option("--condition", arguments.condition, "What the fingers feel")
       ->check(CLI::IsMember({"force", "cld+force", "both"}))
       ->capture_default_str();
@@ -108,7 +111,9 @@ void addRunCommand(CLI::App& app, int& exit_code) {
   command->add_option("task", arguments->task, "Which experiment: sphere-pickup")->required()->check(CLI::IsMember({"sphere-pickup"}));
   addStudyOptions(*command, *arguments);
   command->add_option("--out", arguments->out, "New directory for session and report (default: out/TASK-DATE-TIME)");
-  command->add_flag("--real-time", arguments->real_time, "At 1 kHz of the wall clock in place of as fast as it goes");
+  command->add_flag("--real-time", arguments->session.servo.real_time, "At 1 kHz of the wall clock in place of as fast as it goes");
+  command->add_option("--sample-rate", arguments->session.sample_rate, "Of the 1000 ticks of a second, so many are kept [Hz]")
+      ->capture_default_str();
   command->add_flag("!--no-report", arguments->report, "Only the session and the table");
   command->add_flag("--json", arguments->json, "Print the table as JSON");
   command->footer(kExample);

@@ -17,7 +17,8 @@ bool SimulatedPickup::tick(double now) {
 }
 
 std::size_t runPickupStudy(const SpherePickupOptions& options, const ServoOptions& servo, RecordSink& sink,
-                           const std::atomic<bool>& interrupted, const std::function<void(const PickupProgress&)>& progress) {
+                           const std::atomic<bool>& interrupted, const std::function<void(const PickupProgress&)>& progress,
+                           const std::function<void(const ServoReport&)>& served) {
   const auto trials = pickupTrials(options);
   const PickupObject object = makePickupObject(options);
   const auto report = [&](std::size_t done) {
@@ -28,7 +29,9 @@ std::size_t runPickupStudy(const SpherePickupOptions& options, const ServoOption
   for (const PickupTrialSpec& spec : trials) {
     ScriptedPickup participant(participantSeed(options, spec.participant));
     SimulatedPickup cycle(options, object, spec, participant, sink);
-    if (runServo(servo, cycle, interrupted).interrupted) break;
+    const ServoReport servo_report = runServo(servo, cycle, interrupted);
+    if (served) served(servo_report);
+    if (servo_report.interrupted) break;
     cycle.finish();
     report(++done);
   }

@@ -36,8 +36,10 @@ struct PickupProgress {
 };
 
 // Every trial of the study with the scripted participant. An interrupted trial leaves no row. Returns the number of finished trials.
-// `progress` (may be empty) is called before the first and after every trial. Throws InputError for bad options or a bad object.
+// `progress` (may be empty) is called before the first and after every trial, `served` (may be empty) with what the servo says of each, the
+// interrupted one included. Throws InputError for bad options or a bad object.
 std::size_t runPickupStudy(const SpherePickupOptions& options, const ServoOptions& servo, RecordSink& sink,
-                           const std::atomic<bool>& interrupted, const std::function<void(const PickupProgress&)>& progress = {});
+                           const std::atomic<bool>& interrupted, const std::function<void(const PickupProgress&)>& progress = {},
+                           const std::function<void(const ServoReport&)>& served = {});
 
 }  // namespace pincer::tasks

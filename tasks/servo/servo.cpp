@@ -6,6 +6,7 @@
 #include <sys/prctl.h>
 #include <time.h>
 
+#include <algorithm>
 #include <stdexcept>
 #include <thread>
 
@@ -45,8 +46,9 @@ class RealTimePriority {
 
   std::string note() const {
     std::string text;
-    if (!fifo_) text += "No SCHED_FIFO: ticks may be late (allow rtprio in limits.conf). ";
-    if (!locked_) text += "Memory isn't locked: a page fault may delay a tick (allow memlock in limits.conf). ";
+    if (!fifo_) text += "Real-time priority (SCHED_FIFO) isn't permitted: ticks may be late. Allow rtprio 80 in limits.conf.";
+    if (!fifo_ && !locked_) text += "\n";
+    if (!locked_) text += "Locked memory (mlockall) isn't permitted: a page fault may delay a tick. Allow memlock in limits.conf.";
     return text;
   }
 
@@ -59,9 +61,11 @@ class WatchdogThread {
  public:
   WatchdogThread(double limit, ServoCycle& cycle) : dog_(static_cast<std::int64_t>(1e9 * limit)), cycle_(cycle) {
     dog_.arm(nowNs());
-    thread_ = std::thread([this, period = static_cast<std::int64_t>(0.25e9 * limit)] { watch(period); });
+    // Four times per limit, and often enough that the end of a session needn't wait.
+    thread_ = std::thread([this, period = static_cast<std::int64_t>(1e9 * std::min(0.25 * limit, 0.01))] { watch(period); });
   }
   ~WatchdogThread() {
+    dog_.rest();
     stop_ = true;
     thread_.join();
   }
@@ -92,12 +96,14 @@ bool timedTick(ServoCycle& cycle, double now, ServoReport& report) {
   return more;
 }
 
-void runVirtual(const ServoOptions& options, ServoCycle& cycle, const std::atomic<bool>& interrupted, ServoReport& report) {
-  while (!interrupted && timedTick(cycle, static_cast<double>(report.ticks) / options.rate, report)) {
-  }
+// Both return whether the cycle had more to do.
+bool runVirtual(const ServoOptions& options, ServoCycle& cycle, const std::atomic<bool>& interrupted, ServoReport& report) {
+  bool more = true;
+  while (more && !interrupted) more = timedTick(cycle, static_cast<double>(report.ticks) / options.rate, report);
+  return more;
 }
 
-void runReal(const ServoOptions& options, ServoCycle& cycle, const std::atomic<bool>& interrupted, ServoReport& report) {
+bool runReal(const ServoOptions& options, ServoCycle& cycle, const std::atomic<bool>& interrupted, ServoReport& report) {
   const RealTimePriority priority;
   report.note = priority.note();
   WatchdogThread dog(options.watchdog, cycle);
@@ -114,9 +120,21 @@ void runReal(const ServoOptions& options, ServoCycle& cycle, const std::atomic<b
     dog.feed();
   }
   report.watchdog_tripped = dog.expired();
+  return more;
 }
 
 }  // namespace
+
+void ServoReport::add(const ServoReport& other) {
+  ticks += other.ticks;
+  missed += other.missed;
+  lateness.add(other.lateness);
+  duration.add(other.duration);
+  wall += other.wall;
+  watchdog_tripped = watchdog_tripped || other.watchdog_tripped;
+  interrupted = interrupted || other.interrupted;
+  if (note.empty()) note = other.note;
+}
 
 ServoReport runServo(const ServoOptions& options, ServoCycle& cycle, const std::atomic<bool>& interrupted) {
   if (!(options.rate >= 100 && options.rate <= 4000)) throw std::invalid_argument("servo rate out of range [100, 4000] Hz");
@@ -124,16 +142,12 @@ ServoReport runServo(const ServoOptions& options, ServoCycle& cycle, const std::
   ServoReport report;
   const std::int64_t start = nowNs();
   try {
-    if (options.real_time) {
-      runReal(options, cycle, interrupted, report);
-    } else {
-      runVirtual(options, cycle, interrupted, report);
-    }
+    const auto run = options.real_time ? runReal : runVirtual;
+    report.interrupted = run(options, cycle, interrupted, report);
   } catch (...) {
     cycle.cutForces();
     throw;
   }
-  report.interrupted = interrupted;
   report.wall = 1e-9 * static_cast<double>(nowNs() - start);
   return report;
 }

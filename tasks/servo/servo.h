@@ -34,8 +34,11 @@ struct ServoReport {
   Histogram duration;       // of a tick [s]
   double wall = 0;          // [s]
   bool watchdog_tripped = false;
-  bool interrupted = false;
-  std::string note;  // what the system didn't permit; empty when all is well
+  bool interrupted = false;  // before the cycle was done
+  std::string note;          // a line for each thing that the system didn't permit; empty when all is well
+
+  // As if the two runs were one.
+  void add(const ServoReport& other);
 };
 
 // Runs `cycle` until it is done or `interrupted` becomes true. An exception from a tick cuts the forces and is passed on. Throws

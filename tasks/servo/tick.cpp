@@ -20,7 +20,8 @@ Vec3 filteredVelocity(const TickModel& model, const MountState& mount, const dev
 void locateFinger(const TickModel& model, TickState& state, int i, const devices::ArmSample& sample, grasp::FingerInput& input) {
   MountState& mount = state.mounts[i];
   const Pose& X_WD = model.mounts[i].X_WD;
-  if (sample.valid && sample.p_DF.allFinite()) {
+  const bool usable = sample.valid && devices::isFinite(sample);
+  if (usable) {
     const Vec3 p_WF = X_WD * sample.p_DF;
     mount.v_WF = filteredVelocity(model, mount, sample, p_WF, X_WD.q.toRotationMatrix());
     if (!mount.seen) {  // the proxy starts where the finger is
@@ -34,7 +35,7 @@ void locateFinger(const TickModel& model, TickState& state, int i, const devices
     mount.v_WF.setZero();
     if (!mount.seen) mount.p_WF = state.grasp.world.points[i].p_W;
   }
-  input = {mount.p_WF, mount.v_WF, sample.q_DF ? X_WD.q * *sample.q_DF : X_WD.q, Vec3::Zero()};
+  input = {mount.p_WF, mount.v_WF, usable && sample.q_DF ? X_WD.q * *sample.q_DF : X_WD.q, Vec3::Zero()};
 }
 
 Vec3 gatedForce(const TickModel& model, MountState& mount, const FingerMount& config, const devices::ArmSample& sample,

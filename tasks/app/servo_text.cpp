@@ -1,0 +1,29 @@
+#include "tasks/app/servo_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace pincer::tasks {
+namespace {
+
+double inMicroseconds(double seconds) { return 1e6 * seconds; }
+
+std::string percentiles(const char* what, const Histogram& times) {
+  return fmt::format("  {:<14}median {:.1f}, 99.9 % <= {:.1f}, largest {:.1f} us", what, inMicroseconds(times.quantile(0.5)),
+                     inMicroseconds(times.quantile(0.999)), inMicroseconds(times.largest()));
+}
+
+}  // namespace
+
+std::string servoText(const ServoReport& report, double period) {
+  const auto due = static_cast<double>(std::max<std::int64_t>(1, report.ticks + report.missed));
+  std::string text = fmt::format("Real time: {} ticks of {:g} us in {:.1f} s; {} missed ({:.3g} %)\n", report.ticks, inMicroseconds(period),
+                                 report.wall, report.missed, 100 * static_cast<double>(report.missed) / due);
+  text += percentiles("began late by", report.lateness) + "\n" + percentiles("took", report.duration);
+  if (report.watchdog_tripped) text += "\nThe watchdog cut the forces: ticks stalled for longer than it allows. Close other programs.";
+  if (!report.note.empty()) text += "\n" + report.note;
+  return text;
+}
+
+}  // namespace pincer::tasks

@@ -1,0 +1,13 @@
+// servo_text: how the clock of a session did, in plain words.
+#pragma once
+#include <string>
+
+#include "tasks/servo/servo.h"
+
+namespace pincer::tasks {
+
+// A few lines without a newline at the end: ticks done and missed, how late they began and how long they took, what went wrong, and what the
+// system didn't permit. `period`: of a tick [s].
+std::string servoText(const ServoReport& report, double period);
+
+}  // namespace pincer::tasks
