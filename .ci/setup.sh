@@ -25,11 +25,11 @@ ensure_packages() {
   fi
 }
 
-# build DIRECTORY [CMAKE_OPTION...]   configures and builds.
+# build DIRECTORY [CMAKE_OPTION...]   configures, and builds the targets that $targets names, all if there is none.
 build() {
   local directory=$1
   shift
   cmake -S . -B "$directory" -G Ninja "$@" > "$directory-configure.log" 2>&1 || { cat "$directory-configure.log" >&2; exit 1; }
   mv "$directory-configure.log" "$directory/configure.log"
-  cmake --build "$directory"
+  cmake --build "$directory" ${targets:+--target $targets}
 }
