@@ -32,8 +32,8 @@ struct PairPoints {
 // anything. Two supports (half-space, dish) are both static and never a pair.
 bool pairIsSupported(const Shape& a, const Shape& b);
 
-// The points of a and b that are closer than `margin` >= 0 [m], written to `out` (sorted by feature). With more than four candidates the
-// four that carry best are kept: the deepest, then those that span most around it (point_choice.h). Unsupported pairs give no point.
+// The points of a and b that are closer than `margin` >= 0 [m], written to `out` (sorted by feature). Of more than four
+// candidates up to four are kept: the deepest, then those on which the solid would land first if it rocked (point_choice.h). Unsupported pairs give no point.
 // Allocates nothing.
 void collideShapes(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin, PairPoints& out);
 

@@ -1,16 +1,18 @@
-// point_choice: up to four of a solid's extreme points, those that carry it best on a support.
+// point_choice: up to four of a solid's extreme points, those that carry it on a support now or will first when it rocks.
 //
-// Up to four points within the margin are all kept. Of more, in this order, with distances across the normal n at the first point:
-//   1. the deepest
-//   2. the one furthest from 1
-//   3. the one furthest from the line 1-2
-//   4. the one furthest outside the triangle 1-2-3
-// each of 2-4 by  distance - 2 (gap - gap of the deepest):  without the second term the upper corners of a thin tilted plate, which stick
-// out further than the lower ones, would be taken and the plate would sink. The factor 2 holds up to a tilt of atan 2 = 63 degrees, where
-// another face has long become the lower one (for a box at 55 degrees at the latest).
-// Differences below 1e-7 m count as none, and then the smaller feature wins: the points of a resting body don't change with round-off.
-// Cost: one scan over all points and four over those within the margin, 1 and 20 ns per point. More than 256 of these are not listed
-// (no memory is allocated) but found again by each scan: 10 us for a hull of 10,000 vertices with few of them near, 230 us with most.
+// Up to four points within the margin are all kept. Of more, first the deepest; then, again and again, the one on which the solid would land
+// first if it tipped out of the polygon of those already kept:
+//
+//   largest  d / (g + s)     d  how far the point is outside that polygon, seen along the normal n at the first point [m]
+//                            g  its gap less the deepest's [m], s = 1 um the difference that counts as none
+//
+// g / d is the tangent of the tipping angle, so this wraps the solid's hull from below: a body at rest keeps the corners of the facet that
+// it rests on, however close together they are, and corners that are open by more join only where these leave room. Among equally deep ones
+// the widest spread wins. (A score that subtracts the gap from the spread takes far, open corners in place of near, carrying ones: the body
+// then falls from one set of corners to the next for ever.) More than four points didn't help: meshes came to rest no sooner.
+// A score must be better by half a per cent to win over a smaller feature: the points of a resting body don't change with round-off.
+// Cost: one scan over all points and four over those within the margin. More than 256 of these are not listed (no memory is allocated) but
+// found again by each scan.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -32,7 +34,7 @@ class PointChoice {
  public:
   PointChoice(const ExtremePoints& solid, const Support& support, double margin) : solid_(solid), support_(support), margin_(margin) {
     listNear();
-    near_count_ <= kMaxPairPoints ? keepAll() : keepBestFour();
+    near_count_ <= kMaxPairPoints ? keepAll() : keepBest();
   }
 
   int count() const { return count_; }
@@ -40,14 +42,24 @@ class PointChoice {
 
  private:
   static constexpr int kListed = 256;
-  static constexpr double kSame = 1e-7;      // [m]
-  static constexpr double kGapWeight = 2.0;  // [-]
+  static constexpr double kSameGap = 1e-6;  // [m]
+  static constexpr double kBetter = 1.005;  // ratio of scores [-]
+
+  // From a chosen point to another, none to the right of it; two points have two edges, there and back.
+  struct Edge {
+    Vec3 right_A;  // unit vector across the edge and the normal; zero where both ends lie on one normal
+    double offset;
+
+    double distance(const Vec3& p) const { return right_A.dot(p) - offset; }  // [m]
+  };
+  static constexpr int kMaxEdges = (kMaxPairPoints - 1) * (kMaxPairPoints - 2);
 
   double gapOf(int i) const { return support_.gap(solid_.points[i]) - solid_.rounding; }
   int candidates() const { return static_cast<int>(solid_.points.size()); }
   const Vec3& chosenPoint(int i) const { return solid_.points[chosen_[i].index]; }
-  bool isChosen(int i) const {
-    return std::any_of(chosen_.begin(), chosen_.begin() + count_, [i](const Chosen& c) { return c.index == i; });
+  template <class Predicate>
+  bool anyChosen(Predicate is) const {
+    return std::any_of(chosen_.begin(), chosen_.begin() + count_, is);
   }
 
   void listNear() {
@@ -74,59 +86,62 @@ class PointChoice {
     std::copy(near_.begin(), near_.begin() + count_, chosen_.begin());
   }
 
-  void keepBestFour() {
+  void keepBest() {
     keepDeepest();
-    keepFurthest();
-    keepFurthestFromLine();
-    keepFurthestFromTriangle();
-    std::sort(chosen_.begin(), chosen_.end(), [](const Chosen& a, const Chosen& b) { return a.index < b.index; });
+    while (count_ < kMaxPairPoints && keepNext()) continue;
+    std::sort(chosen_.begin(), chosen_.begin() + count_, [](const Chosen& a, const Chosen& b) { return a.index < b.index; });
   }
 
   void keepDeepest() {
     Chosen first{-1, 0};
     forEachNear([&](const Chosen& c) {
-      if (first.index < 0 && c.gap <= deepest_ + kSame) first = c;
+      if (first.index < 0 && c.gap <= deepest_ + kSameGap) first = c;
     });
     chosen_[count_++] = first;
     n_A_ = support_.normal(chosenPoint(0));
   }
 
-  void keepFurthest() {
-    const Vec3& p0 = chosenPoint(0);
-    keepBest([&](const Vec3& p) { return n_A_.cross(p - p0).norm(); });
-  }
-
-  void keepFurthestFromLine() {
-    const Vec3& p0 = chosenPoint(0);
-    const Vec3 across = acrossEdge(p0, chosenPoint(1));
-    keepBest([&](const Vec3& p) { return std::abs(across.dot(p - p0)); });
-  }
-
-  void keepFurthestFromTriangle() {
-    const Vec3& a = chosenPoint(0);
-    const bool turns_left = acrossEdge(a, chosenPoint(1)).dot(chosenPoint(2) - a) < 0;
-    const Vec3& b = chosenPoint(turns_left ? 1 : 2);
-    const Vec3& c = chosenPoint(turns_left ? 2 : 1);
-    const Vec3 ab = acrossEdge(a, b);
-    const Vec3 bc = acrossEdge(b, c);
-    const Vec3 ca = acrossEdge(c, a);
-    keepBest([&](const Vec3& p) { return std::max({ab.dot(p - a), bc.dot(p - b), ca.dot(p - c)}); });
-  }
-
-  // Unit vector across the normal, to the right of the edge from `a` to `b`; zero where the two lie on one normal.
-  Vec3 acrossEdge(const Vec3& a, const Vec3& b) const { return directionOf<Vec3>((b - a).cross(n_A_), Vec3::Zero()).n; }
-
-  template <class Distance>
-  void keepBest(Distance distance) {
-    double best = -std::numeric_limits<double>::infinity();
-    Chosen next{0, 0};
+  // False where no point is outside the polygon: those within it carry nothing that its corners don't.
+  bool keepNext() {
+    joinEdges();
+    double best = 0;
+    Chosen next{-1, 0};
     forEachNear([&](const Chosen& c) {
-      const double score = distance(solid_.points[c.index]) - kGapWeight * (c.gap - deepest_);
-      if (!(score > best + kSame) || isChosen(c.index)) return;
+      const double score = outside(solid_.points[c.index]) / (kSameGap + c.gap - deepest_);
+      if (!(score > kBetter * best) || anyChosen([&](const Chosen& other) { return other.index == c.index; })) return;
       best = score;
       next = c;
     });
+    if (next.index < 0) return false;
     chosen_[count_++] = next;
+    return true;
+  }
+
+  // How far `p` is outside the polygon of the chosen points; where it is nearest to a corner, a little less.
+  double outside(const Vec3& p) const {
+    if (count_ == 1) return n_A_.cross(p - chosenPoint(0)).norm();
+    double distance = -std::numeric_limits<double>::infinity();
+    for (int i = 0; i < edge_count_; ++i) distance = std::max(distance, edges_[i].distance(p));
+    return distance;
+  }
+
+  void joinEdges() {
+    edge_count_ = 0;
+    for (int i = 0; i < count_; ++i) {
+      for (int j = 0; j < count_; ++j) {
+        const Edge edge = edgeBetween(chosenPoint(i), chosenPoint(j));
+        if (i != j && isOutermost(edge)) edges_[edge_count_++] = edge;
+      }
+    }
+  }
+
+  Edge edgeBetween(const Vec3& a, const Vec3& b) const {
+    const Vec3 right_A = directionOf<Vec3>((b - a).cross(n_A_), Vec3::Zero()).n;
+    return {right_A, right_A.dot(a)};
+  }
+
+  bool isOutermost(const Edge& edge) const {
+    return !anyChosen([&](const Chosen& c) { return edge.distance(solid_.points[c.index]) > kSameGap; });
   }
 
   const ExtremePoints& solid_;
@@ -136,6 +151,8 @@ class PointChoice {
   Vec3 n_A_ = Vec3::UnitZ();
   std::array<Chosen, kMaxPairPoints> chosen_{};
   int count_ = 0;
+  std::array<Edge, kMaxEdges> edges_{};
+  int edge_count_ = 0;
   std::array<Chosen, kListed> near_;  // of near_count_ points within the margin, the first
   int near_count_ = 0;
 };
