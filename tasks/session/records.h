@@ -10,57 +10,57 @@ constexpr int kRecordedFingers = 2;
 
 // One finger in one tick.
 struct FingerRecord {
-  std::array<double, 3> p_WF{};        // device fingertip [m]
-  std::array<double, 3> p_WP{};        // proxy [m]
-  std::array<double, 3> f_contact_W{}; // sum of contact forces on the finger [N]
-  std::array<double, 3> f_arm_D{};     // force let through to the arm [N]
-  double normal_force = 0;             // [N]
-  double tangential_force = 0;         // [N]
-  double gap = 0;                      // to the nearest body [m]
+  std::array<double, 3> p_WF{};            // device fingertip [m]
+  std::array<double, 3> p_WP{};            // proxy [m]
+  std::array<double, 3> f_contact_W{};     // sum of contact forces on the finger [N]
+  std::array<double, 3> f_arm_D{};         // force let through to the arm [N]
+  double normal_force = 0;                 // [N]
+  double tangential_force = 0;             // [N]
+  double gap = 0;                          // to the nearest body [m]
   std::array<double, 2> place_wanted_L{};  // tactor command on the pad [m]
   std::array<double, 2> place_shown_L{};   // measured tactor place [m]; NaN where the device doesn't measure it
-  std::int32_t flags = 0;              // 1 touching, 2 sliding, 4 gate tripped, 8 tactor parked
+  std::int32_t flags = 0;                  // 1 touching, 2 sliding, 4 gate tripped, 8 tactor parked
 };
 
 struct SampleRecord {
-  std::int64_t trial = 0;              // trial id within the session
+  std::int64_t trial = 0;  // trial id within the session
   std::int64_t tick = 0;
-  double time = 0;                     // [s]
-  std::array<double, 3> p_WB{};        // object [m]
-  std::array<double, 4> q_WB{};        // object, (w, x, y, z)
-  std::array<double, 3> v_WB{};        // object's centre of mass [m/s]
+  double time = 0;               // [s]
+  std::array<double, 3> p_WB{};  // object [m]
+  std::array<double, 4> q_WB{};  // object, (w, x, y, z)
+  std::array<double, 3> v_WB{};  // object's centre of mass [m/s]
   std::array<FingerRecord, kRecordedFingers> fingers{};
-  double tick_us = 0;                  // time that the tick took [us]
-  std::uint32_t status = 0;            // engine::StepStatus bits
+  double tick_us = 0;        // time that the tick took [us]
+  std::uint32_t status = 0;  // engine::StepStatus bits
 };
 
 struct EventRecord {
   std::int64_t trial = 0;
   double time = 0;
-  std::string kind;                    // "phase", "tone", "squeeze", "lift", "try_5mm", "slip", "drop", "success", "timeout", "gate_trip", ...
-  std::string detail;                  // one line, may be empty
+  std::string kind;    // "phase", "tone", "squeeze", "lift", "try_5mm", "slip", "drop", "success", "timeout", "gate_trip", ...
+  std::string detail;  // one line, may be empty
 };
 
 // One row per trial, written when it ends and durable before the next begins.
 struct TrialRecord {
   std::int64_t trial = 0;
   std::int64_t participant = 0;
-  std::string condition;               // "force", "cld+force"
-  std::int64_t index = 0;              // place in the participant's order
-  double mu_s = 0, mu_d = 0;           // of the object
-  std::string outcome;                 // "success", "timeout", "fault"
-  double duration = 0;                 // [s]
+  std::string condition;      // "force", "cld+force"
+  std::int64_t index = 0;     // place in the participant's order
+  double mu_s = 0, mu_d = 0;  // of the object
+  std::string outcome;        // "success", "timeout", "fault"
+  double duration = 0;        // [s]
   std::int64_t squeezes = 0, lifts = 0, tries_5mm = 0, slips = 0, drops = 0;
-  double peak_grip = 0;                // largest mean normal force of the two fingers [N]
-  double grip_ratio = 0;               // grip while held / smallest grip m g / (2 mu) [-]; NaN if never held
-  double offset_at_squeeze = 0;        // contact offset from the antipodal line at the last squeeze [m]; NaN if none
+  double peak_grip = 0;          // largest mean normal force of the two fingers [N]
+  double grip_ratio = 0;         // grip while held / smallest grip m g / (2 mu) [-]; NaN if never held
+  double offset_at_squeeze = 0;  // contact offset from the antipodal line at the last squeeze [m]; NaN if none
   double tick_us_median = 0, tick_us_p999 = 0;
 };
 
 struct SessionInfo {
-  std::string task;                    // "sphere-pickup"
+  std::string task;  // "sphere-pickup"
   std::uint64_t seed = 0;
-  std::string version, build;          // program version; compiler and flags
+  std::string version, build;  // program version; compiler and flags
   std::string scene_json, protocol_json, devices_json;
 };
 
