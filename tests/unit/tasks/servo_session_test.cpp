@@ -1,0 +1,156 @@
+// A pickup study into a session file under the servo: which ticks are kept, what an interrupt leaves, and what a person is told.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <thread>
+#include <vector>
+
+#include "contact/error.h"
+#include "tasks/app/pickup_session.h"
+#include "tasks/app/servo_text.h"
+#include "tasks/session/session_store.h"
+#include "tests/support/temporary_directory.h"
+
+namespace pincer::tasks {
+namespace {
+
+const std::atomic<bool> kNever{false};
+
+PickupSessionOptions shortStudy(int repetitions = 1) {
+  PickupSessionOptions options;
+  options.study.frictions = {0.9};
+  options.study.conditions = {PickupCondition::kCldForce};
+  options.study.repetitions = repetitions;
+  options.study.timeout = 3;
+  return options;
+}
+
+std::vector<SampleRecord> samplesOf(const SessionReader& session) {
+  std::vector<SampleRecord> samples;
+  session.forEachSample({}, [&](const SampleRecord& sample) { samples.push_back(sample); });
+  return samples;
+}
+
+TEST(PickupSession, KeepsEveryFifthTickByDefault) {
+  const tests::TemporaryDirectory directory;
+  const PickupSessionResult result = runPickupSession(shortStudy(), directory / "thin.db", kNever, {});
+  EXPECT_EQ(result.trials, 1u);
+  const SessionReader session(directory / "thin.db");
+  const std::vector<SampleRecord> samples = samplesOf(session);
+  EXPECT_EQ(static_cast<std::int64_t>(samples.size()), (result.servo.ticks + 4) / 5);
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    ASSERT_EQ(samples[k].tick, static_cast<std::int64_t>(5 * k));
+    ASSERT_EQ(samples[k].time, static_cast<double>(samples[k].tick) / 1000);
+  }
+  EXPECT_NE(session.info().devices_json.find("\"sample_rate\": 200"), std::string::npos) << session.info().devices_json;
+}
+
+// The kept ticks are those of the full session, and everything else is the same.
+TEST(PickupSession, IsThinnedWithoutChangingWhatHappens) {
+  const tests::TemporaryDirectory directory;
+  PickupSessionOptions options = shortStudy();
+  runPickupSession(options, directory / "thin.db", kNever, {});
+  options.sample_rate = 1000;
+  const PickupSessionResult result = runPickupSession(options, directory / "full.db", kNever, {});
+  const SessionReader thin(directory / "thin.db"), full(directory / "full.db");
+  const std::vector<SampleRecord> few = samplesOf(thin), all = samplesOf(full);
+  ASSERT_EQ(static_cast<std::int64_t>(all.size()), result.servo.ticks);
+  ASSERT_EQ(few.size(), (all.size() + 4) / 5);
+  for (std::size_t k = 0; k < few.size(); ++k) {
+    ASSERT_EQ(few[k].tick, all[5 * k].tick);
+    ASSERT_EQ(few[k].p_WB, all[5 * k].p_WB);
+    ASSERT_EQ(few[k].fingers[0].f_arm_D, all[5 * k].fingers[0].f_arm_D);
+  }
+  ASSERT_EQ(thin.trials().size(), 1u);
+  EXPECT_EQ(thin.trials()[0].duration, full.trials()[0].duration);
+  EXPECT_EQ(thin.trials()[0].squeezes, full.trials()[0].squeezes);
+  EXPECT_EQ(thin.events().size(), full.events().size());
+}
+
+TEST(PickupSession, RefusesASampleRateThatDoesNotDivideTheTickRate) {
+  const tests::TemporaryDirectory directory;
+  for (const int rate : {0, -200, 3, 300, 1001, 2000}) {
+    PickupSessionOptions options = shortStudy();
+    options.sample_rate = rate;
+    try {
+      runPickupSession(options, directory / "bad.db", kNever, {});
+      FAIL() << rate;
+    } catch (const InputError& e) {
+      const std::string said = e.what();
+      EXPECT_NE(said.find("sample_rate = " + std::to_string(rate)), std::string::npos) << said;
+      EXPECT_NE(said.find("[1, 1000]"), std::string::npos) << said;
+    }
+    EXPECT_FALSE(std::filesystem::exists(directory / "bad.db"));
+  }
+  for (const int rate : {1, 8, 125, 1000}) {
+    PickupSessionOptions options = shortStudy();
+    options.sample_rate = rate;
+    EXPECT_NO_THROW(validate(options)) << rate;
+  }
+}
+
+TEST(PickupSession, KeepsFinishedTrialsWhenInterrupted) {
+  const tests::TemporaryDirectory directory;
+  std::atomic<bool> interrupted{false};
+  const auto after_two = [&](const PickupProgress& progress) { interrupted = progress.done == 2; };
+  const PickupSessionResult result = runPickupSession(shortStudy(4), directory / "s.db", interrupted, after_two);
+  EXPECT_TRUE(result.interrupted);
+  EXPECT_EQ(result.trials, 2u);
+  const SessionReader session(directory / "s.db");
+  EXPECT_EQ(session.trials().size(), 2u);
+  EXPECT_EQ(session.state(), "aborted: interrupted by the user");
+}
+
+TEST(PickupSession, IsCompleteWhenTheInterruptComesAfterTheLastTrial) {
+  const tests::TemporaryDirectory directory;
+  std::atomic<bool> interrupted{false};
+  const auto at_the_end = [&](const PickupProgress& progress) { interrupted = progress.done == progress.total; };
+  EXPECT_FALSE(runPickupSession(shortStudy(), directory / "s.db", interrupted, at_the_end).interrupted);
+  EXPECT_TRUE(SessionReader(directory / "s.db").complete());
+}
+
+TEST(PickupSession, AccountsForTheTicksOfAnInterruptedTrialInRealTime) {
+  const tests::TemporaryDirectory directory;
+  PickupSessionOptions options = shortStudy();
+  options.servo.real_time = true;
+  options.servo.watchdog = 10;
+  std::atomic<bool> interrupted{false};
+  std::thread operator_thread([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    interrupted = true;
+  });
+  const PickupSessionResult result = runPickupSession(options, directory / "s.db", interrupted, {});
+  operator_thread.join();
+  EXPECT_TRUE(result.interrupted);
+  EXPECT_GT(result.servo.ticks, 0);
+  EXPECT_EQ(result.servo.lateness.count(), result.servo.ticks);
+  EXPECT_EQ(SessionReader(directory / "s.db").state(), "aborted: interrupted by the user");
+}
+
+TEST(ServoText, SaysHowTheClockDidAndWhatWentWrong) {
+  ServoReport report;
+  report.ticks = 990;
+  report.missed = 10;
+  report.wall = 1;
+  for (int i = 0; i < 990; ++i) {
+    report.lateness.add(20e-6);
+    report.duration.add(5e-6);
+  }
+  report.lateness.add(8e-3);
+  const std::string good = servoText(report, 1e-3);
+  EXPECT_NE(good.find("990 ticks of 1000 us in 1.0 s; 10 missed (1 %)"), std::string::npos) << good;
+  EXPECT_NE(good.find("largest 8000.0 us"), std::string::npos) << good;
+  EXPECT_EQ(good.find("watchdog"), std::string::npos) << good;
+  report.watchdog_tripped = true;
+  report.note = "Locked memory isn't permitted.";
+  const std::string bad = servoText(report, 1e-3);
+  EXPECT_NE(bad.find("watchdog cut the forces"), std::string::npos) << bad;
+  EXPECT_NE(bad.find("\nLocked memory isn't permitted."), std::string::npos) << bad;
+}
+
+TEST(ServoText, SpeaksOfARunWithoutATick) { EXPECT_EQ(servoText({}, 1e-3).find("nan"), std::string::npos); }
+
+}  // namespace
+}  // namespace pincer::tasks
