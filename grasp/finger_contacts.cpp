@@ -7,21 +7,21 @@ namespace {
 
 using engine::SideKind;
 
-engine::Contact fingerContact(const GraspModel& model, int finger, int body, const Pose& X_WB, const contact::SurfaceContact& found) {
-  engine::Contact c;
-  c.id = engine::contactId(1, finger, body, 0);
-  c.a = {SideKind::kPoint, finger};
-  c.b = {SideKind::kBody, body};
-  c.R_WC.col(2) = X_WB.q * found.n_B;
-  c.p_W = X_WB * found.p_BS + (0.5 * found.phi) * c.n_W();
-  c.phi = found.phi;
-  c.material = model.world.bodies[body].material;
-  return c;
+// The two touch midway between the body's surface and the fingertip's, on the normal n_W.
+void addFingerContact(const GraspModel& model, GraspScratch& scratch, int finger, int body, double phi, const Vec3& n_W) {
+  engine::Contact* const c = engine::addContact(scratch.world, phi);
+  if (!c) return;
+  c->id = engine::contactId(1, finger, body, 0);
+  c->a = {SideKind::kPoint, finger};
+  c->b = {SideKind::kBody, body};
+  c->R_WC.col(2) = n_W;
+  c->p_W = scratch.world.points[finger].p_mid_W - (model.fingers[finger].radius + 0.5 * phi) * n_W;
+  c->material = model.world.bodies[body].material;
 }
 
 // What closes within the tick must be seen at its middle.
 double contactMargin(const GraspModel& model, const GraspState& state, const GraspScratch& scratch, int finger, int body) {
-  const double speed = (state.world.points[finger].v_W - scratch.world.bodies[body].v_start_W).norm();
+  const double speed = (state.world.points[finger].v_W - scratch.world.bodies[body].start.v_W).norm();
   return model.world.options.contact_margin + model.world.options.h * speed;
 }
 
@@ -29,8 +29,8 @@ void queryBody(const GraspModel& model, GraspState& state, GraspScratch& scratch
   const engine::BodyModel& b = model.world.bodies[body];
   const FingerModel& f = model.fingers[finger];
   FingerReport& report = scratch.fingers[finger];
-  const Pose X_WB = scratch.world.bodies[body].X_WI_mid * b.X_IB;
-  const Vec3 p_BC = X_WB.inverse() * scratch.world.points[finger].p_mid_W;
+  const engine::BodyScratch& mid = scratch.world.bodies[body];
+  const Vec3 p_BC = mid.R_WB_mid.transpose() * (scratch.world.points[finger].p_mid_W - mid.X_WB_mid.p);
   const double margin = contactMargin(model, state, scratch, finger, body);
   const double bound = contact::lowerBoundOfGap(b.shape, p_BC, f.radius);
   contact::SurfaceTracker& tracker =
@@ -41,12 +41,13 @@ void queryBody(const GraspModel& model, GraspState& state, GraspScratch& scratch
     return;
   }
   const contact::SurfaceContact found = contact::querySphere(b.shape, p_BC, f.radius, tracker);
+  const Vec3 n_W = mid.R_WB_mid * found.n_B;
   // Static supports don't pre-position the tactor: what the hand looks for is an object.
   if (b.dynamic && found.phi < report.gap) {
     report.gap = found.phi;
-    scratch.nearest_n_W[finger] = X_WB.q * found.n_B;
+    scratch.nearest_n_W[finger] = n_W;
   }
-  if (found.phi < margin) engine::addContact(scratch.world, fingerContact(model, finger, body, X_WB, found));
+  if (found.phi < margin) addFingerContact(model, scratch, finger, body, found.phi, n_W);
 }
 
 }  // namespace

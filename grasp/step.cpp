@@ -44,7 +44,7 @@ void reportFinger(const GraspModel& model, const GraspState& state, const Finger
   if (report.touching) report.place_L = placeOnPad(model.fingers[finger], q_FW * touch_W);
   const Vec3& n_W = scratch.nearest_n_W[finger];
   if (!report.touching && !n_W.isZero(0)) report.nearest_place_L = placeOnPad(model.fingers[finger], q_FW * -n_W);
-  const Vec3 a_W = (state.world.points[finger].v_W - scratch.world.points[finger].v_start_W) / h;
+  const Vec3 a_W = (state.world.points[finger].v_W - scratch.world.points[finger].start.v_W) / h;
   report.f_user_W = report.f_contact_W + scratch.inputs[finger].f_W - model.fingers[finger].coupling.mass * a_W;
 }
 

@@ -114,6 +114,7 @@ void rotateFreely(const FreeRotation& rotation, const Vec3& L_W, double h, Quat&
 }
 
 Vec3 angularVelocity(const FreeRotation& rotation, const Quat& q_WI, const Vec3& L_W) {
+  if (rotation.kind == FreeRotation::Kind::kSpherical) return rotation.inverse_moments[0] * L_W;
   return q_WI * rotation.inverse_moments.cwiseProduct(q_WI.conjugate() * L_W);
 }
 

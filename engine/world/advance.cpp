@@ -8,14 +8,15 @@ namespace pincer::engine {
 namespace {
 
 void applyImpulse(WorldScratch& scratch, const Side& side, const Vec3& arm_W, const Vec3& impulse_W, const Vec3& moment_W, bool closing) {
-  if (side.kind == SideKind::kPoint) {
-    scratch.points[side.index].impulse_W += impulse_W;
-    return;
-  }
+  const auto push = [&](MoverScratch& mover) {
+    mover.impulse_W += impulse_W;
+    mover.touched = true;
+    mover.closing = mover.closing || closing;
+  };
+  if (side.kind == SideKind::kPoint) return push(scratch.points[side.index]);
   BodyScratch& body = scratch.bodies[side.index];
-  body.impulse_W += impulse_W;
+  push(body);
   body.angular_impulse_W += arm_W.cross(impulse_W) + moment_W;
-  body.closing = body.closing || closing;
 }
 
 // The same impulse, to the last bit, on both sides.
@@ -28,20 +29,21 @@ void distribute(WorldScratch& scratch) {
   }
 }
 
-void advanceBody(const BodyModel& body, const BodyScratch& scratch, double h, BodyState& s) {
+void advanceBody(const BodyModel& body, double h, BodyScratch& scratch, BodyState& s) {
   const Vec3 v_old = s.v_W, L_old = s.L_W;
-  s.v_W = scratch.v_free_W + body.inverse_mass * scratch.impulse_W;
+  s.v_W = scratch.free.v_W + body.inverse_mass * scratch.impulse_W;
   s.L_W += scratch.angular_impulse_W;
   s.X_WI.p += scratch.closing ? Vec3(h * s.v_W) : Vec3((0.5 * h) * (v_old + s.v_W));
   const Vec3 L_mean = scratch.closing ? s.L_W : Vec3(0.5 * (L_old + s.L_W));
   if (!L_mean.isZero(0)) rotateFreely(body.rotation, L_mean, h, s.X_WI.q);
+  if (scratch.touched) scratch.end = {s.v_W, angularVelocity(body.rotation, s.X_WI.q, s.L_W)};
 }
 
-void advancePoint(const std::array<AxisForm, 3>& forms, const PointScratch& scratch, bool touches, bool closing, double h, PointState& s) {
+void advancePoint(const std::array<AxisForm, 3>& forms, double h, PointScratch& scratch, PointState& s) {
   const Vec3 v_old = s.v_W;
-  s.v_W = scratch.v_free_W + scratch.inverse_mass.cwiseProduct(scratch.impulse_W);
+  s.v_W = scratch.end.v_W = scratch.free.v_W + scratch.inverse_mass.cwiseProduct(scratch.impulse_W);
   for (int i = 0; i < 3; ++i) {
-    const bool second_order = !closing && (forms[i] == AxisForm::kFourthOrder || s.touching);
+    const bool second_order = !scratch.closing && (forms[i] == AxisForm::kFourthOrder || s.touching);
     if (forms[i] == AxisForm::kLocked) {
       s.p_W[i] = scratch.p_target_W[i];
     } else {
@@ -50,31 +52,24 @@ void advancePoint(const std::array<AxisForm, 3>& forms, const PointScratch& scra
   }
   s.p_target_W = scratch.p_target_W;
   s.v_target_W = scratch.v_target_W;
-  s.touching = touches;
+  s.touching = scratch.touched;
 }
 
-Motion motionOf(const WorldModel& model, const WorldState& state, const Side& side) {
-  if (side.kind == SideKind::kPoint) return {state.points[side.index].v_W, Vec3::Zero()};
-  return {state.bodies[side.index].v_W, bodyAngularVelocity(model, state, side.index)};
-}
-
-ContactMemory remember(const WorldModel& model, const WorldState& state, const Contact& c) {
-  ContactMemory m;
+void remember(const WorldScratch& scratch, const Contact& c, double h, ContactMemory& m) {
   m.id = c.id;
   m.r = c.r;
   m.t1_W = c.R_WC.col(0);
   m.n_W = c.n_W();
   m.arm_a_W = c.arm_a_W;
   m.arm_b_W = c.arm_b_W;
+  m.offset_C.setZero();
   m.active = c.active();
   m.sliding = c.sliding;
   m.closing = c.closing;
-  if (m.active && !m.sliding) {
-    const Eigen::Vector4d v_end_C = relativeVelocity(c, motionOf(model, state, c.a), motionOf(model, state, c.b));
-    m.offset_C = c.offset_C + model.options.h * (c.closing ? v_end_C : Eigen::Vector4d(0.5 * (c.v_start_C + v_end_C)));
-    m.offset_C[kNormalRow] = 0;
-  }
-  return m;
+  if (!m.active || m.sliding) return;
+  const Eigen::Vector4d v_end_C = relativeVelocity(c, mover(scratch, c.a).end, mover(scratch, c.b).end);
+  m.offset_C = c.offset_C + h * (c.closing ? v_end_C : Eigen::Vector4d(0.5 * (c.v_start_C + v_end_C)));
+  m.offset_C[kNormalRow] = 0;
 }
 
 bool isStuckAlike(const ContactMemory& x, const ContactMemory& y) {
@@ -117,18 +112,10 @@ void alignFaces(std::span<ContactMemory> contacts) {
   }
 }
 
-void rememberContacts(const WorldModel& model, WorldState& state, const WorldScratch& scratch) {
+void rememberContacts(const WorldScratch& scratch, double h, WorldState& state) {
   state.contact_count = 0;
-  for (const Contact& c : scratch.contacts) state.contacts[state.contact_count++] = remember(model, state, c);
+  for (const Contact& c : scratch.contacts) remember(scratch, c, h, state.contacts[state.contact_count++]);
   alignFaces({state.contacts.data(), static_cast<std::size_t>(state.contact_count)});
-}
-
-bool touches(const WorldScratch& scratch, int point, bool closing_only) {
-  for (const Contact& c : scratch.contacts) {
-    const bool mine = (c.a.kind == SideKind::kPoint && c.a.index == point) || (c.b.kind == SideKind::kPoint && c.b.index == point);
-    if (mine && c.active() && (c.closing || !closing_only)) return true;
-  }
-  return false;
 }
 
 bool isFinite(const WorldState& state) {
@@ -145,15 +132,13 @@ StepReport advance(const WorldModel& model, WorldState& state, WorldScratch& scr
   distribute(scratch);
   StepReport report;
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
-    if (model.bodies[i].dynamic) advanceBody(model.bodies[i], scratch.bodies[i], h, state.bodies[i]);
+    if (model.bodies[i].dynamic) advanceBody(model.bodies[i], h, scratch.bodies[i], state.bodies[i]);
   }
   for (std::size_t i = 0; i < model.points.size(); ++i) {
-    const int point = static_cast<int>(i);
-    advancePoint(model.point_forms[i], scratch.points[i], touches(scratch, point, false), touches(scratch, point, true), h,
-                 state.points[i]);
+    advancePoint(model.point_forms[i], h, scratch.points[i], state.points[i]);
     if (!scratch.points[i].input_ok) report.status |= kInputNotFinite;
   }
-  rememberContacts(model, state, scratch);
+  rememberContacts(scratch, h, state);
   ++state.tick;
   state.time = static_cast<double>(state.tick) * h;
   report.contacts = static_cast<int>(scratch.contacts.size());

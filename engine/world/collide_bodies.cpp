@@ -13,21 +13,20 @@ void collidePair(const WorldModel& model, const PairModel& pair, double h, World
   const BodyModel &a = model.bodies[pair.a], &b = model.bodies[pair.b];
   const BodyScratch &sa = scratch.bodies[pair.a], &sb = scratch.bodies[pair.b];
   // What closes within the tick must be seen at its middle.
-  const double margin = model.options.contact_margin + h * (sa.v_start_W - sb.v_start_W).norm();
+  const double margin = model.options.contact_margin + h * (sa.start.v_W - sb.start.v_W).norm();
   if (!boundsTouch(a, b, sa, sb, margin)) return;
   contact::PairPoints found;
-  contact::collideShapes(a.shape, sa.X_WI_mid * a.X_IB, b.shape, sb.X_WI_mid * b.X_IB, margin, found);
+  contact::collideShapes(a.shape, sa.X_WB_mid, b.shape, sb.X_WB_mid, margin, found);
   for (int i = 0; i < found.count; ++i) {
     const contact::PairPoint& point = found.points[i];
-    Contact contact;
-    contact.id = contactId(0, pair.a, pair.b, point.feature);
-    contact.a = {SideKind::kBody, pair.a};
-    contact.b = {SideKind::kBody, pair.b};
-    contact.p_W = point.p_W;
-    contact.R_WC.col(2) = point.n_W;
-    contact.phi = point.phi;
-    contact.material = pair.material;
-    addContact(scratch, contact);
+    Contact* const contact = addContact(scratch, point.phi);
+    if (!contact) continue;
+    contact->id = contactId(0, pair.a, pair.b, point.feature);
+    contact->a = {SideKind::kBody, pair.a};
+    contact->b = {SideKind::kBody, pair.b};
+    contact->p_W = point.p_W;
+    contact->R_WC.col(2) = point.n_W;
+    contact->material = pair.material;
   }
 }
 

@@ -29,8 +29,4 @@ void recallContacts(const WorldState& state, WorldScratch& scratch);
 // Fills rows, W, q, mu and the warm start r; returns views onto them.
 ContactProblem assembleProblem(const WorldModel& model, const WorldState& state, WorldScratch& scratch);
 
-// Velocity of a side at the start of the tick, and at its end were there no contacts.
-Motion startMotion(const WorldScratch& scratch, const Side& side);
-Motion freeMotion(const WorldScratch& scratch, const Side& side);
-
 }  // namespace pincer::engine

@@ -10,26 +10,39 @@ Mat3 inverseInertia(const FreeRotation& rotation, const Quat& q_WI) {
   return R * rotation.inverse_moments.asDiagonal() * R.transpose();
 }
 
-void predictBody(const BodyModel& body, const BodyState& s, const Vec3& dv_gravity_W, double h, BodyScratch& out) {
-  out.v_start_W = s.v_W;
-  out.v_free_W = s.v_W + dv_gravity_W;
+void rest(MoverScratch& out) {
   out.impulse_W.setZero();
-  out.angular_impulse_W.setZero();
-  out.closing = false;
-  if (!body.may_touch) return;  // moves alone: advance needs nothing more
+  out.touched = out.closing = false;
+}
 
-  out.X_WI_mid.p = s.X_WI.p + (0.5 * h) * s.v_W;
+// Angular velocities, and the orientation in the middle; a body without angular momentum needs no thought.
+void predictRotation(const FreeRotation& rotation, const BodyState& s, double h, BodyScratch& out) {
   out.X_WI_mid.q = s.X_WI.q;
-  if (s.L_W.isZero(0)) {
-    out.w_start_W.setZero();
-    out.w_free_W.setZero();
-  } else {
-    out.w_start_W = angularVelocity(body.rotation, s.X_WI.q, s.L_W);
-    rotateFreely(body.rotation, s.L_W, 0.5 * h, out.X_WI_mid.q);
-    Quat q_end = out.X_WI_mid.q;
-    rotateFreely(body.rotation, s.L_W, 0.5 * h, q_end);
-    out.w_free_W = angularVelocity(body.rotation, q_end, s.L_W);
-  }
+  out.start.w_W.setZero();
+  out.free.w_W.setZero();
+  if (s.L_W.isZero(0)) return;
+  rotateFreely(rotation, s.L_W, 0.5 * h, out.X_WI_mid.q);
+  out.start.w_W = out.free.w_W = angularVelocity(rotation, s.X_WI.q, s.L_W);
+  if (rotation.kind == FreeRotation::Kind::kSpherical) return;
+  Quat q_end = out.X_WI_mid.q;
+  rotateFreely(rotation, s.L_W, 0.5 * h, q_end);
+  out.free.w_W = angularVelocity(rotation, q_end, s.L_W);
+}
+
+void place(const BodyModel& body, BodyScratch& out) {
+  out.X_WB_mid = out.X_WI_mid * body.X_IB;
+  out.R_WB_mid = out.X_WB_mid.q.toRotationMatrix();
+}
+
+void predictBody(const BodyModel& body, const BodyState& s, const Vec3& dv_gravity_W, double h, BodyScratch& out) {
+  out.start.v_W = s.v_W;
+  out.free.v_W = s.v_W + dv_gravity_W;
+  rest(out);
+  out.angular_impulse_W.setZero();
+  if (!body.may_touch) return;  // moves alone: advance needs nothing more
+  out.X_WI_mid.p = s.X_WI.p + (0.5 * h) * s.v_W;
+  predictRotation(body.rotation, s, h, out);
+  place(body, out);
   out.inverse_inertia_W = inverseInertia(body.rotation, out.X_WI_mid.q);
 }
 
@@ -65,8 +78,8 @@ void predictPoint(const DrivenPointModel& point, const std::array<AxisForm, 3>& 
   out.p_target_W = out.input_ok ? in.p_target_W : s.p_target_W;
   out.v_target_W = out.input_ok ? in.v_target_W : Vec3::Zero();
   const Vec3 f_W = out.input_ok ? in.f_W : Vec3::Zero();
-  out.impulse_W.setZero();
-  out.v_start_W = s.v_W;
+  rest(out);
+  out.start.v_W = s.v_W;
   for (int i = 0; i < 3; ++i) {
     const AxisInput a{point.mass,
                       point.stiffness[i],
@@ -81,7 +94,7 @@ void predictPoint(const DrivenPointModel& point, const std::array<AxisForm, 3>& 
     PointAxis axis{out.v_target_W[i], 0};
     if (forms[i] == AxisForm::kFourthOrder) axis = fourthOrderAxis(a);
     if (forms[i] == AxisForm::kImplicit) axis = implicitAxis(a, s.touching ? 0.5 : 1.0);
-    out.v_free_W[i] = axis.v_free;
+    out.free.v_W[i] = axis.v_free;
     out.inverse_mass[i] = axis.inverse_mass;
     out.p_mid_W[i] = forms[i] == AxisForm::kLocked ? 0.5 * (s.p_W[i] + out.p_target_W[i]) : s.p_W[i] + 0.5 * h * s.v_W[i];
   }
@@ -97,6 +110,7 @@ void predict(const WorldModel& model, const WorldState& state, std::span<const P
       predictBody(model.bodies[i], state.bodies[i], dv_gravity_W, h, scratch.bodies[i]);
     } else {
       scratch.bodies[i].X_WI_mid = state.bodies[i].X_WI;
+      place(model.bodies[i], scratch.bodies[i]);
     }
   }
   for (std::size_t i = 0; i < model.points.size(); ++i) {

@@ -28,7 +28,7 @@ void recall(const WorldState& state, WorldScratch& scratch, Contact& c) {
   c.arm_a_W = c.p_W - centre(scratch, c.a);
   c.arm_b_W = c.p_W - centre(scratch, c.b);
   c.mu = memory && memory->sliding ? c.material.mu_d : c.material.mu_s;
-  c.v_start_C = relativeVelocity(c, startMotion(scratch, c.a), startMotion(scratch, c.b));
+  c.v_start_C = relativeVelocity(c, mover(scratch, c.a).start, mover(scratch, c.b).start);
   c.offset_C.setZero();
   if (memory && memory->active && !memory->sliding) c.offset_C = memory->offset_C;
 }

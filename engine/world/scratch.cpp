@@ -26,21 +26,22 @@ std::uint64_t contactId(int kind, int a, int b, std::uint32_t feature) {
 
 Eigen::Vector4d relativeVelocity(const Contact& c, const Motion& a, const Motion& b) {
   const Vec3 v_W = a.v_W + a.w_W.cross(c.arm_a_W) - (b.v_W + b.w_W.cross(c.arm_b_W));
-  Eigen::Vector4d v_C;
-  v_C.head<3>() = c.R_WC.transpose() * v_W;
-  v_C[3] = c.n_W().dot(a.w_W - b.w_W);
-  return v_C;
+  return {c.R_WC.col(0).dot(v_W), c.R_WC.col(1).dot(v_W), c.R_WC.col(2).dot(v_W), c.R_WC.col(2).dot(a.w_W - b.w_W)};
 }
 
-void addContact(WorldScratch& scratch, const Contact& contact) {
-  if (scratch.contacts.size() < scratch.contacts.capacity()) {
-    scratch.contacts.push_back(contact);
-    return;
+Contact* addContact(WorldScratch& scratch, double phi) {
+  std::vector<Contact>& contacts = scratch.contacts;
+  if (contacts.size() < contacts.capacity()) {
+    contacts.emplace_back().phi = phi;
+    return &contacts.back();
   }
   scratch.contacts_dropped = true;
   const auto shallowest =
-      std::max_element(scratch.contacts.begin(), scratch.contacts.end(), [](const Contact& x, const Contact& y) { return x.phi < y.phi; });
-  if (shallowest->phi > contact.phi) *shallowest = contact;
+      std::max_element(contacts.begin(), contacts.end(), [](const Contact& x, const Contact& y) { return x.phi < y.phi; });
+  if (!(shallowest->phi > phi)) return nullptr;
+  *shallowest = {};
+  shallowest->phi = phi;
+  return &*shallowest;
 }
 
 }  // namespace pincer::engine

@@ -54,20 +54,27 @@ struct ContactColumns {
   std::array<SideColumns, 2> sides;  // of a, of b
 };
 
-// A body or point in this tick.
-struct BodyScratch {
-  Pose X_WI_mid;
-  Mat3 inverse_inertia_W = Mat3::Zero();  // at the middle
-  Vec3 v_start_W = Vec3::Zero(), w_start_W = Vec3::Zero();
-  Vec3 v_free_W = Vec3::Zero(), w_free_W = Vec3::Zero();  // at the end of the tick, were there no contact
-  Vec3 impulse_W = Vec3::Zero(), angular_impulse_W = Vec3::Zero();
-  bool closing = false;  // takes part in a contact that closes in this tick
+// Velocity of a body's centre of mass or of a point, and angular velocity; a point's is zero.
+struct Motion {
+  Vec3 v_W = Vec3::Zero(), w_W = Vec3::Zero();
 };
-struct PointScratch {
+
+// What a body or point went through in this tick.
+struct MoverScratch {
+  Motion start, free, end;        // at the start of the tick; at its end, were there no contact; at its end (of bodies: if touched)
+  Vec3 impulse_W = Vec3::Zero();  // of all contacts [N s]
+  bool touched = false;           // some contact pushes on it
+  bool closing = false;           // and one of those closes in this tick
+};
+struct BodyScratch : MoverScratch {
+  Pose X_WI_mid, X_WB_mid;
+  Mat3 R_WB_mid = Mat3::Identity();       // X_WB_mid.q: a matrix turns many vectors in half the time
+  Mat3 inverse_inertia_W = Mat3::Zero();  // at the middle
+  Vec3 angular_impulse_W = Vec3::Zero();  // about the centre of mass [N m s]
+};
+struct PointScratch : MoverScratch {
   Vec3 p_mid_W = Vec3::Zero();
-  Vec3 v_start_W = Vec3::Zero(), v_free_W = Vec3::Zero();
   Vec3 inverse_mass = Vec3::Zero();                           // effective, per world axis, of the implicit spring-damper [1/kg]
-  Vec3 impulse_W = Vec3::Zero();                              // of all contacts [N s]
   Vec3 p_target_W = Vec3::Zero(), v_target_W = Vec3::Zero();  // at the end of the tick
   bool input_ok = true;
 };
@@ -87,11 +94,12 @@ struct WorldScratch {
   StageClock* clock = nullptr;  // set it to have the stages timed; null costs nothing
 };
 
-// Velocity of one side: of its centre and angular, in W.
-struct Motion {
-  Vec3 v_W = Vec3::Zero(), w_W = Vec3::Zero();
-};
-// Of a relative to b where they touch, in C: along t1, t2, n [m/s], and about n [rad/s].
+inline const MoverScratch& mover(const WorldScratch& scratch, const Side& side) {
+  if (side.kind == SideKind::kPoint) return scratch.points[side.index];
+  return scratch.bodies[side.index];
+}
+
+// Velocity of a relative to b where they touch, in C: along t1, t2, n [m/s], and about n [rad/s].
 Eigen::Vector4d relativeVelocity(const Contact& c, const Motion& a, const Motion& b);
 
 inline void mark(WorldScratch& scratch, Stage stage) {
@@ -102,7 +110,8 @@ inline void mark(WorldScratch& scratch, Stage stage) {
 //   kind 0: bodies (a, b, feature);  kind 1: point a on body b (feature)
 std::uint64_t contactId(int kind, int a, int b, std::uint32_t feature);
 
-// Adds a contact to this tick. When full, the shallowest contact is dropped and `contacts_dropped` set.
-void addContact(WorldScratch& scratch, const Contact& contact);
+// The place of a further contact with gap `phi`, for the caller to fill in: a contact is too large to copy. When all are taken,
+// `contacts_dropped` is set and the shallowest makes room; null if that is the new one.
+Contact* addContact(WorldScratch& scratch, double phi);
 
 }  // namespace pincer::engine
