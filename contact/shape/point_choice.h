@@ -1,16 +1,17 @@
 // point_choice: up to four of a solid's extreme points, those that carry it on a support now or will first when it rocks.
 //
-// Up to four points within the margin are all kept. Of more, first the deepest; then, again and again, the one on which the solid would land
-// first if it tipped out of the polygon of those already kept:
+// Up to four points within the margin are all kept. Of more, first the deepest; then, again and again, that outside the polygon of those
+// already kept which has the
 //
-//   largest  d / (g + s)     d  how far the point is outside that polygon, seen along the normal n at the first point [m]
-//                            g  its gap less the deepest's [m], s = 1 um the difference that counts as none
+//   largest  d^2 / (g + s)     d  how far the point is outside that polygon, seen along the normal n at the first point [m]
+//                              g  its gap less the deepest's [m], s = 1 um the difference that counts as none
 //
-// g / d is the tangent of the tipping angle, so this wraps the solid's hull from below: a body at rest keeps the corners of the facet that
-// it rests on, however close together they are, and corners that are open by more join only where these leave room. Among equally deep ones
-// the widest spread wins. (A score that subtracts the gap from the spread takes far, open corners in place of near, carrying ones: the body
-// then falls from one set of corners to the next for ever.) More than four points didn't help: meshes came to rest no sooner.
-// A score must be better by half a per cent to win over a smaller feature: the points of a resting body don't change with round-off.
+// d^2 / 2 g is the radius on which the solid would roll onto that point: flat comes before round. A body at rest keeps the corners of the
+// facet that it rests on, even where they are close together, and corners that are open join where these leave room. Among equally deep ones
+// the widest spread wins. (Rejected: d - 2 g takes far, open corners in place of near, carrying ones, and the body falls from one set of
+// corners to the next for ever; d / (g + s) favours the low side of a tilted face so much that its far side is missing when it lands.
+// Six or eight points: meshes came to rest no sooner, and the solver paid.)
+// A score must be better by a hundredth to win over a smaller feature: the points of a resting body don't change with round-off.
 // Cost: one scan over all points and four over those within the margin. More than 256 of these are not listed (no memory is allocated) but
 // found again by each scan.
 #pragma once
@@ -43,7 +44,7 @@ class PointChoice {
  private:
   static constexpr int kListed = 256;
   static constexpr double kSameGap = 1e-6;  // [m]
-  static constexpr double kBetter = 1.005;  // ratio of scores [-]
+  static constexpr double kBetter = 1.01;   // ratio of scores [-]
 
   // From a chosen point to another, none to the right of it; two points have two edges, there and back.
   struct Edge {
@@ -107,7 +108,8 @@ class PointChoice {
     double best = 0;
     Chosen next{-1, 0};
     forEachNear([&](const Chosen& c) {
-      const double score = outside(solid_.points[c.index]) / (kSameGap + c.gap - deepest_);
+      const double d = outside(solid_.points[c.index]);
+      const double score = d > 0 ? d * d / (kSameGap + c.gap - deepest_) : 0;
       if (!(score > kBetter * best) || anyChosen([&](const Chosen& other) { return other.index == c.index; })) return;
       best = score;
       next = c;

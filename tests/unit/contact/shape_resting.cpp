@@ -123,7 +123,7 @@ TEST(Resting, TiltedCylinderIsCarriedAroundItsCentre) {
       for (int i = 0; i < 50; ++i) {
         const PairPoints p = onGround(solid, {about({std::cos(i), std::sin(i), 0}, tilt), {0, 0, 0.02}});
         ASSERT_EQ(p.count, 4);
-        ASSERT_GE(insideBy(p, Vec2::Zero()), 0.005);  // of the 0.02 m to the flat, of the 0.03 m to the rim; the low side counts more
+        ASSERT_GE(insideBy(p, Vec2::Zero()), 0.008);  // of the 0.02 m to the flat, of the 0.03 m to the rim
       }
     }
   }
@@ -213,7 +213,7 @@ TEST(Resting, ManyCornersAreReducedToFourThatSpanMost) {
   const Ring ring(24);
   EXPECT_EQ(chosen(ring, Pose{}), (Features{0, 6, 12, 18}));
   for (int i = 0; i < 100; ++i) {
-    EXPECT_EQ(chosen(ring, {about({std::cos(i), std::sin(i), 0}, 5e-8), Vec3::Zero()}), (Features{0, 6, 12, 18})) << i;
+    EXPECT_EQ(chosen(ring, {about({std::cos(i), std::sin(i), 0}, 1e-7), Vec3::Zero()}), (Features{0, 6, 12, 18})) << i;
   }
 }
 
