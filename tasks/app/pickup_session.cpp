@@ -28,7 +28,8 @@ class SessionSink final : public RecordSink {
 
 void writeObject(const SpherePickupOptions& o, JsonWriter& json) {
   if (o.object) {
-    json.key("file").value(o.object->path).key("units").value(o.object->units);
+    json.key("file").value(o.object->path);
+    o.object->size ? json.key("size").value(*o.object->size) : json.key("units").value(o.object->units);
   } else {
     json.key("radius").value(o.radius);
   }

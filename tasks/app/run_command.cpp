@@ -5,6 +5,7 @@
 #include <chrono>
 #include <ctime>
 #include <memory>
+#include <optional>
 
 #include "tasks/app/app.h"
 #include "tasks/app/commands.h"
@@ -27,7 +28,8 @@ Example:
   pincer run sphere-pickup --repetitions 2 --seed 7 --out out/first)";
 
 struct RunArguments {
-  std::string task, out, condition = "both", object, units = "mm";
+  std::string task, out, condition = "both", object, units;
+  std::optional<double> size;
   PickupSessionOptions session;
   bool json = false, report = true;
 };
@@ -37,10 +39,20 @@ std::string freshDirectory(const std::string& task) {
   return fmt::format("out/{}-{:%Y%m%d-%H%M%S}", task, fmt::localtime(now));
 }
 
+ObjectFile objectOf(const RunArguments& arguments) {
+  if (arguments.size && !arguments.units.empty()) {
+    throw InputError("run: --size and --units contradict each other: --size scales the mesh whatever its unit. Give one of them.");
+  }
+  return {arguments.object, arguments.units.empty() ? "mm" : arguments.units, arguments.size};
+}
+
 PickupSessionOptions optionsOf(const RunArguments& arguments) {
   PickupSessionOptions options = arguments.session;
   if (arguments.condition != "both") options.study.conditions = {pickupConditionOf(arguments.condition)};
-  if (!arguments.object.empty()) options.study.object = ObjectFile{arguments.object, arguments.units};
+  if (!arguments.object.empty()) options.study.object = objectOf(arguments);
+  if (arguments.object.empty() && arguments.size) {
+    throw InputError("run: --size is that of a mesh, and none is given. Give --object FILE, or --radius for the sphere.");
+  }
   return options;
 }
 
@@ -97,9 +109,8 @@ void addStudyOptions(CLI::App& command, RunArguments& arguments) {
   command.add_option("--mass", study.mass, "Of the object [kg]")->capture_default_str();
   command.add_option("--radius", study.radius, "Of the sphere [m]")->capture_default_str();
   command.add_option("--object", arguments.object, "Closed OBJ mesh to pick up in place of the sphere");
-  command.add_option("--units", arguments.units, "Length unit of the mesh")
-      ->check(CLI::IsMember({"m", "cm", "mm", "in"}))
-      ->capture_default_str();
+  command.add_option("--units", arguments.units, "Length unit of the mesh (default: mm)")->check(CLI::IsMember({"m", "cm", "mm", "in"}));
+  command.add_option("--size", arguments.size, "Scales the mesh to this largest dimension, in place of --units [m]");
   command.add_option("--seed", study.seed, "Of all that varies; the same seed gives the same session")->capture_default_str();
 }
 

@@ -16,26 +16,45 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr double kSmallest = 0.010, kLargest = 0.100;  // extent of an object that two fingers pick up [m]
+constexpr double kSmallest = 0.005, kLargest = 0.200;  // dimension of an object that two fingers pick up [m]
+constexpr double kWidestGrip = 0.100;                  // of thumb and index finger, without a stretch [m]
 constexpr double kSettleTime = 20;                     // [s]
 constexpr double kDampingTime = 0.1;                   // of the settling motion [s]
 constexpr double kRestTime = 0.5;                      // an object rests whose points have moved so little in that time [s]
 constexpr double kRestDistance = 1e-3;                 // [m]
 
+double largestDimension(const contact::TriangleMesh& mesh) {
+  const contact::MeshReport report = contact::inspect(mesh);
+  return (report.box_max - report.box_min).maxCoeff();
+}
+
+void scaleTo(double size, contact::TriangleMesh& mesh) {
+  const double largest = largestDimension(mesh);
+  if (!(largest > 0)) throw InputError(fmt::format("{}: all its points coincide: it has no size. Export it again.", mesh.source));
+  for (Vec3& vertex : mesh.vertices) vertex *= size / largest;
+}
+
+void requireHandSize(const contact::TriangleMesh& mesh, const std::string& units) {
+  const double largest = largestDimension(mesh);
+  if (largest >= kSmallest && largest <= kLargest) return;
+  throw InputError(
+      fmt::format("{}: the object is {:.4g} m long when its file is read in {}; two fingers pick up {} .. {} m. "
+                  "Give its length (--size 0.06) or its unit (--units m, cm, mm or in).",
+                  mesh.source, largest, units, kSmallest, kLargest));
+}
+
+contact::TriangleMesh readAtHandSize(const ObjectFile& file) {
+  contact::TriangleMesh mesh = contact::readObj(file.path, file.size ? 1 : contact::metresPerUnit(file.units));
+  file.size ? scaleTo(*file.size, mesh) : requireHandSize(mesh, file.units);
+  return mesh;
+}
+
 contact::TriangleMesh readCentred(const SpherePickupOptions& options) {
-  contact::TriangleMesh mesh = contact::readObj(options.object->path, contact::metresPerUnit(options.object->units));
+  contact::TriangleMesh mesh = readAtHandSize(*options.object);
   contact::requireClosed(mesh);
   const Vec3 p_BBcm = engine::massPropertiesOf(mesh, options.mass).p_BBcm;
   for (Vec3& vertex : mesh.vertices) vertex -= p_BBcm;
   return mesh;
-}
-
-void requireHandSize(const contact::TriangleMesh& mesh) {
-  const contact::MeshReport report = contact::inspect(mesh);
-  const double extent = (report.box_max - report.box_min).maxCoeff();
-  if (extent >= kSmallest && extent <= kLargest) return;
-  throw InputError(fmt::format("{}: the object is {:.4g} m long; two fingers pick up {} .. {} m. Choose other units or scale the file.",
-                               mesh.source, extent, kSmallest, kLargest));
 }
 
 double lowestOf(const contact::TriangleMesh& mesh) {
@@ -117,15 +136,24 @@ void measurePinch(const contact::TriangleMesh& mesh, PickupObject& object) {
   object.antipodal_angle = std::acos(std::clamp(std::min(right.n_W.x(), -left.n_W.x()), -1.0, 1.0));
 }
 
+void requireGrip(const PickupObject& object, const std::string& source) {
+  const double width = 2 * object.half_width;
+  if (width <= kWidestGrip) return;
+  throw InputError(
+      fmt::format("{}: where the fingers pinch it the object is {:.3g} m wide; thumb and index finger grasp up to {} m. "
+                  "Give a smaller --size, or turn the object in its file.",
+                  source, width, kWidestGrip));
+}
+
 PickupObject objectFromFile(const SpherePickupOptions& options) {
   const contact::TriangleMesh mesh = readCentred(options);
-  requireHandSize(mesh);
   PickupObject object;
   object.shape = contact::Mesh{contact::SmoothMesh::build(mesh)};
   const double start_gap = 1e-3;
   object.rest_X_WB = settle(options, object.shape, heightAboveDish(mesh, options.dish_radius) + start_gap);
   object.place_W = object.rest_X_WB.p;
   measurePinch(mesh, object);
+  requireGrip(object, mesh.source);
   return object;
 }
 

@@ -21,7 +21,8 @@ struct PickupObject {
   double antipodal_angle = 0;  // largest angle between the pinch line and the surface normal at its two ends [rad]
 };
 
-// Reads, checks and settles the object. Throws InputError: unreadable or open mesh, unknown unit, wrong size, an object that finds no rest.
+// Reads, checks and settles the object. Throws InputError: unreadable or open mesh, unknown unit, wrong size, an object that finds no rest
+// or is too wide for the pinch.
 PickupObject makePickupObject(const SpherePickupOptions& options);
 
 // World options and bodies of the task, the same for settling and for the trials: body 0 the dish, body 1 the object.

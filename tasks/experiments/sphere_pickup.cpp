@@ -16,6 +16,9 @@ void requireRange(const char* name, double value, double low, double high, const
 
 void checkObject(const SpherePickupOptions& o) {
   requireRange("radius", o.radius, 0.005, 0.05, " m", "It is in metres; the usual sphere has 0.02.");
+  if (o.object && o.object->size) {
+    requireRange("size", *o.object->size, 0.005, 0.2, " m", "It is the object's largest dimension in metres; 0.06 suits a hand.");
+  }
   requireRange("mass", o.mass, 0.001, 1, " kg", "It is in kilograms; the usual sphere has 0.075.");
   requireRange("dynamic_ratio", o.dynamic_ratio, 0.01, 1, "", "Dynamic friction is at most static friction; 0.85 is the usual ratio.");
   requireRange("torsion_radius", o.torsion_radius, 0, 0.02, " m", "It is in metres; a fingertip has 0.0033, a point contact 0.");

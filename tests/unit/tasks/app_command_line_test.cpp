@@ -145,6 +145,10 @@ TEST(RunCommand, RefusesBadOptionsBeforeItWritesAnything) {
   EXPECT_EQ(run({"run", "sphere-pickup", "--mass", "-1", "--out", out}).exit_code, kExitBadInput);
   EXPECT_FALSE(std::filesystem::exists(out));
   EXPECT_EQ(run({"run", "sphere-pickup", "--object", "/nowhere/cow.obj", "--out", out}).exit_code, kExitBadInput);
+  const Result both = run({"run", "sphere-pickup", "--object", "cow.obj", "--units", "m", "--size", "0.06", "--out", out});
+  EXPECT_EQ(both.exit_code, kExitBadInput);
+  EXPECT_TRUE(contains(both.error, "Give one of them")) << both.error;
+  EXPECT_EQ(run({"run", "sphere-pickup", "--size", "0.06", "--out", out}).exit_code, kExitBadInput);
   EXPECT_FALSE(std::filesystem::exists(out));
 }
 

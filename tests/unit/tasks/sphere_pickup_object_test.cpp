@@ -64,6 +64,33 @@ TEST_F(PickupObjectFile, MustBeClosed) {
 TEST_F(PickupObjectFile, MustFitAHand) {
   write(cubeObj(), "cm");
   EXPECT_NE(refusal().find("0.3 m long"), std::string::npos) << refusal();
+  EXPECT_NE(refusal().find("--size 0.06"), std::string::npos) << refusal();
+}
+
+// Whatever the file's unit, its largest dimension becomes the size: the same object as in millimetres.
+TEST_F(PickupObjectFile, IsScaledToItsSize) {
+  write(cubeObj(), "mm");
+  const PickupObject in_mm = makePickupObject(options);
+  options.object->units = "in";
+  options.object->size = 0.030;
+  const PickupObject sized = makePickupObject(options);
+  EXPECT_NEAR(sized.half_width, in_mm.half_width, 1e-9);  // settling amplifies the round-off of the scale, by far less than this
+  EXPECT_NEAR(sized.place_W.z(), in_mm.place_W.z(), 1e-9);
+}
+
+TEST_F(PickupObjectFile, MustHaveASizeInRange) {
+  write(cubeObj(), "mm");
+  for (const double size : {0.0, 0.004, 0.21, -1.0, std::nan("")}) {
+    options.object->size = size;
+    EXPECT_NE(refusal().find("size"), std::string::npos) << refusal();
+    EXPECT_NE(refusal().find("[0.005, 0.2]"), std::string::npos) << refusal();
+  }
+}
+
+TEST_F(PickupObjectFile, MustNotBeTooWideForTheGrip) {
+  write(cubeObj(), "mm");
+  options.object->size = 0.12;  // an edge of the cube, along the pinch line
+  EXPECT_NE(refusal().find("0.12 m wide"), std::string::npos) << refusal();
 }
 
 TEST_F(PickupObjectFile, MustExistInAKnownUnit) {
