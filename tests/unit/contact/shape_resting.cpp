@@ -123,7 +123,8 @@ TEST(Resting, TiltedCylinderIsCarriedAroundItsCentre) {
       for (int i = 0; i < 50; ++i) {
         const PairPoints p = onGround(solid, {about({std::cos(i), std::sin(i), 0}, tilt), {0, 0, 0.02}});
         ASSERT_EQ(p.count, 4);
-        ASSERT_GE(insideBy(p, Vec2::Zero()), 0.004);  // of 0.02 m to the flat: tilted, the corners on the low side count more
+        ASSERT_GE(insideBy(p, Vec2::Zero()),
+                  0.001);  // tilted, the low side counts more: of 20 mm to the flat, 2 mm are left in the worst case
       }
     }
   }
