@@ -16,6 +16,11 @@ constexpr double kNearSolution = 1e-8;  // residual from which Newton's method n
 constexpr double kShiftedGap = 1e-6;    // of a problem with frozen shift, itself an approximation
 constexpr int kSweepsPerRound = 15;     // enough to leave the basin in which Newton's method failed
 
+// The residual that is enough when the tolerance is out of reach, for a problem of speeds of order `reference_speed` [m/s].
+double contentResidual(const SolverOptions& options, double reference_speed) {
+  return std::max(options.contentment, options.content_speed / reference_speed);
+}
+
 // Puts `r` into the cones; a contact whose impulse isn't finite gets none.
 void project(const ContactProblem& problem, double* r) {
   for (int i = 0; i < problem.contactCount(); ++i) {
@@ -76,7 +81,7 @@ class Search {
     keepBest();
     iterations_ += iterateNewton(problem_, tolerance, options.newton_iterations, scratch_, current_, trial_);
     keepBest();
-    return best_.residual <= std::max(tolerance, options.contentment);
+    return best_.residual <= std::max(tolerance, contentResidual(options, problem_.speed));
   }
 
   bool iterateOnShift(const SolverOptions& options) {
@@ -149,7 +154,7 @@ SolveResult solveContacts(const ContactProblem& problem, const SolverOptions& op
   search.write(r.data());
   project(problem, r.data());
   residual = contactResidual(problem, r, u);
-  if (!(residual <= std::max(options.tolerance, options.contentment))) {
+  if (!(residual <= std::max(options.tolerance, contentResidual(options, referenceSpeed(problem))))) {
     method = SolveMethod::kNotConverged;
     removeAddedEnergy(problem, r, u);
     residual = contactResidual(problem, r, u);

@@ -14,9 +14,12 @@
 namespace pincer::engine {
 
 struct SolverOptions {
-  double tolerance = 1e-10;    // on the residual, see contactResidual [-]; range [1e-14, 1e-2]
-  double contentment = 1e-8;   // residual at which no costlier method is tried any more [-]; 1e-8 of a speed is far below anything felt
-  int newton_iterations = 20;  // each time that Newton's method is tried
+  double tolerance = 1e-10;  // on the residual, see contactResidual [-]; range [1e-14, 1e-2]
+  // What is enough once Newton's method has failed, whichever allows more: a residual [-], or a speed [m/s]. Contacts that contradict each
+  // other by the round-off of their gaps (a mesh at rest in a dish) have no better answer, and 10 nm/s is far below anything felt.
+  double contentment = 1e-8;
+  double content_speed = 1e-8;
+  int newton_iterations = 12;          // each time that Newton's method is tried
   int interior_point_iterations = 30;  // each time that the interior-point method is tried
   int shift_updates = 3;               // of the interior-point method with frozen shift
   int gauss_seidel_sweeps = 60;
