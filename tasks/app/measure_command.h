@@ -1,0 +1,27 @@
+// measure_command: what all measuring commands share: their options, and running the measurements that these select.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "tasks/measure/measurement.h"
+
+namespace CLI {
+class App;
+}
+
+namespace pincer::tasks {
+
+struct MeasureOptions {
+  bool json = false;
+  bool list = false;
+  std::string only = {};  // a pattern (matches()); empty: all
+};
+
+// --json, --list and --only.
+void addMeasureOptions(CLI::App& command, MeasureOptions& options);
+
+// Prints table or JSON (or the names) and gives the program's exit code: 1 if any record isn't ok, 5 after Ctrl-C. `title` leads the progress
+// line on standard error. Throws InputError where the pattern selects nothing, and what a measurement throws.
+int runMeasurements(const std::vector<Measurement>& measurements, const MeasureOptions& options, const std::string& title);
+
+}  // namespace pincer::tasks
