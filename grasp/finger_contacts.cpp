@@ -8,14 +8,15 @@ namespace {
 using engine::SideKind;
 
 // The two touch midway between the body's surface and the fingertip's, on the normal n_W.
-void addFingerContact(const GraspModel& model, GraspScratch& scratch, int finger, int body, double phi, const Vec3& n_W) {
-  engine::Contact* const c = engine::addContact(scratch.world, phi);
+void addFingerContact(const GraspModel& model, GraspScratch& scratch, int finger, int body, const contact::SurfaceContact& found) {
+  const Vec3 n_W = scratch.world.bodies[body].R_WB_mid * found.n_B;
+  engine::Contact* const c = engine::addContact(scratch.world, found.phi);
   if (!c) return;
-  c->id = engine::contactId(1, finger, body, 0);
+  c->id = engine::contactId(1, finger, body, found.feature);
   c->a = {SideKind::kPoint, finger};
   c->b = {SideKind::kBody, body};
   c->R_WC.col(2) = n_W;
-  c->p_W = scratch.world.points[finger].p_mid_W - (model.fingers[finger].radius + 0.5 * phi) * n_W;
+  c->p_W = scratch.world.points[finger].p_mid_W - (model.fingers[finger].radius + 0.5 * found.phi) * n_W;
   c->material = model.world.bodies[body].material;
 }
 
@@ -40,14 +41,15 @@ void queryBody(const GraspModel& model, GraspState& state, GraspScratch& scratch
     tracker = {};
     return;
   }
-  const contact::SurfaceContact found = contact::querySphere(b.shape, p_BC, f.radius, tracker);
-  const Vec3 n_W = mid.R_WB_mid * found.n_B;
+  const contact::SurfaceContacts found = contact::querySphere(b.shape, p_BC, f.radius, margin, tracker, scratch.world.patches);
   // Static supports don't pre-position the tactor: what the hand looks for is an object.
-  if (b.dynamic && found.phi < report.gap) {
-    report.gap = found.phi;
-    scratch.nearest_n_W[finger] = n_W;
+  if (b.dynamic && found.main().phi < report.gap) {
+    report.gap = found.main().phi;
+    scratch.nearest_n_W[finger] = mid.R_WB_mid * found.main().n_B;
   }
-  if (found.phi < margin) addFingerContact(model, scratch, finger, body, found.phi, n_W);
+  for (int i = 0; i < found.count; ++i) {
+    if (found.points[i].phi < margin) addFingerContact(model, scratch, finger, body, found.points[i]);
+  }
 }
 
 }  // namespace

@@ -9,15 +9,20 @@
 namespace pincer::contact {
 namespace {
 
-SurfaceContact contactAt(const NearestPoint& s, double r) { return {s.p_BS, s.n_B, s.distance - r}; }
+SurfaceContacts contactAt(const NearestPoint& s, double r) {
+  SurfaceContacts found;
+  found.points[0] = {s.p_BS, s.n_B, s.distance - r, 0};
+  found.count = 1;
+  return found;
+}
 
 }  // namespace
 
-SurfaceContact querySphere(const Shape& shape, const Vec3& p_BC, double r, SurfaceTracker& tracker) {
+SurfaceContacts querySphere(const Shape& shape, const Vec3& p_BC, double r, double margin, SurfaceTracker& tracker, PatchCache& cache) {
   return std::visit(
-      [&](const auto& solid) -> SurfaceContact {
+      [&](const auto& solid) -> SurfaceContacts {
         if constexpr (std::is_same_v<decltype(solid), const Mesh&>) {
-          return solid.surface->querySphere(p_BC, r, tracker);
+          return solid.surface->querySphere(p_BC, r, margin, tracker, cache);
         } else {
           return contactAt(nearestPoint(solid, p_BC), r);
         }

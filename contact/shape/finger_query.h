@@ -7,13 +7,15 @@
 #pragma once
 #include "contact/math.h"
 #include "contact/shape/shape.h"
+#include "contact/surface/patch_cache.h"
 #include "contact/surface/surface_contact.h"
 
 namespace pincer::contact {
 
-// Contact of a sphere of radius `r` > 0 [m] centred at `p_BC` with `shape`. Total: for a centre on the medial axis of a primitive one of
-// the nearest points is chosen, always the same one. Allocates nothing.
-SurfaceContact querySphere(const Shape& shape, const Vec3& p_BC, double r, SurfaceTracker& tracker);
+// Contacts of a sphere of radius `r` > 0 [m] centred at `p_BC` with `shape`: the main one, whatever its gap, then up to two further ones
+// nearer than `margin` >= 0 [m]. Total: for a centre on the medial axis of a primitive one of the nearest points is chosen, always the
+// same one. Allocates nothing; `cache` is memory only.
+SurfaceContacts querySphere(const Shape& shape, const Vec3& p_BC, double r, double margin, SurfaceTracker& tracker, PatchCache& cache);
 
 // A lower bound of phi that costs next to nothing (bounding sphere), for skipping fingers that are far away. [m]
 double lowerBoundOfGap(const Shape& shape, const Vec3& p_BC, double r);

@@ -50,11 +50,11 @@ void collideWithSupport(const Shape& solid, const Pose& X_WA, const Shape& suppo
 }
 
 // n out of b.
-void collideSphere(const Sphere& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin, PairPoints& out) {
+void collideSphere(const Sphere& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin, PatchCache& cache, PairPoints& out) {
   const Vec3 p_BC = X_WB.q.conjugate() * (X_WA.p - X_WB.p);
   if (isMesh(b) && !(lowerBoundOfGap(b, p_BC, a.radius) < margin)) return;  // a closed form costs no more than its bound
   SurfaceTracker whole_mesh;
-  const SurfaceContact s = querySphere(b, p_BC, a.radius, whole_mesh);
+  const SurfaceContact s = querySphere(b, p_BC, a.radius, margin, whole_mesh, cache).main();
   if (s.phi < margin) addPoint({X_WB * (s.p_BS + 0.5 * s.phi * s.n_B), X_WB.q * s.n_B, s.phi, 0}, out);
 }
 
@@ -70,12 +70,12 @@ double boundingRadius(const Shape& shape) {
 
 bool pairIsSupported(const Shape& a, const Shape& b) { return isSphere(a) || isSphere(b) || isSupport(a) != isSupport(b); }
 
-void collideShapes(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin, PairPoints& out) {
+void collideShapes(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin, PatchCache& cache, PairPoints& out) {
   out.count = 0;
   if (!pairIsSupported(a, b)) return;
-  if (isSphere(a)) return collideSphere(std::get<Sphere>(a), X_WA, b, X_WB, margin, out);
+  if (isSphere(a)) return collideSphere(std::get<Sphere>(a), X_WA, b, X_WB, margin, cache, out);
   if (isSupport(b)) return collideWithSupport(a, X_WA, b, X_WB, margin, out);
-  collideShapes(b, X_WB, a, X_WA, margin, out);
+  collideShapes(b, X_WB, a, X_WA, margin, cache, out);
   flip(out);
 }
 

@@ -12,6 +12,7 @@
 
 #include "contact/math.h"
 #include "contact/shape/shape.h"
+#include "contact/surface/patch_cache.h"
 
 namespace pincer::contact {
 
@@ -34,8 +35,8 @@ bool pairIsSupported(const Shape& a, const Shape& b);
 
 // The points of a and b that are closer than `margin` >= 0 [m], written to `out` (sorted by feature). Of more than four
 // candidates up to four are kept: the deepest, then those on which the solid would land first if it rocked (point_choice.h). Unsupported pairs give no point.
-// Allocates nothing.
-void collideShapes(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin, PairPoints& out);
+// Allocates nothing; `cache` is memory only.
+void collideShapes(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin, PatchCache& cache, PairPoints& out);
 
 // Radius of the smallest sphere about the shape's own origin that holds it [m]; infinity for HalfSpace and Dish.
 double boundingRadius(const Shape& shape);

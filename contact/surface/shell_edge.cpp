@@ -32,13 +32,13 @@ EdgeFoot describe(const SharpEdge& edge, const Vec3& C, double s) {
 
 }  // namespace
 
-SharpEdge sharpEdge(const SurfaceNet& net, std::int32_t triangle, int i) {
-  const SurfaceCell& cell = net.cell(triangle);
+SharpEdge sharpEdge(const SurfaceNet& net, PatchCache& cache, std::int32_t triangle, int i) {
+  const SurfaceCell cell = net.cell(triangle, cache);
   const Neighbour other = cell.neighbours[static_cast<std::size_t>(i)];
   SharpEdge edge{edgeCurve(cell.patch, i), edgeNormals(cell.patch, i), {}, other.triangle < 0};
   edge.right = edge.left;
   if (edge.is_border) return edge;
-  const auto back = edgeNormals(net.cell(other.triangle).patch, other.edge);
+  const auto back = edgeNormals(net.cell(other.triangle, cache).patch, other.edge);
   edge.right = {back[2], back[1], back[0]};
   return edge;
 }

@@ -35,7 +35,7 @@ struct EdgeFoot {
 };
 
 // Edge i of `triangle`; the left side is the triangle's own.
-SharpEdge sharpEdge(const SurfaceNet& net, std::int32_t triangle, int i);
+SharpEdge sharpEdge(const SurfaceNet& net, PatchCache& cache, std::int32_t triangle, int i);
 SharpEdgePoint evaluate(const SharpEdge& edge, double s);
 
 // Safeguarded Newton (bisection where a step leaves the bracket) from `s`.

@@ -15,10 +15,13 @@ constexpr int kMaxFeatureVisits = 6;  // of edges and of vertices, each
 
 class ShellWalk {
  public:
-  ShellWalk(const SurfaceNet& net, const Vec3& C, const Foot& start) : net_(net), C_(C), foot_(start) { result_.foot = start; }
+  ShellWalk(const SurfaceNet& net, PatchCache& cache, const Vec3& C, const Foot& start) : net_(net), cache_(cache), C_(C), foot_(start) {
+    result_.foot = start;
+  }
 
   ShellContact run() {
     while (state_ == State::onFace) stepOnFace();
+    result_.cost = {steps_ + edge_visits_ + vertex_visits_, crossings_};
     return result_;
   }
 
@@ -29,7 +32,7 @@ class ShellWalk {
     int edge = -1;
   };
 
-  const SurfaceCell& cell() const { return net_.cell(foot_.triangle); }
+  const SurfaceCell& cell() const { return net_.cell(foot_.triangle, cache_); }
   void stepOnFace();
   bool halveLastMove(double residual);
   void move(const std::array<double, 3>& db);
@@ -45,6 +48,7 @@ class ShellWalk {
   void giveUp() { state_ = State::ended; }
 
   const SurfaceNet& net_;
+  PatchCache& cache_;
   const Vec3 C_;
   Foot foot_;
   State state_ = State::onFace;
@@ -140,7 +144,7 @@ void ShellWalk::enterFace() {
 
 void ShellWalk::settleOnEdge(int edge, double s) {
   if (++edge_visits_ > kMaxFeatureVisits) return giveUp();
-  const SharpEdge curve = sharpEdge(net_, foot_.triangle, edge);
+  const SharpEdge curve = sharpEdge(net_, cache_, foot_.triangle, edge);
   const EdgeFoot foot = footOnEdge(curve, C_, s);
   putOnEdge(edge, foot.s);
   if (foot.s == 0 || foot.s == 1) return settleOnVertex(cell().vertices[static_cast<std::size_t>(foot.s == 0 ? edge : (edge + 1) % 3)]);
@@ -160,10 +164,11 @@ void ShellWalk::settleOnVertex(std::int32_t vertex) {
   Vec3 outward = Vec3::Zero(), p = Vec3::Zero();
   bool has_border = false;
   for (const auto& [triangle, corner] : net_.cornersAt(vertex)) {
-    const Patch& patch = net_.cell(triangle).patch;
+    const Patch& patch = net_.cell(triangle, cache_).patch;
     outward += edgeNormals(patch, corner)[0];
     p = edgeCurve(patch, corner)[0];
-    for (const int i : {corner, (corner + 2) % 3}) has_border |= net_.cell(triangle).neighbours[static_cast<std::size_t>(i)].triangle < 0;
+    for (const int i : {corner, (corner + 2) % 3})
+      has_border |= net_.cell(triangle, cache_).neighbours[static_cast<std::size_t>(i)].triangle < 0;
   }
   const FeatureContact contact = contactWithPoint(C_, p, outward, has_border);
   accept(contact.n, contact.h);
@@ -177,7 +182,7 @@ bool ShellWalk::leaveVertexIntoFace(std::int32_t vertex) {
     Foot foot{triangle, {0, 0, 0}};
     const auto c = static_cast<std::size_t>(corner);
     foot.b[c] = 1;
-    const FaceStep step = faceStep(evaluate(net_.cell(triangle).patch, foot.b[1], foot.b[2]), C_, StepKind::alongResidual);
+    const FaceStep step = faceStep(evaluate(net_.cell(triangle, cache_).patch, foot.b[1], foot.b[2]), C_, StepKind::alongResidual);
     if (step.db[(c + 1) % 3] < 0 || step.db[(c + 2) % 3] < 0 || step.residual <= largest) continue;
     largest = step.residual;
     best = foot;
@@ -195,9 +200,9 @@ bool ShellWalk::leaveVertexAlongEdge(std::int32_t vertex) {
   double best_end = 0;
   for (const auto& [triangle, corner] : net_.cornersAt(vertex)) {
     for (const int edge : {corner, (corner + 2) % 3}) {
-      if (!net_.cell(triangle).sharp[static_cast<std::size_t>(edge)]) continue;
+      if (!net_.cell(triangle, cache_).sharp[static_cast<std::size_t>(edge)]) continue;
       const double end = edge == corner ? 0 : 1;
-      const SharpEdgePoint x = evaluate(sharpEdge(net_, triangle, edge), end);
+      const SharpEdgePoint x = evaluate(sharpEdge(net_, cache_, triangle, edge), end);
       const double away = (end == 0 ? 1 : -1) * (C_ - x.E).dot(x.D.normalized());
       if (away <= largest) continue;
       largest = away;
@@ -212,17 +217,19 @@ bool ShellWalk::leaveVertexAlongEdge(std::int32_t vertex) {
 }
 
 void ShellWalk::accept(const Vec3& n, double h) {
-  result_ = {foot_, n, h, true};
+  result_ = {foot_, n, h, true, {}};
   state_ = State::ended;
 }
 
 }  // namespace
 
-ShellContact solveShell(const SurfaceNet& net, const Vec3& C, const Foot& start) { return ShellWalk(net, C, start).run(); }
+ShellContact solveShell(const SurfaceNet& net, PatchCache& cache, const Vec3& C, const Foot& start) {
+  return ShellWalk(net, cache, C, start).run();
+}
 
-ShellContact tangentContact(const SurfaceNet& net, const Vec3& C, const Foot& foot) {
-  const FaceStep step = faceStep(evaluate(net.cell(foot.triangle).patch, foot.b[1], foot.b[2]), C, StepKind::alongResidual);
-  return {foot, step.n, step.h, false};
+ShellContact tangentContact(const SurfaceNet& net, PatchCache& cache, const Vec3& C, const Foot& foot) {
+  const FaceStep step = faceStep(evaluate(net.cell(foot.triangle, cache).patch, foot.b[1], foot.b[2]), C, StepKind::alongResidual);
+  return {foot, step.n, step.h, false, {}};
 }
 
 }  // namespace pincer::contact

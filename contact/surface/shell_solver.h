@@ -27,17 +27,24 @@ struct Foot {
   std::array<double, 3> b = {1.0 / 3, 1.0 / 3, 1.0 / 3};
 };
 
+// What a walk took.
+struct WalkCost {
+  int steps = 0;      // within faces, and visits of edges and vertices
+  int crossings = 0;  // of edges
+};
+
 struct ShellContact {
   Foot foot;
   Vec3 n = Vec3::UnitZ();  // unit; C - h n is the contact point to within 1e-9 m
   double h = 0;            // [m], negative when the centre lies under the surface
   bool converged = false;  // false: no solution within the budget of 20 steps, and `foot` is where the walk began
+  WalkCost cost;
 };
 
 // Walks from `start` to a solution for centre `C`. Allocates nothing, throws nothing.
-ShellContact solveShell(const SurfaceNet& net, const Vec3& C, const Foot& start);
+ShellContact solveShell(const SurfaceNet& net, PatchCache& cache, const Vec3& C, const Foot& start);
 
 // The contact with the tangent plane at `foot`, whatever its residual: what is held where there is no solution.
-ShellContact tangentContact(const SurfaceNet& net, const Vec3& C, const Foot& foot);
+ShellContact tangentContact(const SurfaceNet& net, PatchCache& cache, const Vec3& C, const Foot& foot);
 
 }  // namespace pincer::contact

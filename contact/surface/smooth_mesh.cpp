@@ -9,6 +9,7 @@
 #include "contact/surface/shell_solver.h"
 #include "contact/surface/surface_net.h"
 #include "contact/surface/surface_search.h"
+#include "contact/surface/surface_variant.h"
 
 namespace pincer::contact {
 
@@ -33,65 +34,71 @@ std::vector<Vec3> hullOf(const TriangleMesh& mesh) {
 
 double boundingRadiusOf(const SurfaceNet& net) {
   double radius2 = 0;
-  for (const SurfaceCell& cell : net.cells()) {
-    for (const Vec3& p : controlPoints(cell.patch)) radius2 = std::max(radius2, p.squaredNorm());
+  for (std::int32_t t = 0; t < net.size(); ++t) {
+    for (const Vec3& p : controlPoints(net.build(t).patch)) radius2 = std::max(radius2, p.squaredNorm());
   }
   return std::sqrt(radius2);
 }
 
-Foot footOf(const SurfaceTracker& tracker) {
-  const double w = std::max(0.0, 1 - tracker.u - tracker.v);
-  return {tracker.triangle, {w, tracker.u, tracker.v}};
+Foot footOf(const SurfaceSlot& slot) {
+  const double w = std::max(0.0, 1 - slot.u - slot.v);
+  return {slot.triangle, {w, slot.u, slot.v}};
 }
 
-SurfaceContact report(const ShellContact& contact, const Vec3& C, double r, std::uint32_t status, SurfaceTracker& tracker) {
-  tracker = {contact.foot.triangle, contact.foot.b[1], contact.foot.b[2], status};
-  return {C - contact.h * contact.n, contact.n, contact.h - r};
+SurfaceContacts report(const ShellContact& contact, const Vec3& C, double r, std::uint32_t status, SurfaceTracker& tracker) {
+  tracker.slots[0] = {contact.foot.triangle, contact.foot.b[1], contact.foot.b[2]};
+  tracker.p_BC = C;
+  tracker.has_centre = true;
+  tracker.status = status;
+  SurfaceContacts found;
+  found.points[0] = {C - contact.h * contact.n, contact.n, contact.h - r, 0};
+  found.count = 1;
+  return found;
 }
 
 }  // namespace
 
 struct SmoothMesh::Data {
   Data(TriangleMesh m, const SurfaceOptions& options)
-      : mesh(std::move(m)),
-        net(mesh, options.crease_angle, options.use_file_normals),
+      : net(std::move(m), options.crease_angle, options.use_file_normals),
+        variant(options.variant),
         search(net),
-        hull(hullOf(mesh)),
+        hull(hullOf(net.mesh())),
         bounding_radius(boundingRadiusOf(net)),
         folded(findFoldedTriangles(net)),
         concave_radius(findTightestConcaveRadius(net)) {}
 
-  TriangleMesh mesh;
   SurfaceNet net;
+  SurfaceVariant variant;
   SurfaceSearch search;
   std::vector<Vec3> hull;
   double bounding_radius;
   std::vector<std::int32_t> folded;
   double concave_radius;
 
-  bool isContact(const ShellContact& followed, const Vec3& C, double r, const Foot& start) const;
-  ShellContact nearestWithin(const Vec3& C, double r, double bound) const;
+  bool isContact(const ShellContact& followed, PatchCache& cache, const Vec3& C, double r, const Foot& start) const;
+  ShellContact nearestWithin(PatchCache& cache, const Vec3& C, double r, double bound) const;
 };
 
 // Whether the followed solution is one that the finger touches. A centre that begins well above the surface and ends below it has been led
 // to the far side of the body, where the equation has solutions too.
-bool SmoothMesh::Data::isContact(const ShellContact& followed, const Vec3& C, double r, const Foot& start) const {
+bool SmoothMesh::Data::isContact(const ShellContact& followed, PatchCache& cache, const Vec3& C, double r, const Foot& start) const {
   if (!followed.converged || followed.h >= r) return false;
-  return followed.h >= 0 || tangentContact(net, C, start).h < 0.25 * r;
+  return followed.h >= 0 || tangentContact(net, cache, C, start).h < 0.25 * r;
 }
 
 // The nearest solution; not converged if there is none nearer than `bound`. In free space a seed that leads to no solution as near (shading
 // normals may point past the nearest place by a few degrees) stands for itself: far from contact the distance counts, not the direction.
-ShellContact SmoothMesh::Data::nearestWithin(const Vec3& C, double r, double bound) const {
+ShellContact SmoothMesh::Data::nearestWithin(PatchCache& cache, const Vec3& C, double r, double bound) const {
   constexpr double kStrayed = 20e-6;  // [m]
-  const SurfaceSeed seed = search.nearest(net, C, bound);
+  const SurfaceSeed seed = search.nearest(net, cache, C, bound);
   if (!seed.found) return {};
-  ShellContact contact = solveShell(net, C, seed.foot);
+  ShellContact contact = followContact(variant, net, cache, C, seed.foot);
   const bool strayed = !contact.converged || std::abs(contact.h) > seed.distance + kStrayed;
   if (strayed && seed.distance > r) {
-    const PatchPoint x = evaluate(net.cell(seed.foot.triangle).patch, seed.foot.b[1], seed.foot.b[2]);
+    const PatchPoint x = evaluate(net.cell(seed.foot.triangle, cache).patch, seed.foot.b[1], seed.foot.b[2]);
     const double sign = (C - x.S).dot(x.N) < 0 ? -1 : 1;
-    return {seed.foot, sign / seed.distance * (C - x.S), sign * seed.distance, true};
+    return {seed.foot, sign / seed.distance * (C - x.S), sign * seed.distance, true, {}};
   }
   contact.converged = contact.converged && std::abs(contact.h) < bound;
   return contact;
@@ -105,23 +112,26 @@ std::shared_ptr<const SmoothMesh> SmoothMesh::build(TriangleMesh mesh, const Sur
     throw InputError(
         fmt::format("{}: crease angle {} rad is out of range (0, 3.1416]; typical: 0.7 (40 degrees).", mesh.source, options.crease_angle));
   }
+  requireVariant(options.variant, mesh.source);
   requireManifold(mesh);
   return std::shared_ptr<const SmoothMesh>(new SmoothMesh(std::make_unique<const Data>(std::move(mesh), options)));
 }
 
-SurfaceContact SmoothMesh::querySphere(const Vec3& p_BC, double r, SurfaceTracker& tracker) const {
+SurfaceContacts SmoothMesh::querySphere(const Vec3& p_BC, double r, double margin, SurfaceTracker& tracker, PatchCache& cache) const {
+  static_cast<void>(margin);
   const Data& d = *data_;
-  const bool tracked = tracker.triangle >= 0 && tracker.triangle < static_cast<std::int32_t>(d.net.cells().size());
-  const Foot start = tracked ? footOf(tracker) : Foot{};
+  const SurfaceSlot& slot = tracker.slots[0];
+  const bool tracked = slot.triangle >= 0 && slot.triangle < d.net.size();
+  const Foot start = tracked ? footOf(slot) : Foot{};
   ShellContact followed;
-  if (tracked) followed = solveShell(d.net, p_BC, start);
-  if (d.isContact(followed, p_BC, r, start)) return report(followed, p_BC, r, kQueryOk, tracker);
+  if (tracked) followed = followContact(d.variant, d.net, cache, p_BC, start);
+  if (d.isContact(followed, cache, p_BC, r, start)) return report(followed, p_BC, r, kQueryOk, tracker);
 
-  const ShellContact nearest = d.nearestWithin(p_BC, r, followed.converged ? std::abs(followed.h) : kInfinity);
+  const ShellContact nearest = d.nearestWithin(cache, p_BC, r, followed.converged ? std::abs(followed.h) : kInfinity);
   if (followed.converged) return report(nearest.converged ? nearest : followed, p_BC, r, kQueryOk, tracker);
 
   // A contact that was lost may come back on its own side only: the far side of a thin wall is as near as this one.
-  const ShellContact held = tangentContact(d.net, p_BC, tracked ? start : nearest.foot);
+  const ShellContact held = tangentContact(d.net, cache, p_BC, tracked ? start : nearest.foot);
   const bool same_side = !tracked || held.h >= r || nearest.n.dot(held.n) > 0;
   if (nearest.converged && same_side) return report(nearest, p_BC, r, tracked ? kQueryReseeded : kQueryOk, tracker);
   return report(held, p_BC, r, kQueryHeldDirection, tracker);
@@ -129,7 +139,7 @@ SurfaceContact SmoothMesh::querySphere(const Vec3& p_BC, double r, SurfaceTracke
 
 const std::vector<Vec3>& SmoothMesh::hullVertices() const { return data_->hull; }
 double SmoothMesh::boundingRadius() const { return data_->bounding_radius; }
-const TriangleMesh& SmoothMesh::triangles() const { return data_->mesh; }
+const TriangleMesh& SmoothMesh::triangles() const { return data_->net.mesh(); }
 const std::vector<std::int32_t>& SmoothMesh::foldedTriangles() const { return data_->folded; }
 double SmoothMesh::tightestConcaveRadius() const { return data_->concave_radius; }
 
@@ -137,7 +147,8 @@ std::vector<std::string> SmoothMesh::findings(double r) const {
   std::vector<std::string> findings;
   if (!data_->folded.empty()) {
     const Vec3 p =
-        1000 * data_->mesh.vertices[static_cast<std::size_t>(data_->mesh.triangles[static_cast<std::size_t>(data_->folded[0])][0])];
+        1000 *
+        data_->net.mesh().vertices[static_cast<std::size_t>(data_->net.mesh().triangles[static_cast<std::size_t>(data_->folded[0])][0])];
     findings.push_back(fmt::format(
         "the smooth surface folds over {} triangle(s), the first near ({:.4g}, {:.4g}, {:.4g}) mm: neighbouring normals differ too much. "
         "Refine the mesh there, or lower the crease angle.",

@@ -18,6 +18,7 @@
 
 #include "contact/math.h"
 #include "contact/mesh/triangle_mesh.h"
+#include "contact/surface/patch_cache.h"
 #include "contact/surface/surface_contact.h"
 
 namespace pincer::contact {
@@ -25,6 +26,7 @@ namespace pincer::contact {
 struct SurfaceOptions {
   double crease_angle = 0.6981317007977318;  // [rad], 40 degrees; in (0, pi]: edges with a sharper angle between facets stay sharp
   bool use_file_normals = true;              // where the file has normals they decide what is sharp; false: the crease angle decides
+  SurfaceVariant variant = SurfaceVariant::smooth;
 };
 
 class SmoothMesh {
@@ -36,10 +38,11 @@ class SmoothMesh {
   SmoothMesh(const SmoothMesh&) = delete;
   SmoothMesh& operator=(const SmoothMesh&) = delete;
 
-  // Contact of a sphere of radius `r` > 0 [m] centred at the finite `p_BC`. While the finger overlaps the surface the contact that
-  // `tracker` follows is kept (the far side of a thin wall never takes over); in free space the closest one wins. The result fulfils the
-  // equation above to 1e-9 m. Allocates nothing, throws nothing; several threads may query one mesh.
-  SurfaceContact querySphere(const Vec3& p_BC, double r, SurfaceTracker& tracker) const;
+  // Contacts of a sphere of radius `r` > 0 [m] centred at the finite `p_BC`; the main one first, whatever its gap. While the finger
+  // overlaps the surface the contact that `tracker` follows is kept (the far side of a thin wall never takes over); in free space the
+  // closest one wins. The result fulfils the equation above to 1e-9 m. Allocates nothing, throws nothing; several threads may query one
+  // mesh, each with its own cache.
+  SurfaceContacts querySphere(const Vec3& p_BC, double r, double margin, SurfaceTracker& tracker, PatchCache& cache) const;
 
   const std::vector<Vec3>& hullVertices() const;  // corners of the mesh's convex hull, each a vertex of the mesh [m]
   double boundingRadius() const;                  // of a sphere about B's origin that holds the surface [m]

@@ -1,16 +1,57 @@
 // surface_contact: what a query of a fingertip on a surface answers, and what it remembers for the next one.
 #pragma once
+#include <array>
 #include <cstdint>
 
 #include "contact/math.h"
 
 namespace pincer::contact {
 
+// How a mesh is felt; the variants that the literature compares.
+enum class SurfaceVariant : std::uint8_t {
+  smooth,            // place and normal of the smooth surface
+  facet,             // the flat triangles
+  force,             // the flat triangles' place, an interpolated normal (Morganbesser & Srinivasan 1996)
+  smooth_published,  // as `smooth`, with the iteration and the edges as they were printed; for comparison only
+};
+
+constexpr int kMaxSurfaceContacts = 3;
+
+struct SurfaceContact {
+  Vec3 p_BS = Vec3::Zero();
+  Vec3 n_B = Vec3::UnitZ();
+  double phi = 0;             // [m]
+  std::uint32_t feature = 0;  // the tracker's slot: the same for as long as this contact is followed
+};
+
+// What the answer took; the same input takes the same.
+struct QueryCost {
+  int iterations = 0;  // Newton steps of the followed contacts
+  int crossings = 0;   // of triangle edges
+  int reseeds = 0;     // contacts that the search had to find again
+  int held = 0;        // contacts without a solution
+};
+
+struct SurfaceContacts {
+  std::array<SurfaceContact, kMaxSurfaceContacts> points;
+  int count = 0;  // >= 1; points[0] is the main one: the deepest, or in free space the nearest
+  QueryCost cost;
+
+  const SurfaceContact& main() const { return points[0]; }
+};
+
+// The foot of one followed contact.
+struct SurfaceSlot {
+  std::int32_t triangle = -1;  // -1: nothing is followed here
+  double u = 0, v = 0;         // barycentric coordinates of corners 1 and 2 of the triangle [-]
+};
+
 // Where the last query of one finger on one mesh ended; the next begins there. Closed forms don't use it. A plain value: part of the
 // world's state, copied with snapshots. A default one means "search the whole mesh".
 struct SurfaceTracker {
-  std::int32_t triangle = -1;
-  double u = 0, v = 0;       // barycentric coordinates of corners 1 and 2 of the triangle [-]
+  std::array<SurfaceSlot, kMaxSurfaceContacts> slots;
+  Vec3 p_BC = Vec3::Zero();  // where the fingertip's centre was [m]
+  bool has_centre = false;   // whether there was a last query
   std::uint32_t status = 0;  // bits of QueryStatus of the last query
 };
 
@@ -18,12 +59,6 @@ enum QueryStatus : std::uint32_t {
   kQueryOk = 0,
   kQueryReseeded = 1u << 0,       // the warm start failed; the answer came from the tree (nothing was lost)
   kQueryHeldDirection = 1u << 1,  // no solution found: the last contact was kept. Remedy: refine or smooth the mesh there
-};
-
-struct SurfaceContact {
-  Vec3 p_BS = Vec3::Zero();
-  Vec3 n_B = Vec3::UnitZ();
-  double phi = 0;  // [m]
 };
 
 }  // namespace pincer::contact

@@ -1,5 +1,6 @@
 #include "contact/surface/surface_net.h"
 
+#include <bit>
 #include <limits>
 
 #include "contact/surface/edge_cubic.h"
@@ -37,56 +38,77 @@ void setCorners(const TriangleMesh& mesh, const CornerNormals& corners, std::siz
   patch.n101 = middleNormal(patch.b003, patch.b300, patch.n002, patch.n200);
 }
 
-// Each edge is computed once, on its first side, and copied to the other: the two sides share it to the last bit.
-void setEdge(const TriangleMesh& mesh, const CornerNormals& corners, std::size_t t, std::size_t i, std::vector<SurfaceCell>& cells) {
-  SurfaceCell& cell = cells[t];
-  const Neighbour other = cell.neighbours[i];
-  if (other.triangle >= 0 && other.triangle < static_cast<std::int32_t>(t)) return;
-  const auto [from, to] = edgeEnds(mesh, corners, t, i, other);
-  const auto [first, second] = edgeHandles(from, to);
-  firstHandle(cell.patch, i) = first;
-  secondHandle(cell.patch, i) = second;
-  cell.sharp[i] = other.triangle < 0 || from.left != from.right || to.left != to.right;
-  if (other.triangle < 0) return;
-  SurfaceCell& opposite = cells[static_cast<std::size_t>(other.triangle)];
-  const auto j = static_cast<std::size_t>(other.edge);
-  firstHandle(opposite.patch, j) = second;
-  secondHandle(opposite.patch, j) = first;
-  opposite.sharp[j] = cell.sharp[i];
-}
-
 // Vlachos et al.: the centre lies as far beyond the handles' mean as that lies beyond the flat triangle's, halved.
 void setCentre(Patch& p) {
   const Vec3 handles = (p.b210 + p.b120 + p.b021 + p.b012 + p.b102 + p.b201) / 6;
   p.b111 = handles + (handles - (p.b300 + p.b030 + p.b003) / 3) / 2;
 }
 
+// FNV-1a over what the patches depend on.
+class Fingerprint {
+ public:
+  void add(std::uint64_t word) { hash_ = (hash_ ^ word) * 0x100000001b3ull; }
+  void add(const Vec3& v) {
+    for (int k = 0; k < 3; ++k) add(std::bit_cast<std::uint64_t>(v[k]));
+  }
+  std::uint64_t value() const { return hash_ ^ hash_ >> 32; }
+
+ private:
+  std::uint64_t hash_ = 0xcbf29ce484222325ull;
+};
+
+std::uint64_t fingerprintOf(const TriangleMesh& mesh, const CornerNormals& corners) {
+  Fingerprint fingerprint;
+  for (const Vec3& v : mesh.vertices) fingerprint.add(v);
+  for (const auto& triangle : mesh.triangles) {
+    for (const std::int32_t v : triangle) fingerprint.add(static_cast<std::uint64_t>(v));
+  }
+  for (const auto& normals : corners.normals) {
+    for (const Vec3& n : normals) fingerprint.add(n);
+  }
+  return fingerprint.value();
+}
+
 }  // namespace
 
-SurfaceNet::SurfaceNet(const TriangleMesh& mesh, double crease_angle, bool use_file_normals) : cells_(mesh.triangles.size()) {
-  const Neighbours neighbours = findNeighbours(mesh);
-  const CornerNormals corners = findCornerNormals(mesh, neighbours, crease_angle, use_file_normals);
-  first_corner_.assign(mesh.vertices.size() + 1, 0);
-  for (std::size_t t = 0; t < cells_.size(); ++t) {
-    cells_[t].neighbours = neighbours[t];
-    cells_[t].vertices = mesh.triangles[t];
-    setCorners(mesh, corners, t, cells_[t].patch);
-    for (const std::int32_t v : mesh.triangles[t]) ++first_corner_[static_cast<std::size_t>(v) + 1];
+SurfaceNet::SurfaceNet(TriangleMesh mesh, double crease_angle, bool use_file_normals)
+    : mesh_(std::move(mesh)),
+      neighbours_(findNeighbours(mesh_)),
+      corner_normals_(findCornerNormals(mesh_, neighbours_, crease_angle, use_file_normals)),
+      fingerprint_(fingerprintOf(mesh_, corner_normals_)) {
+  first_corner_.assign(mesh_.vertices.size() + 1, 0);
+  for (const auto& triangle : mesh_.triangles) {
+    for (const std::int32_t v : triangle) ++first_corner_[static_cast<std::size_t>(v) + 1];
   }
-  for (std::size_t t = 0; t < cells_.size(); ++t) {
-    for (std::size_t i = 0; i < 3; ++i) setEdge(mesh, corners, t, i, cells_);
-  }
-  for (SurfaceCell& cell : cells_) setCentre(cell.patch);
-
   for (std::size_t v = 1; v < first_corner_.size(); ++v) first_corner_[v] += first_corner_[v - 1];
-  corners_.resize(3 * cells_.size());
+  corners_.resize(3 * mesh_.triangles.size());
   std::vector<std::size_t> end(first_corner_.begin(), first_corner_.end() - 1);
-  for (std::size_t t = 0; t < cells_.size(); ++t) {
+  for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
     for (std::int32_t i = 0; i < 3; ++i) {
-      const auto v = static_cast<std::size_t>(mesh.triangles[t][static_cast<std::size_t>(i)]);
+      const auto v = static_cast<std::size_t>(mesh_.triangles[t][static_cast<std::size_t>(i)]);
       corners_[end[v]++] = {static_cast<std::int32_t>(t), i};
     }
   }
+}
+
+// Each edge is computed as its first triangle sees it: the two sides share it to the last bit.
+SurfaceCell SurfaceNet::build(std::int32_t triangle) const {
+  const auto t = static_cast<std::size_t>(triangle);
+  SurfaceCell cell{{}, neighbours_[t], mesh_.triangles[t], {}};
+  setCorners(mesh_, corner_normals_, t, cell.patch);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Neighbour other = cell.neighbours[i];
+    const bool is_first = other.triangle < 0 || triangle < other.triangle;
+    const auto [from, to] = is_first ? edgeEnds(mesh_, corner_normals_, t, i, other)
+                                     : edgeEnds(mesh_, corner_normals_, static_cast<std::size_t>(other.triangle),
+                                                static_cast<std::size_t>(other.edge), {triangle, static_cast<std::int8_t>(i)});
+    const auto [first, second] = edgeHandles(from, to);
+    firstHandle(cell.patch, i) = is_first ? first : second;
+    secondHandle(cell.patch, i) = is_first ? second : first;
+    cell.sharp[i] = other.triangle < 0 || from.left != from.right || to.left != to.right;
+  }
+  setCentre(cell.patch);
+  return cell;
 }
 
 std::span<const CellCorner> SurfaceNet::cornersAt(std::int32_t vertex) const {
@@ -106,18 +128,19 @@ std::vector<std::int32_t> findFoldedTriangles(const SurfaceNet& net) {
     return false;
   };
   std::vector<std::int32_t> folded;
-  for (std::size_t t = 0; t < net.cells().size(); ++t) {
-    if (folds(net.cells()[t].patch)) folded.push_back(static_cast<std::int32_t>(t));
+  for (std::int32_t t = 0; t < net.size(); ++t) {
+    if (folds(net.build(t).patch)) folded.push_back(t);
   }
   return folded;
 }
 
 double findTightestConcaveRadius(const SurfaceNet& net) {
   double sharpest = 0;
-  for (const SurfaceCell& cell : net.cells()) {
+  for (std::int32_t t = 0; t < net.size(); ++t) {
+    const Patch patch = net.build(t).patch;
     for (int i = 0; i < 3; ++i) {
-      const auto p = edgeCurve(cell.patch, i);
-      const auto n = edgeNormals(cell.patch, i);
+      const auto p = edgeCurve(patch, i);
+      const auto n = edgeNormals(patch, i);
       const Vec3 d = p[3] - p[0];
       sharpest = std::max(sharpest, -(n[2] - n[0]).dot(d) / d.squaredNorm());
     }

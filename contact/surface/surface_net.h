@@ -1,4 +1,6 @@
-// surface_net: the patches of a mesh and how they hang together. Built once, then constant.
+// surface_net: the patches of a mesh and how they hang together.
+//
+// What is kept is the mesh, its neighbours and its corner normals; a patch is built from them when it is first touched.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -7,17 +9,10 @@
 
 #include "contact/mesh/connectivity.h"
 #include "contact/mesh/triangle_mesh.h"
-#include "contact/surface/patch.h"
+#include "contact/surface/patch_cache.h"
+#include "contact/surface/surface_cell.h"
 
 namespace pincer::contact {
-
-// One triangle as the solver sees it.
-struct SurfaceCell {
-  Patch patch;
-  std::array<Neighbour, 3> neighbours;   // across edge i, from corner i to (i + 1) mod 3
-  std::array<std::int32_t, 3> vertices;  // of the mesh
-  std::array<bool, 3> sharp;             // edge i has different normals on its two sides, or only one side
-};
 
 struct CellCorner {
   std::int32_t triangle;
@@ -27,15 +22,27 @@ struct CellCorner {
 class SurfaceNet {
  public:
   // Requires a manifold mesh.
-  SurfaceNet(const TriangleMesh& mesh, double crease_angle, bool use_file_normals);
+  SurfaceNet(TriangleMesh mesh, double crease_angle, bool use_file_normals);
 
-  const SurfaceCell& cell(std::int32_t triangle) const { return cells_[static_cast<std::size_t>(triangle)]; }
-  const std::vector<SurfaceCell>& cells() const { return cells_; }
+  int size() const { return static_cast<int>(mesh_.triangles.size()); }  // triangles
+  const TriangleMesh& mesh() const { return mesh_; }
+
+  // Valid until the next call with the same cache: copy what is to be kept.
+  const SurfaceCell& cell(std::int32_t triangle, PatchCache& cache) const {
+    PatchCache::Place& place = cache.placeOf(fingerprint_, triangle);
+    if (place.triangle != triangle || place.net != fingerprint_) place = {fingerprint_, triangle, build(triangle)};
+    return place.cell;
+  }
+  SurfaceCell build(std::int32_t triangle) const;
+
   // The triangles around a vertex of the mesh, in increasing order.
   std::span<const CellCorner> cornersAt(std::int32_t vertex) const;
 
  private:
-  std::vector<SurfaceCell> cells_;
+  TriangleMesh mesh_;
+  Neighbours neighbours_;
+  CornerNormals corner_normals_;
+  std::uint64_t fingerprint_;
   std::vector<CellCorner> corners_;        // grouped by vertex
   std::vector<std::size_t> first_corner_;  // per vertex, and one behind the last
 };

@@ -39,8 +39,9 @@ FlatPoint closestOnTriangle(const std::array<Vec3, 3>& corners, const Vec3& p) {
 
 std::vector<Aabb> netBoxes(const SurfaceNet& net) {
   std::vector<Aabb> boxes;
-  boxes.reserve(net.cells().size());
-  for (const SurfaceCell& cell : net.cells()) {
+  boxes.reserve(static_cast<std::size_t>(net.size()));
+  for (std::int32_t t = 0; t < net.size(); ++t) {
+    const SurfaceCell cell = net.build(t);
     Aabb box{cell.patch.b300, cell.patch.b300};
     for (const Vec3& p : controlPoints(cell.patch)) box = {box.low.cwiseMin(p), box.high.cwiseMax(p)};
     boxes.push_back(box);
@@ -75,11 +76,11 @@ bool SurfaceSearch::FlatTriangle::discIsWithin(const Vec3& p, double distance) c
 }
 
 SurfaceSearch::SurfaceSearch(const SurfaceNet& net) : tree_(netBoxes(net)) {
-  leaves_.reserve(net.cells().size());
-  for (const std::int32_t t : tree_.order()) leaves_.emplace_back(net.cell(t).patch, t);
+  leaves_.reserve(static_cast<std::size_t>(net.size()));
+  for (const std::int32_t t : tree_.order()) leaves_.emplace_back(net.build(t).patch, t);
 }
 
-SurfaceSeed SurfaceSearch::nearest(const SurfaceNet& net, const Vec3& p, double bound) const {
+SurfaceSeed SurfaceSearch::nearest(const SurfaceNet& net, PatchCache& cache, const Vec3& p, double bound) const {
   SurfaceSeed seed{{}, bound, false};
   double bound2 = bound * bound;
   tree_.visitNear(p, bound2, kMaxVisits, [&](std::int32_t place_in_order) {
@@ -88,7 +89,7 @@ SurfaceSeed SurfaceSearch::nearest(const SurfaceNet& net, const Vec3& p, double 
     if (!leaf.discIsWithin(p, reach)) return;
     const FlatPoint flat = closestOnTriangle(leaf.corners, p);
     if (flat.distance2 >= reach * reach) return;
-    const double distance2 = (p - place(net.cell(leaf.triangle).patch, flat.b[1], flat.b[2])).squaredNorm();
+    const double distance2 = (p - place(net.cell(leaf.triangle, cache).patch, flat.b[1], flat.b[2])).squaredNorm();
     if (distance2 >= bound2) return;
     bound2 = distance2;
     seed = {{leaf.triangle, flat.b}, std::sqrt(distance2), true};

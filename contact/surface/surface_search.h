@@ -26,7 +26,7 @@ class SurfaceSearch {
 
   // The best place nearer than `bound` [m]. Looks at 2000 patches at most, which a finger can only exceed near the centre of a spherical
   // bowl, where all places are equally near. Allocates nothing.
-  SurfaceSeed nearest(const SurfaceNet& net, const Vec3& p, double bound) const;
+  SurfaceSeed nearest(const SurfaceNet& net, PatchCache& cache, const Vec3& p, double bound) const;
 
  private:
   struct FlatTriangle {

@@ -16,7 +16,7 @@ void collidePair(const WorldModel& model, const PairModel& pair, double h, World
   const double margin = model.options.contact_margin + h * (sa.start.v_W - sb.start.v_W).norm();
   if (!boundsTouch(a, b, sa, sb, margin)) return;
   contact::PairPoints found;
-  contact::collideShapes(a.shape, sa.X_WB_mid, b.shape, sb.X_WB_mid, margin, found);
+  contact::collideShapes(a.shape, sa.X_WB_mid, b.shape, sb.X_WB_mid, margin, scratch.patches, found);
   for (int i = 0; i < found.count; ++i) {
     const contact::PairPoint& point = found.points[i];
     Contact* const contact = addContact(scratch, point.phi);

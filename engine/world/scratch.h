@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "contact/surface/patch_cache.h"
 #include "engine/solve/cascade.h"
 #include "engine/world/model.h"
 #include "engine/world/stage_clock.h"
@@ -89,6 +90,7 @@ struct WorldScratch {
   std::vector<ContactColumns> columns;
   std::vector<int> first_row;
   std::vector<double> mu, W, q, r, u;
+  contact::PatchCache patches;
   SolverScratch solver;
   SolveResult solve;
   StageClock* clock = nullptr;  // set it to have the stages timed; null costs nothing

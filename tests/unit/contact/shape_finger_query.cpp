@@ -22,7 +22,8 @@ constexpr double kTip = 0.008;       // fingertip radius [m]
 
 SurfaceContact query(const Shape& shape, const Vec3& p_BC, double r = kTip) {
   SurfaceTracker tracker;
-  return querySphere(shape, p_BC, r, tracker);
+  PatchCache cache(1);
+  return querySphere(shape, p_BC, r, 0, tracker, cache).main();
 }
 
 double centreDistance(const SurfaceContact& s, double r = kTip) { return s.phi + r; }

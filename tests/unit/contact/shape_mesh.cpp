@@ -21,7 +21,8 @@ Mesh boxMesh() {
 
 PairPoints collide(const Shape& a, const Pose& X_WA, const Shape& b, double margin) {
   PairPoints out;
-  collideShapes(a, X_WA, b, Pose{}, margin, out);
+  PatchCache cache(64);
+  collideShapes(a, X_WA, b, Pose{}, margin, cache, out);
   return out;
 }
 
@@ -70,8 +71,9 @@ TEST(MeshAsABody, FingertipAndBallMeetItsSurface) {
   const Mesh mesh = boxMesh();
   for (const Vec3& p_BC : {Vec3(0.005, 0.004, 0.017), Vec3(-0.036, 0.004, 0.003), Vec3(0.034, 0.023, 0.001)}) {
     SurfaceTracker tracker;
-    const SurfaceContact on_mesh = querySphere(mesh, p_BC, 0.008, tracker);
-    const SurfaceContact on_box = querySphere(Box{kHalf}, p_BC, 0.008, tracker);
+    PatchCache cache(64);
+    const SurfaceContact on_mesh = querySphere(mesh, p_BC, 0.008, 0, tracker, cache).main();
+    const SurfaceContact on_box = querySphere(Box{kHalf}, p_BC, 0.008, 0, tracker, cache).main();
     EXPECT_NEAR(on_mesh.phi, on_box.phi, 1e-9);
     EXPECT_LE((on_mesh.p_BS - on_box.p_BS).norm(), 1e-9);
     const PairPoints p = collide(Sphere{0.008}, {Quat::Identity(), p_BC}, mesh, 1);

@@ -53,7 +53,8 @@ Pose onFacet(const Facet& facet) {
 
 PairPoints onGround(const Mesh& mesh, const Pose& X_WB) {
   PairPoints out;
-  collideShapes(mesh, X_WB, HalfSpace{}, Pose{}, kMargin, out);
+  PatchCache cache(64);
+  collideShapes(mesh, X_WB, HalfSpace{}, Pose{}, kMargin, cache, out);
   return out;
 }
 

@@ -35,7 +35,8 @@ class Random {
 
 PairPoints collide(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin = kEverything) {
   PairPoints out;
-  collideShapes(a, X_WA, b, X_WB, margin, out);
+  PatchCache cache(64);
+  collideShapes(a, X_WA, b, X_WB, margin, cache, out);
   return out;
 }
 

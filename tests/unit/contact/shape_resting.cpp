@@ -22,7 +22,8 @@ constexpr double kMargin = 0.001;    // [m] smaller than any feature of the bodi
 
 PairPoints onGround(const Shape& solid, const Pose& X_WA, double margin = kMargin) {
   PairPoints out;
-  collideShapes(solid, X_WA, HalfSpace{}, Pose{}, margin, out);
+  PatchCache cache(64);
+  collideShapes(solid, X_WA, HalfSpace{}, Pose{}, margin, cache, out);
   return out;
 }
 

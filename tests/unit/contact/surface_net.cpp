@@ -29,13 +29,14 @@ struct Gaps {
 
 Gaps widestGaps(const SurfaceNet& net, bool sharp) {
   Gaps widest;
-  for (const SurfaceCell& cell : net.cells()) {
+  for (std::int32_t t = 0; t < net.size(); ++t) {
+    const SurfaceCell cell = net.build(t);
     for (std::size_t i = 0; i < 3; ++i) {
       const Neighbour other = cell.neighbours[i];
       if (cell.sharp[i] != sharp || other.triangle < 0) continue;
       for (int k = 0; k <= 16; ++k) {
         const EdgePoint a = onEdge(cell.patch, i, k / 16.0);
-        const EdgePoint b = onEdge(net.cell(other.triangle).patch, static_cast<std::size_t>(other.edge), 1 - k / 16.0);
+        const EdgePoint b = onEdge(net.build(other.triangle).patch, static_cast<std::size_t>(other.edge), 1 - k / 16.0);
         widest.place = std::max(widest.place, (a.S - b.S).norm());
         widest.normal = std::max(widest.normal, a.N.cross(b.N).norm());
       }
@@ -68,12 +69,13 @@ TEST(SurfaceNet, HasNoHoleWhereACreaseFadesOut) {
   mesh.triangles = {{0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}, {6, 7, 1}, {6, 1, 0}, {7, 8, 2}, {7, 2, 1}};
   const SurfaceNet net(mesh, 1.2, true);
   int sharp = 0, half_sharp = 0;
-  for (const SurfaceCell& cell : net.cells()) {
+  for (std::int32_t t = 0; t < net.size(); ++t) {
+    const SurfaceCell cell = net.build(t);
     for (std::size_t i = 0; i < 3; ++i) {
       if (!cell.sharp[i] || cell.neighbours[i].triangle < 0) continue;
       ++sharp;
       const auto n = edgeNormals(cell.patch, static_cast<int>(i));
-      const auto m = edgeNormals(net.cell(cell.neighbours[i].triangle).patch, cell.neighbours[i].edge);
+      const auto m = edgeNormals(net.build(cell.neighbours[i].triangle).patch, cell.neighbours[i].edge);
       half_sharp += (n[0] == m[2]) != (n[2] == m[0]);
     }
   }
@@ -84,7 +86,7 @@ TEST(SurfaceNet, HasNoHoleWhereACreaseFadesOut) {
 // Central differences of step 1e-6 err by 1e-12 of the third derivative and by round-off of 1e-16 / 1e-6.
 TEST(SurfaceNet, DerivativesAreThoseOfThePatch) {
   const SurfaceNet net(torus(0.03, 0.012, 12, 8), kCreaseAngle, true);
-  const Patch& p = net.cell(17).patch;
+  const Patch p = net.build(17).patch;
   const double e = 1e-6;
   for (const auto& [u, v] : {std::pair{0.2, 0.3}, {0.6, 0.1}, {0.05, 0.9}}) {
     const PatchPoint x = evaluate(p, u, v), pu = evaluate(p, u + e, v), mu = evaluate(p, u - e, v), pv = evaluate(p, u, v + e),

@@ -11,6 +11,7 @@
 #include "contact/surface/surface_net.h"
 #include "tests/support/mesh_generators.h"
 #include "tests/support/random_numbers.h"
+#include "tests/support/touch.h"
 
 namespace pincer::contact {
 namespace {
@@ -21,7 +22,8 @@ constexpr int kSamples = 12;  // per patch edge
 
 std::vector<Vec3> samplePatches(const SurfaceNet& net) {
   std::vector<Vec3> points;
-  for (const SurfaceCell& cell : net.cells()) {
+  for (std::int32_t t = 0; t < net.size(); ++t) {
+    const SurfaceCell cell = net.build(t);
     for (int i = 0; i <= kSamples; ++i) {
       for (int j = 0; i + j <= kSamples; ++j) {
         points.push_back(place(cell.patch, static_cast<double>(i) / kSamples, static_cast<double>(j) / kSamples));
@@ -55,7 +57,7 @@ TEST(SurfaceOracle, NoSampleOfTheSurfaceIsNearer) {
     SurfaceTracker tracker;
     for (int i = 0; i < 300; ++i) {
       const Vec3 C = random.uniform(0.045, 0.065) * randomDirection(random);
-      const SurfaceContact contact = object->querySphere(C, 0.004, tracker);
+      const SurfaceContact contact = touch(*object, C, 0.004, tracker);
       double nearest = std::numeric_limits<double>::infinity(), beside = nearest;
       for (const Vec3& p : samples) {
         nearest = std::min(nearest, (C - p).norm());
@@ -76,14 +78,14 @@ TEST(SurfaceOracle, AFreshSearchAgreesWithAFollowedContact) {
     v = 0.99 * v + 1e-5 * randomDirection(random);
     C += v;
     if (C.norm() > 0.06) v -= 1e-4 * C.normalized();
-    const SurfaceContact c = object->querySphere(C, 0.008, followed);
+    const SurfaceContact c = touch(*object, C, 0.008, followed);
     if (c.phi < 0) {
       C += 0.004 * c.n_B;  // bounced off
       v.setZero();
       continue;
     }
     SurfaceTracker fresh;
-    ASSERT_NEAR(object->querySphere(C, 0.008, fresh).phi, c.phi, 1e-8);  // both solved to 1e-9 m
+    ASSERT_NEAR(touch(*object, C, 0.008, fresh).phi, c.phi, 1e-8);  // both solved to 1e-9 m
   }
 }
 
@@ -140,7 +142,7 @@ TEST_P(RealMeshes, AreTouchedWithoutFailure) {
   RandomNumbers random(3);
   SurfaceTracker tracker;
   Vec3 C(0.08, 0.01, 0.02), along(0, 1, 0);
-  SurfaceContact c = object->querySphere(C, r, tracker);
+  SurfaceContact c = touch(*object, C, r, tracker);
   C = c.p_BS + (r - 0.001) * c.n_B;
   int held = 0;
   const int ticks = 10000;
@@ -148,7 +150,7 @@ TEST_P(RealMeshes, AreTouchedWithoutFailure) {
     along += 0.04 * randomDirection(random);
     along = (along - along.dot(c.n_B) * c.n_B).normalized();
     C += 1e-4 * along + std::clamp(-0.001 - c.phi, -2e-4, 2e-4) * c.n_B;
-    c = object->querySphere(C, r, tracker);
+    c = touch(*object, C, r, tracker);
     held += (tracker.status & kQueryHeldDirection) != 0;
     ASSERT_TRUE(c.n_B.allFinite() && c.p_BS.allFinite() && std::isfinite(c.phi)) << i;
     ASSERT_LT((C - c.p_BS - (c.phi + r) * c.n_B).norm(), 1e-14) << i;

@@ -1,0 +1,10 @@
+#include "contact/surface/patch_cache.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace pincer::contact {
+
+PatchCache::PatchCache(int cells) : places_(std::bit_ceil(static_cast<std::size_t>(std::max(cells, 1)))) {}
+
+}  // namespace pincer::contact
