@@ -61,7 +61,7 @@ std::string meshText(const MeshArguments& arguments, const MeshFacts& facts) {
                      1e9 * r.volume);
   out += fmt::format("  {}, {} sharp edges\n", r.closed ? "closed" : "open", r.crease_edges);
   out += massText(facts, arguments.density);
-  for (const std::string& finding : r.findings) out += fmt::format("  {} {}\n", bad("!"), finding);
+  for (const contact::MeshFinding& finding : r.findings) out += fmt::format("  {} {}\n", bad("!"), finding.text);
   if (r.findings.empty()) out += fmt::format("  {}\n", good("nothing wrong with it"));
   return out;
 }
@@ -88,7 +88,7 @@ std::string meshJson(const MeshArguments& arguments, const MeshFacts& facts) {
   json.key("closed").value(r.closed).key("inverted").value(r.inverted);
   if (facts.solid) writeMass(facts, arguments.density, json);
   json.key("findings").beginArray();
-  for (const std::string& finding : r.findings) json.value(finding);
+  for (const contact::MeshFinding& finding : r.findings) json.value(finding.text);
   return json.endArray().endObject().text();
 }
 
