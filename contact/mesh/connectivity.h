@@ -5,7 +5,8 @@
 //
 // Edge i of a triangle goes from its corner i to corner (i + 1) mod 3. A fan is the triangles around a vertex between two sharp edges, so a
 // vertex on a crease has several normals. Where the file has normals their mean replaces that sum, and an edge is sharp where the two
-// sides' normals differ at an end by more than kSameNormal; elsewhere it is sharp where the facets' angle exceeds the crease angle.
+// sides' normals differ at an end by more than kSameNormal; elsewhere, where the file has smoothing groups, it is sharp unless both sides
+// are in the same one or in one plane (within kSameNormal); elsewhere where the facets' angle exceeds the crease angle.
 // A fan that ends at a sharp edge sees one side of its vertex only, and its facets' mean would lean away from the edge by half a facet's
 // angle (0.1 mm of shape on a 15-degree cylinder of 25 mm). Its normal is continued instead, as along a circular arc, from a neighbour q
 // across the crease whose fan is whole: n = n_q - 2 (n_q . g) g, g the direction to q; and where creases meet, from the neighbours along

@@ -19,7 +19,10 @@ using Normals = std::vector<std::array<Vec3, 3>>;
 class CornerNormalFinder {
  public:
   CornerNormalFinder(const TriangleMesh& mesh, const Neighbours& neighbours, bool use_file_normals)
-      : mesh_(mesh), neighbours_(neighbours), use_file_normals_(use_file_normals && !mesh.triangle_normals.empty()) {
+      : mesh_(mesh),
+        neighbours_(neighbours),
+        use_file_normals_(use_file_normals && !mesh.triangle_normals.empty()),
+        use_groups_(use_file_normals && !mesh.smoothing_groups.empty()) {
     facet_normals_.reserve(mesh.triangles.size());
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
       facet_normals_.push_back((corner(t, 1) - corner(t, 0)).cross(corner(t, 2) - corner(t, 0)).normalized());
@@ -54,7 +57,12 @@ class CornerNormalFinder {
     const auto s = static_cast<std::size_t>(other), j = static_cast<std::size_t>(edge);
     const Vec3 *a0 = fileNormal(t, i), *a1 = fileNormal(t, i + 1), *b0 = fileNormal(s, j + 1), *b1 = fileNormal(s, j);
     if (a0 && a1 && b0 && b1) return angleBetween(*a0, *b0) > kSameNormal || angleBetween(*a1, *b1) > kSameNormal;
-    return angleBetween(facet_normals_[t], facet_normals_[s]) > crease_angle;
+    const double angle = angleBetween(facet_normals_[t], facet_normals_[s]);
+    return use_groups_ ? angle > kSameNormal && !inOneGroup(t, s) : angle > crease_angle;
+  }
+
+  bool inOneGroup(std::size_t t, std::size_t s) const {
+    return mesh_.smoothing_groups[t] != 0 && mesh_.smoothing_groups[t] == mesh_.smoothing_groups[s];
   }
 
   // How a fan ends: not at all (or at one edge, seen from both sides), along a crease that goes straight on, or where creases meet.
@@ -193,7 +201,7 @@ class CornerNormalFinder {
 
   const TriangleMesh& mesh_;
   const Neighbours& neighbours_;
-  bool use_file_normals_;
+  bool use_file_normals_, use_groups_;
   std::vector<Vec3> facet_normals_;
 };
 

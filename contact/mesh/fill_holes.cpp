@@ -81,6 +81,7 @@ class HoleFiller {
       const auto v = [&](int i) { return loop[static_cast<std::size_t>(i)]; };
       mesh_.triangles.push_back({v(a), v(b), v(c)});
       if (!mesh_.triangle_normals.empty()) mesh_.triangle_normals.push_back({-1, -1, -1});
+      if (!mesh_.smoothing_groups.empty()) mesh_.smoothing_groups.push_back(0);
     }
     triangles_ += triples.size();
     filled_.add(loop[0]);

@@ -1,26 +1,21 @@
-// obj_reader: a strict reader of Wavefront OBJ.
+// obj_reader: Wavefront OBJ.
 //
-// Read: v (with an optional weight of 1 or a colour), vn, vt, f with corners v, v/vt, v//vn, v/vt/vn, indices from 1 or, negative, back from
-// the last; polygons are triangulated (polygon.h). Accepted without effect: g, o, s, usemtl, mtllib (names and looks), l and p (lines and
-// points have no surface). Refused by name: free-form curves and surfaces, and every keyword that isn't OBJ's.
-//
-// Bounded in time and memory by the file's size. Nothing is repaired silently: every defect throws InputError naming file, line, value and remedy.
-// Vertices and faces keep the file's order; vertices that no face uses stay in the mesh (mesh_report counts them).
+// Read: v (with an optional weight of 1 or a colour), vn, vt, s, f with corners v, v/vt, v//vn, v/vt/vn, indices from 1 or, negative, back
+// from the last. Accepted without effect: g, o, usemtl, mtllib (names and looks), l and p (lines and points have no surface). Refused by
+// name: free-form curves and surfaces, and every keyword that isn't OBJ's.
+// Source: Wavefront, "Object Files (.obj)", appendix B1 of the manual of the Advanced Visualizer. A file whose only groups are "s off" has
+// none: programs write it by default, and taken at its word every facet would be felt.
 #pragma once
-#include <istream>
-#include <string>
+#include <string_view>
 
-#include "contact/error.h"
-#include "contact/mesh/triangle_mesh.h"
+#include "contact/mesh/mesh_file.h"
+#include "contact/mesh/mesh_reader.h"
 
 namespace pincer::contact {
 
-// Metres per unit of a length unit's name: "m", "cm", "mm", "in". Throws InputError on any other, listing these.
-double metresPerUnit(const std::string& unit);
+// Whether a line of a polygon mesh may begin with this word.
+bool isObjKeyword(std::string_view word);
 
-// Reads the file at `path`, scaling coordinates by `scale` [m per file unit], > 0. Throws InputError.
-TriangleMesh readObj(const std::string& path, double scale);
-// The same from a stream; `name` stands for the file in messages.
-TriangleMesh readObj(std::istream& in, const std::string& name, double scale);
+TriangleMesh readObj(MeshFile& file, const ReadOptions& options);
 
 }  // namespace pincer::contact

@@ -137,7 +137,7 @@ class FlatTriangles {
 }  // namespace
 
 void dropTriangles(TriangleMesh& mesh, const std::vector<bool>& drop) {
-  const auto keepOthers = [&](std::vector<Triangle>& list) {
+  const auto keepOthers = [&](auto& list) {
     std::size_t kept = 0;
     for (std::size_t t = 0; t < drop.size(); ++t) {
       if (!drop[t]) list[kept++] = list[t];
@@ -146,6 +146,7 @@ void dropTriangles(TriangleMesh& mesh, const std::vector<bool>& drop) {
   };
   keepOthers(mesh.triangles);
   if (!mesh.triangle_normals.empty()) keepOthers(mesh.triangle_normals);
+  if (!mesh.smoothing_groups.empty()) keepOthers(mesh.smoothing_groups);
 }
 
 MaybeChange dropPointlessTriangles(TriangleMesh& mesh) {

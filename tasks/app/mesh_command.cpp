@@ -3,8 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "contact/mesh/mesh_reader.h"
 #include "contact/mesh/mesh_report.h"
-#include "contact/mesh/obj_reader.h"
 #include "engine/motion/mass.h"
 #include "tasks/app/app.h"
 #include "tasks/app/commands.h"
@@ -15,7 +15,7 @@ namespace pincer::tasks {
 namespace {
 
 constexpr const char* kExample = R"(
-What a mesh is, in millimetres and grams, and what is wrong with it. A file that isn't a sound OBJ is named with its line (exit code 3).
+What a mesh is, in millimetres and grams, and what is wrong with it. A file that isn't a sound OBJ, STL, PLY or OFF is named with its line (exit code 3).
 
 Example:
   pincer mesh info bunny.obj --units m --density 1050)";
@@ -34,7 +34,7 @@ struct MeshFacts {
 };
 
 MeshFacts examine(const MeshArguments& arguments) {
-  const contact::TriangleMesh mesh = contact::readObj(arguments.file, contact::metresPerUnit(arguments.units));
+  const contact::TriangleMesh mesh = contact::readMesh(arguments.file, {.metres_per_unit = contact::metresPerUnit(arguments.units)});
   MeshFacts facts;
   facts.report = contact::inspect(mesh);
   facts.solid = facts.report.closed && facts.report.volume > 0;
@@ -100,7 +100,7 @@ void addMeshCommand(CLI::App& app, int& exit_code) {
   mesh->require_subcommand(1);
   mesh->footer("\nExample:\n  pincer mesh info bunny.obj --units m");
   CLI::App* info = mesh->add_subcommand("info", "Size, mass properties and faults of a mesh");
-  info->add_option("file", arguments->file, "Mesh file (OBJ)")->required();
+  info->add_option("file", arguments->file, "Mesh file (OBJ, STL, PLY or OFF)")->required();
   info->add_option("--units", arguments->units, "Length unit of the file's coordinates")
       ->required()
       ->check(CLI::IsMember({"m", "cm", "mm", "in"}));

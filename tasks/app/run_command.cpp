@@ -108,7 +108,7 @@ void addStudyOptions(CLI::App& command, RunArguments& arguments) {
   command.add_option("--friction", study.frictions, "Static frictions of the object")->capture_default_str();
   command.add_option("--mass", study.mass, "Of the object [kg]")->capture_default_str();
   command.add_option("--radius", study.radius, "Of the sphere [m]")->capture_default_str();
-  command.add_option("--object", arguments.object, "Closed OBJ mesh to pick up in place of the sphere");
+  command.add_option("--object", arguments.object, "Closed mesh (OBJ, STL, PLY or OFF) to pick up in place of the sphere");
   command.add_option("--units", arguments.units, "Length unit of the mesh (default: mm)")->check(CLI::IsMember({"m", "cm", "mm", "in"}));
   command.add_option("--size", arguments.size, "Scales the mesh to this largest dimension, in place of --units [m]");
   command.add_option("--seed", study.seed, "Of all that varies; the same seed gives the same session")->capture_default_str();

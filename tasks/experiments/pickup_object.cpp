@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "contact/mesh/mesh_reader.h"
 #include "contact/mesh/mesh_report.h"
-#include "contact/mesh/obj_reader.h"
 #include "contact/surface/smooth_mesh.h"
 #include "engine/motion/mass.h"
 #include "engine/world/state.h"
@@ -44,7 +44,7 @@ void requireHandSize(const contact::TriangleMesh& mesh, const std::string& units
 }
 
 contact::TriangleMesh readAtHandSize(const ObjectFile& file) {
-  contact::TriangleMesh mesh = contact::readObj(file.path, file.size ? 1 : contact::metresPerUnit(file.units));
+  contact::TriangleMesh mesh = contact::readMesh(file.path, {.metres_per_unit = file.size ? 1 : contact::metresPerUnit(file.units)});
   file.size ? scaleTo(*file.size, mesh) : requireHandSize(mesh, file.units);
   return mesh;
 }

@@ -19,7 +19,7 @@ std::string nameOf(PickupCondition condition);               // "force", "cld+fo
 PickupCondition pickupConditionOf(const std::string& name);  // throws InputError on any other name
 
 struct ObjectFile {
-  std::string path;                 // of a closed OBJ mesh
+  std::string path;                 // of a closed mesh: OBJ, STL, PLY or OFF
   std::string units = "mm";         // m, cm, mm, in
   std::optional<double> size = {};  // its largest dimension is made this [m], 0.005 .. 0.2, whatever the units
 };

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "contact/mesh/mesh_reader.h"
 #include "contact/mesh/mesh_report.h"
-#include "contact/mesh/obj_reader.h"
 #include "contact/surface/smooth_mesh.h"
 #include "tasks/scene/scene_keys.h"
 #include "tasks/scene/scene_parts.h"
@@ -35,9 +35,9 @@ contact::Shape readCylinderWithFlat(const JsonValue& json) {
 
 contact::TriangleMesh readTriangles(const JsonValue& json, const std::string& scene_file) {
   const std::string& units = json.at("units", "The unit of the file's coordinates: \"m\", \"cm\", \"mm\" or \"in\".").text();
-  const std::string path = besideScene(scene_file, json.at("file", "An OBJ file, relative to the scene's folder.").text());
+  const std::string path = besideScene(scene_file, json.at("file", "An OBJ, STL, PLY or OFF file, relative to the scene's folder.").text());
   const JsonValue* scale = json.find("scale");
-  return contact::readObj(path, contact::metresPerUnit(units) * (scale ? scale->number(kScale) : 1));
+  return contact::readMesh(path, {.metres_per_unit = contact::metresPerUnit(units) * (scale ? scale->number(kScale) : 1)});
 }
 
 contact::Shape readMesh(const JsonValue& json, const std::string& scene_file) {

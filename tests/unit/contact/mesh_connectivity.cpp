@@ -102,5 +102,47 @@ TEST(Connectivity, FileNormalsDecideWhatIsSharp) {
   EXPECT_EQ(sharp_edges, 24) << "twelve edges, seen from both sides";
 }
 
+// 8 sides of 45 degrees to each other, which the crease angle takes for sharp.
+TriangleMesh groupedCylinder(std::int32_t side_group) {
+  TriangleMesh mesh = cylinder(0.02, 0.03, 8, 2);
+  for (const auto& triangle : mesh.triangles) {
+    double rim = 0;
+    for (const std::int32_t v : triangle) rim += mesh.vertices[static_cast<std::size_t>(v)].z() / 0.09;
+    mesh.smoothing_groups.push_back(std::abs(rim) < 0.99 ? side_group : 2);
+  }
+  return mesh;
+}
+
+double sharpShare(const TriangleMesh& mesh, bool sides, bool use_file) {  // of the edges whose triangles have normals about z, or not
+  const CornerNormals corners = findCornerNormals(mesh, findNeighbours(mesh), kCreaseAngle, use_file);
+  int sharp = 0, all = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if ((mesh.smoothing_groups[t] == 2) == sides) continue;
+    for (const bool s : corners.sharp[t]) {
+      ++all;
+      sharp += s;
+    }
+  }
+  return static_cast<double>(sharp) / all;
+}
+
+// The side has 8 x 2 rows x 2 triangles, so 96 of their edges: 16 on the rims, 16 between the rows, 32 diagonals and 32 between the 8 flat
+// sides. Each cap has 8 triangles with 24 edges, 8 of them on the rim.
+TEST(Connectivity, SmoothingGroupsDecideWhatIsSharp) {
+  EXPECT_EQ(sharpShare(groupedCylinder(1), true, true), 16.0 / 96) << "only the rims";
+  EXPECT_EQ(sharpShare(groupedCylinder(0), true, true), 48.0 / 96) << "s off: every edge but those within a flat side";
+  EXPECT_EQ(sharpShare(groupedCylinder(1), true, false), 48.0 / 96) << "not asked: the crease angle";
+  EXPECT_EQ(sharpShare(groupedCylinder(1), false, true), 16.0 / 48) << "the caps' rims";
+}
+
+TEST(Connectivity, FileNormalsWinOverSmoothingGroups) {
+  TriangleMesh mesh = icosphere(0.02, 1);
+  for (const Vec3& p : mesh.vertices) mesh.normals.push_back(p.normalized());
+  mesh.triangle_normals = mesh.triangles;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) mesh.smoothing_groups.push_back(static_cast<std::int32_t>(t) + 1);
+  const CornerNormals corners = findCornerNormals(mesh, findNeighbours(mesh), kCreaseAngle, true);
+  for (const auto& sharp : corners.sharp) EXPECT_EQ(sharp, (std::array<bool, 3>{false, false, false}));
+}
+
 }  // namespace
 }  // namespace pincer::contact

@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <limits>
 
+#include "contact/mesh/mesh_reader.h"
 #include "contact/mesh/mesh_report.h"
-#include "contact/mesh/obj_reader.h"
 #include "contact/surface/smooth_mesh.h"
 #include "contact/surface/surface_net.h"
 #include "tests/support/mesh_generators.h"
@@ -115,7 +115,7 @@ class RealMeshes : public testing::TestWithParam<RealMesh> {
 
 TEST_P(RealMeshes, AreReadAndJudged) {
   const RealMesh& expected = GetParam();
-  const TriangleMesh mesh = readObj(realMesh(expected.name).string(), 1);
+  const TriangleMesh mesh = readMesh(realMesh(expected.name));
   const MeshReport report = inspect(mesh);
   EXPECT_EQ(report.triangles, expected.triangles);
   EXPECT_EQ(report.boundary_edges, expected.boundary_edges);
@@ -134,11 +134,11 @@ TEST_P(RealMeshes, AreReadAndJudged) {
 TEST_P(RealMeshes, AreTouchedWithoutFailure) {
   const RealMesh& mesh = GetParam();
   if (mesh.nonmanifold_edges + mesh.nonmanifold_vertices > 0) {
-    EXPECT_THROW(SmoothMesh::build(readObj(realMesh(mesh.name).string(), 1)), InputError);
+    EXPECT_THROW(SmoothMesh::build(readMesh(realMesh(mesh.name))), InputError);
     return;
   }
   const double r = 0.008;
-  const auto object = SmoothMesh::build(handSized(readObj(realMesh(mesh.name).string(), 1)));
+  const auto object = SmoothMesh::build(handSized(readMesh(realMesh(mesh.name))));
   RandomNumbers random(3);
   SurfaceTracker tracker;
   Vec3 C(0.08, 0.01, 0.02), along(0, 1, 0);

@@ -1,10 +1,10 @@
 #include <gtest/gtest.h>
 
 #include <limits>
-#include <sstream>
 #include <thread>
 
-#include "contact/mesh/obj_reader.h"
+#include "contact/mesh/mesh_reader.h"
+#include "contact/mesh/mesh_writer.h"
 #include "contact/surface/smooth_mesh.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/mesh_generators.h"
@@ -19,9 +19,8 @@ constexpr double kDegree = M_PI / 180;
 
 // Through the file format, in millimetres, as a user's object comes.
 std::shared_ptr<const SmoothMesh> asObject(const TriangleMesh& mesh) {
-  std::stringstream file;
-  writeObj(file, mesh, 0.001);
-  return SmoothMesh::build(readObj(file, mesh.source, 0.001));
+  const std::string file = formatMesh(mesh, MeshFormat::obj, {.metres_per_unit = 0.001});
+  return SmoothMesh::build(parseMesh(file, MeshFormat::obj, mesh.source, {.metres_per_unit = 0.001}));
 }
 
 double angleBetween(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "contact/mesh/mesh_report.h"
-#include "contact/mesh/obj_reader.h"
+#include "contact/mesh/mesh_reader.h"
 #include "contact/surface/smooth_mesh.h"
 #include "engine/world/state.h"
 #include "engine/world/step.h"
@@ -103,7 +103,7 @@ TEST(MeshAtRest, RealModelsStopMoving) {
   const std::filesystem::path folder = std::filesystem::path(PINCER_SOURCE_DIR) / "../shared/data/meshes";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no meshes beside the checkout";
   for (const char* name : {"spot", "fandisk", "rocker-arm"}) {
-    expectRest(contact::readObj((folder / (std::string(name) + ".obj")).string(), 1), name);
+    expectRest(contact::readMesh(folder / (std::string(name) + ".obj")), name);
   }
 }
 
