@@ -56,6 +56,7 @@ bool isFlatEnough(const std::vector<Vec3>& rim) {
 class HoleFiller {
  public:
   explicit HoleFiller(TriangleMesh& mesh) : mesh_(mesh), half_edges_(sortedHalfEdges(mesh.triangles)) {
+    for (const std::int32_t group : mesh.smoothing_groups) last_group_ = std::max(last_group_, group);
     forEachEdge(half_edges_, [&](auto edge) { taken_.push_back({edge[0].low, edge[0].high}); });
   }
 
@@ -77,11 +78,12 @@ class HoleFiller {
     if (!isFlatEnough(rim)) return false;
     const std::vector<CornerTriple> triples = triangulate(rim);
     if (triples.empty() || !diagonalsAreFree(loop, triples)) return false;
+    ++last_group_;  // what fills a hole is smooth in itself
     for (const auto& [a, b, c] : triples) {
       const auto v = [&](int i) { return loop[static_cast<std::size_t>(i)]; };
       mesh_.triangles.push_back({v(a), v(b), v(c)});
       if (!mesh_.triangle_normals.empty()) mesh_.triangle_normals.push_back({-1, -1, -1});
-      if (!mesh_.smoothing_groups.empty()) mesh_.smoothing_groups.push_back(0);
+      if (!mesh_.smoothing_groups.empty()) mesh_.smoothing_groups.push_back(last_group_);
     }
     triangles_ += triples.size();
     filled_.add(loop[0]);
@@ -112,6 +114,7 @@ class HoleFiller {
   std::vector<VertexPair> taken_;  // sorted
   std::set<VertexPair> filled_edges_;
   Occurrences<std::int32_t> filled_;
+  std::int32_t last_group_ = 0;
   std::size_t triangles_ = 0;
   int left_ = 0;
 };

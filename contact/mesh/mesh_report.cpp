@@ -25,6 +25,11 @@ const Vec3* fileNormal(const TriangleMesh& mesh, std::int32_t t, int i) {
   return n < 0 ? nullptr : &mesh.normals[static_cast<std::size_t>(n)];
 }
 
+bool inOneGroup(const TriangleMesh& mesh, const HalfEdge& h, const HalfEdge& k) {
+  const std::int32_t group = mesh.smoothing_groups[static_cast<std::size_t>(h.triangle)];
+  return group != 0 && group == mesh.smoothing_groups[static_cast<std::size_t>(k.triangle)];
+}
+
 // As findCornerNormals (connectivity.h) decides it, for meshes that may branch elsewhere.
 bool isCrease(const TriangleMesh& mesh, std::span<const HalfEdge> edge, double crease_angle) {
   const HalfEdge &h = edge[0], &k = edge[1];
@@ -32,7 +37,8 @@ bool isCrease(const TriangleMesh& mesh, std::span<const HalfEdge> edge, double c
   const Vec3 *b0 = fileNormal(mesh, k.triangle, k.side + 1), *b1 = fileNormal(mesh, k.triangle, k.side);
   if (a0 && a1 && b0 && b1) return angleBetween(*a0, *b0) > kSameNormal || angleBetween(*a1, *b1) > kSameNormal;
   const auto area = [&](const HalfEdge& e) { return areaVector(mesh, mesh.triangles[static_cast<std::size_t>(e.triangle)]); };
-  return angleBetween(area(h), area(k)) > crease_angle;
+  const double angle = angleBetween(area(h), area(k));
+  return mesh.smoothing_groups.empty() ? angle > crease_angle : angle > kSameNormal && !inOneGroup(mesh, h, k);
 }
 
 void countCreases(const TriangleMesh& mesh, const std::vector<HalfEdge>& half_edges, double crease_angle, MeshReport& report) {
@@ -147,6 +153,7 @@ MeshReport inspect(const TriangleMesh& mesh, const InspectOptions& options) {
   describe(topology, report);
   countCreases(mesh, half_edges, options.crease_angle, report);
   report.file_normals = !mesh.triangle_normals.empty();
+  report.smoothing_groups = !mesh.smoothing_groups.empty();
   report.zero_area_triangles = quality.zero_area.count;
   report.needle_triangles = quality.needle.count;
   report.duplicate_triangles = quality.duplicate.count;

@@ -111,7 +111,8 @@ class FlatTriangles {
     setTriangles(t, i, s, j);
   }
 
-  // (u, v, m) and (v, u, d) become (u, d, m) and (d, v, m). Normals of the file at u, v and d are the whole neighbour's.
+  // (u, v, m) and (v, u, d) become (u, d, m) and (d, v, m). Normals of the file at u, v and d, and its smoothing group, are the
+  // whole neighbour's.
   void setTriangles(std::size_t t, std::size_t i, std::size_t s, std::size_t j) {
     const auto turned = [&](std::vector<Triangle>& list) {
       const std::int32_t v = list[s][j], u = list[s][(j + 1) % 3], d = list[s][(j + 2) % 3], m = list[t][(i + 2) % 3];
@@ -120,6 +121,7 @@ class FlatTriangles {
     };
     turned(mesh_.triangles);
     if (!mesh_.triangle_normals.empty()) turned(mesh_.triangle_normals);
+    if (!mesh_.smoothing_groups.empty()) mesh_.smoothing_groups[t] = mesh_.smoothing_groups[s];
   }
 
   void note(std::size_t t) { removed_.add(trianglePlace(mesh_, static_cast<std::int32_t>(t))); }

@@ -235,6 +235,21 @@ TEST(MeshRepair, LeavesAHoleThatIsNotFlat) {
   EXPECT_EQ(countOf(repair(mesh, {.fill_holes = 20}), "filled-holes"), 0);
 }
 
+// Each triangle has its smoothing group, whatever is dropped, turned or added.
+TEST(MeshRepair, SmoothingGroupsStayWithTheirTriangles) {
+  TriangleMesh mesh = box(Vec3::Constant(0.02));
+  for (std::size_t t = 0; t < 12; ++t) mesh.smoothing_groups.push_back(static_cast<std::int32_t>(t / 2 + 1));
+  mesh.triangles.push_back(mesh.triangles[5]);
+  mesh.smoothing_groups.push_back(9);
+  mesh.triangles.erase(mesh.triangles.begin(), mesh.triangles.begin() + 2);
+  mesh.smoothing_groups.erase(mesh.smoothing_groups.begin(), mesh.smoothing_groups.begin() + 2);
+  const RepairedMesh repaired = repair(mesh, {.fill_holes = 4});
+  const std::vector<std::int32_t> expected = {2, 2, 3, 3, 4, 4,
+                                              5, 5, 6, 6, 7, 7};  // the duplicate's is gone, the bottom has one of its own
+  EXPECT_EQ(repaired.mesh.smoothing_groups, expected);
+  EXPECT_EQ(inspect(repaired.mesh).crease_edges, 12);
+}
+
 TEST(MeshRepair, RefusesOptionsOutOfRange) {
   EXPECT_THROW(repair(icosphere(0.02, 0), {.weld = -1}), InputError);
   EXPECT_THROW(repair(icosphere(0.02, 0), {.fill_holes = 1001}), InputError);

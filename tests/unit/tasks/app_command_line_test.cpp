@@ -43,8 +43,17 @@ bool contains(const std::string& text, const std::string& part) { return text.fi
 int linesOf(const std::string& text) { return static_cast<int>(std::count(text.begin(), text.end(), '\n')); }
 
 TEST(CommandLine, HelpsEverywhereWithAnExample) {
-  for (const std::vector<std::string>& command :
-       std::vector<std::vector<std::string>>{{}, {"run"}, {"report"}, {"export"}, {"sim"}, {"plan"}, {"mesh"}, {"mesh", "info"}}) {
+  for (const std::vector<std::string>& command : std::vector<std::vector<std::string>>{{},
+                                                                                       {"run"},
+                                                                                       {"report"},
+                                                                                       {"export"},
+                                                                                       {"sim"},
+                                                                                       {"plan"},
+                                                                                       {"mesh"},
+                                                                                       {"mesh", "info"},
+                                                                                       {"mesh", "check"},
+                                                                                       {"mesh", "convert"},
+                                                                                       {"mesh", "round-edges"}}) {
     std::vector<std::string> arguments = command;
     arguments.push_back("--help");
     const Result help = run(arguments);

@@ -1,0 +1,43 @@
+// How the subcommands of `pincer mesh` read and write files.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+
+#include "contact/mesh/mesh_writer.h"
+#include "tasks/app/mesh_commands.h"
+#include "tasks/app/progress.h"
+
+namespace pincer::tasks {
+
+CLI::Option* addUnits(CLI::App& command, const std::string& name, std::string& units, const std::string& help) {
+  return command.add_option(name, units, help)->check(CLI::IsMember({"m", "cm", "mm", "in"}));
+}
+
+void addMeshFile(CLI::App& command, MeshInput& input) {
+  command.add_option("file", input.file, "Mesh file (OBJ, STL, PLY or OFF)")->required();
+  addUnits(command, "--units", input.units, "Length unit of the file's coordinates")->capture_default_str();
+}
+
+contact::TriangleMesh readWithProgress(const MeshInput& input, contact::Degenerate degenerate) {
+  constexpr std::int64_t kSteps = 1000;
+  Progress progress("reading", kSteps);
+  contact::ReadOptions options;
+  options.metres_per_unit = contact::metresPerUnit(input.units);
+  options.degenerate = degenerate;
+  options.progress = [&](double fraction) { progress.update(static_cast<std::int64_t>(fraction * kSteps)); };
+  return contact::readMesh(input.file, options);
+}
+
+void writeAndSay(const MeshInput& input, const std::string& out, const contact::TriangleMesh& mesh, const std::string& units) {
+  std::error_code no_such_file;
+  if (std::filesystem::equivalent(input.file, out, no_such_file)) {
+    throw InputError(fmt::format("{}: this is the file that was read; it isn't overwritten. Give the result another name.", out));
+  }
+  const contact::WriteOptions options = {.metres_per_unit = contact::metresPerUnit(units)};
+  contact::writeMesh(out, mesh, options);
+  fmt::print("{}: {} vertices, {} triangles, in {}\n", out, mesh.vertices.size(), mesh.triangles.size(), units);
+  for (const std::string& loss : contact::lossesOf(mesh, *contact::formatOfName(out), options)) fmt::print("  - lost: {}\n", loss);
+}
+
+}  // namespace pincer::tasks

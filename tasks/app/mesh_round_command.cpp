@@ -1,0 +1,67 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <memory>
+
+#include "contact/mesh/round_edges.h"
+#include "tasks/app/app.h"
+#include "tasks/app/mesh_commands.h"
+
+namespace pincer::tasks {
+namespace {
+
+constexpr const char* kExample = R"(
+Sharp edges and corners become arcs of the radius, tangent to both faces, with normals: write OBJ or PLY to keep these. A finger then
+keeps contact where it would fly off a sharp edge.
+
+Example:
+  pincer mesh round-edges cube.obj round.obj --units mm --radius 1.5)";
+
+struct RoundArguments {
+  MeshInput input;
+  std::string out;
+  double radius = 1.5;       // [mm]
+  double crease_angle = 40;  // [degrees]
+  int segments = 4;
+  bool ignore_normals = false;
+};
+
+std::string counted(int n, const char* one, const char* many) { return fmt::format("{} {}", n, n == 1 ? one : many); }
+
+void roundFile(const RoundArguments& arguments) {
+  const contact::TriangleMesh mesh = readWithProgress(arguments.input, contact::Degenerate::reject);
+  const contact::RoundedMesh rounded = contact::roundEdges(mesh, {.radius = kMetresPerMillimetre * arguments.radius,
+                                                                  .crease_angle = arguments.crease_angle * M_PI / 180,
+                                                                  .use_file_normals = !arguments.ignore_normals,
+                                                                  .segments = arguments.segments});
+  if (rounded.creases + rounded.tips == 0) {
+    fmt::print("{}: no edge is sharp; the result is a copy\n", arguments.input.file);
+  } else {
+    fmt::print("{}: rounded {}, {} and {} to {} mm\n", arguments.input.file, counted(rounded.creases, "edge", "edges"),
+               counted(rounded.corners, "corner", "corners"), counted(rounded.tips, "tip", "tips"), arguments.radius);
+  }
+  writeAndSay(arguments.input, arguments.out, rounded.mesh, arguments.input.units);
+}
+
+}  // namespace
+
+void addMeshRoundEdges(CLI::App& mesh, int& exit_code) {
+  auto arguments = std::make_shared<RoundArguments>();
+  CLI::App* command = mesh.add_subcommand("round-edges", "Round sharp edges, so that a finger keeps contact there");
+  addMeshFile(*command, arguments->input);
+  command->add_option("out", arguments->out, "File to write (.obj, .stl, .ply or .off)")->required();
+  command->add_option("--radius", arguments->radius, "Radius of the rounding [mm]")->check(CLI::PositiveNumber)->capture_default_str();
+  command->add_option("--crease-angle", arguments->crease_angle, "Edges with a larger angle between facets are sharp [degrees]")
+      ->check(CLI::Range(1.0, 180.0))
+      ->capture_default_str();
+  command->add_option("--segments", arguments->segments, "Pieces of an arc of 90 degrees")->check(CLI::Range(1, 64))->capture_default_str();
+  command->add_flag("--ignore-normals", arguments->ignore_normals, "The crease angle decides, not the file's normals");
+  command->footer(kExample);
+  command->callback([arguments, &exit_code] {
+    roundFile(*arguments);
+    exit_code = kExitOk;
+  });
+}
+
+}  // namespace pincer::tasks
