@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <map>
-#include <queue>
 
 #include "contact/mesh/mesh_findings.h"
 #include "contact/mesh/mesh_pieces.h"
