@@ -14,7 +14,8 @@ namespace pincer::tasks {
 namespace {
 
 // The program's table of contents, in the order in which --help shows it.
-constexpr std::array kCommands = {addRunCommand, addReportCommand, addExportCommand, addSimCommand, addPlanCommand, addMeshCommand};
+constexpr std::array kCommands = {addRunCommand,  addReportCommand, addExportCommand, addSimCommand,
+                                  addPlanCommand, addBenchCommand,  addMeshCommand};
 
 constexpr const char* kExamples = R"(
 Examples:
@@ -22,6 +23,7 @@ Examples:
   pincer report out/first/session.db                     the session as a table and a page with plots
   pincer sim tasks/scenes/s4_pinch.json                  plain physics of a scene, its expectations checked
   pincer plan tasks/scenes/s4_pinch.json                 what runs in a tick, and what it costs
+  pincer bench contact                                   what touching a mesh costs and how well it is felt
   pincer mesh info bunny.obj --units m                   what a mesh is, and what is wrong with it
 
 Exit codes: 0 ok, 1 a check failed, 2 usage, 3 bad input, 4 device, 5 interrupted.)";

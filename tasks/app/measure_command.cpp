@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
+#include <limits>
 
 #include "contact/error.h"
 #include "tasks/app/app.h"
@@ -37,7 +38,12 @@ void printNames(const std::vector<Measurement>& measurements, bool as_json) {
 
 void runOne(const Measurement& measurement, MeasureContext& context, std::vector<Record>& records) {
   const auto start = std::chrono::steady_clock::now();
-  std::vector<Record> measured = measurement.run(context);
+  std::vector<Record> measured;
+  try {
+    measured = measurement.run(context);
+  } catch (const InputError& error) {  // the other figures are wanted all the same
+    measured = {unbounded(fmt::format("not measured: {}", error.what()), std::numeric_limits<double>::quiet_NaN(), "-")};
+  }
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   for (Record& record : measured) {
     if (record.name.empty()) record.name = measurement.name;

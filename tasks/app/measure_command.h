@@ -21,7 +21,8 @@ struct MeasureOptions {
 void addMeasureOptions(CLI::App& command, MeasureOptions& options);
 
 // Prints table or JSON (or the names) and gives the program's exit code: 1 if any record isn't ok, 5 after Ctrl-C. `title` leads the progress
-// line on standard error. Throws InputError where the pattern selects nothing, and what a measurement throws.
+// line on standard error. A measurement that throws InputError gives a record that says so and isn't ok. Throws InputError where the pattern
+// selects nothing.
 int runMeasurements(const std::vector<Measurement>& measurements, const MeasureOptions& options, const std::string& title);
 
 }  // namespace pincer::tasks

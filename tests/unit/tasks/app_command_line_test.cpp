@@ -49,6 +49,8 @@ TEST(CommandLine, HelpsEverywhereWithAnExample) {
                                                                                        {"export"},
                                                                                        {"sim"},
                                                                                        {"plan"},
+                                                                                       {"bench"},
+                                                                                       {"bench", "contact"},
                                                                                        {"mesh"},
                                                                                        {"mesh", "info"},
                                                                                        {"mesh", "check"},

@@ -103,6 +103,17 @@ TEST(Measurements, RunWhatIsSelectedAndFailTogether) {
   EXPECT_EQ(runs, 3);
 }
 
+TEST(Measurements, OneThatCannotBeMadeFailsAlone) {
+  const auto broken = [](MeasureContext&) -> std::vector<Record> { throw InputError("no such file"); };
+  const auto good = [](MeasureContext&) { return std::vector{atMost("value", 1, "-", 1)}; };
+  std::string out;
+  EXPECT_EQ(runWith({{"broken", broken}, {"good", good}}, {.json = true}, out), kExitCheckFailed);
+  const JsonValue json = parseJson(out, "stdout");
+  EXPECT_NE(json.array()[0].at("metric").text().find("no such file"), std::string::npos);
+  EXPECT_FALSE(json.array()[0].at("ok").boolean());
+  EXPECT_TRUE(json.array()[1].at("ok").boolean());
+}
+
 TEST(Timing, CallsInOrderAndAsOftenAsAsked) {
   std::int64_t next = 0;
   const CallCost cost = costOfCalls([&](std::int64_t i) { next = i == next ? next + 1 : -1; },

@@ -1,0 +1,182 @@
+// What a query costs: warm, with the global guard, over the number of triangles, and beside other engines.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "contact/mesh/generated_meshes.h"
+#include "tasks/bench/contact_bench.h"
+#include "tasks/bench/flat_distance.h"
+#include "tasks/bench/objects.h"
+#include "tasks/bench/path_figures.h"
+#include "tasks/bench/peers.h"
+#include "tasks/measure/timing.h"
+
+namespace pincer::tasks {
+namespace {
+
+using contact::SmoothMesh;
+using contact::TriangleMesh;
+
+constexpr double kPressed = 0.002;  // [m]
+
+// One long stroke at 100 mm/s, pressed 2 mm, or at a constant gap where `depth` is negative.
+FingerPath evenStroke(const SmoothMesh& mesh, double depth, MeasureContext& context) {
+  Stroke stroke;
+  stroke.ticks = 20000;
+  stroke.restart_every = 20000;
+  stroke.slowest = stroke.fastest = 0.1;
+  stroke.depth = depth;
+  return strokeOver(mesh, stroke, context);
+}
+
+CallCost costAlong(const SmoothMesh& mesh, const FingerPath& path) {
+  BenchFinger finger;
+  double sum = 0;  // keeps the answers from being optimised away
+  const auto n = static_cast<std::int64_t>(path.centres.size());
+  const CallCost cost = costOfCalls([&](std::int64_t i) {
+    if (i % n == 0) finger.tracker = {};
+    sum += finger.on(mesh, path.centres[static_cast<std::size_t>(i % n)]).main().phi;
+  });
+  if (std::isnan(sum)) return {sum, sum, sum};
+  return cost;
+}
+
+FingerPath liftedBy(const SmoothMesh& mesh, FingerPath path, double gap) {
+  BenchFinger finger;
+  for (Vec3& C : path.centres) {
+    const contact::SurfaceContact c = finger.on(mesh, C).main();
+    C += (gap - c.phi) * c.n_B;
+  }
+  return path;
+}
+
+std::vector<Record> warmCost(MeasureContext& context) {
+  const auto mesh = SmoothMesh::build(contact::icosphere(0.02, 3));
+  const CallCost cost = costAlong(*mesh, evenStroke(*mesh, kPressed, context));
+  return {atMost("1280 triangles, median", cost.median, "ns", 200), unbounded("1280 triangles, p99.9", cost.p999, "ns")};
+}
+
+// In the air, where the nearest place is asked of the whole mesh each tick.
+std::vector<Record> guardCost(MeasureContext& context) {
+  const auto mesh = SmoothMesh::build(contact::icosphere(0.04, 6));
+  const FingerPath path = liftedBy(*mesh, evenStroke(*mesh, kPressed, context), 0.0005);
+  const CallCost cost = costAlong(*mesh, path);
+  return {atMost("81,920 triangles, median", cost.median / 1000, "us", 3), atMost("81,920 triangles, p99.9", cost.p999 / 1000, "us", 10)};
+}
+
+struct GrowthStep {
+  int n;         // 20 n^2 triangles
+  double bound;  // [us]
+};
+constexpr GrowthStep kGrowth[] = {{7, 0.5}, {22, 1.2}, {71, 3}, {224, std::numeric_limits<double>::infinity()}};
+
+std::vector<Record> growth(MeasureContext& context) {
+  std::vector<Record> records;
+  std::vector<double> costs;
+  double triangles = 0, first_triangles = 0;
+  for (const auto& [n, bound] : kGrowth) {
+    triangles = 20.0 * n * n;
+    if (first_triangles == 0) first_triangles = triangles;
+    const double start = steadySeconds();
+    const auto mesh = SmoothMesh::build(contact::geodesicSphere(0.04, n));
+    const double built = steadySeconds() - start;
+    costs.push_back(costAlong(*mesh, evenStroke(*mesh, kPressed, context)).median);
+    records.push_back(atMost(fmt::format("{:.0f} triangles, warm, median", triangles), costs.back() / 1000, "us", bound));
+    records.push_back(unbounded(fmt::format("{:.0f} triangles, time to build", triangles), built, "s"));
+    if (context.interrupted()) return records;
+  }
+  const double allowed = std::log(triangles) / std::log(first_triangles);
+  records.push_back(atMost("largest over smallest mesh", costs.back() / costs.front(), "-", allowed));
+  return records;
+}
+
+std::vector<Record> fileCost(const BenchObject& object, MeasureContext& context) {
+  const auto mesh = SmoothMesh::build(object.mesh);
+  const CallCost cost = costAlong(*mesh, evenStroke(*mesh, kPressed, context));
+  return {atMost("warm query, median", cost.median / 1000, "us", 5), atMost("warm query, p99.9", cost.p999 / 1000, "us", 20)};
+}
+
+struct PeerFigures {
+  double cost = 0;         // median [ns]
+  double turn = 0;         // largest per tick [rad]
+  double depth_error = 0;  // against all flat triangles [m]
+  int missed = 0;          // of the checked places where triangles and finger overlap: without an answer
+};
+
+double turnBetween(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
+
+PeerFigures figuresOf(MeshPeer& peer, const TriangleMesh& mesh, const FingerPath& path) {
+  constexpr std::size_t kChecked = 100;  // every so many ticks, for trying all triangles takes long
+  PeerFigures f;
+  Vec3 last = Vec3::Zero();
+  for (std::size_t i = 0; i < path.centres.size() / 10; ++i) {
+    const PeerContact c = peer.query(path.centres[i]);
+    if (i % kChecked == 0) {
+      const double phi = distanceToTriangles(mesh, path.centres[i]) - kBenchFinger;
+      f.missed += !c.touches && phi < -1e-6;
+      if (c.touches) f.depth_error = std::max(f.depth_error, std::abs(c.phi - phi));
+    }
+    if (c.touches && last != Vec3::Zero()) f.turn = std::max(f.turn, turnBetween(last, c.n_B));
+    last = c.touches ? c.n_B : Vec3(Vec3::Zero());
+  }
+  const auto n = static_cast<std::int64_t>(path.centres.size());
+  double sum = 0;
+  const auto query = [&](std::int64_t i) { sum += peer.query(path.centres[static_cast<std::size_t>(i % n)]).phi; };
+  f.cost = costOfCalls(query, {.warm_up = 50, .batches = 11, .calls_per_batch = 50, .single_calls = 0}).median;
+  return f;
+}
+
+double pincersLargestTurn(const SmoothMesh& mesh, const FingerPath& path) {
+  BenchFinger finger;
+  Vec3 last = Vec3::Zero();
+  double turn = 0;
+  for (std::size_t i = 0; i < path.centres.size(); ++i) {
+    const Vec3 n = feltDirection(finger.on(mesh, path.centres[i]));
+    if (i > 0) turn = std::max(turn, turnBetween(last, n));
+    last = n;
+  }
+  return turn;
+}
+
+std::vector<Record> besidePeers(int n, MeasureContext& context) {
+  const TriangleMesh triangles = contact::geodesicSphere(0.04, n);
+  const auto mesh = SmoothMesh::build(triangles);
+  const FingerPath path = evenStroke(*mesh, kPressed, context);
+  const double mine = costAlong(*mesh, path).median;
+  std::vector<Record> records = {unbounded("pincer, smooth, median", mine / 1000, "us"),
+                                 unbounded("pincer, smooth, largest turn per tick", pincersLargestTurn(*mesh, path) * 180 / M_PI, "deg")};
+  for (const auto& peer : meshPeers(triangles, kBenchFinger)) {
+    const PeerFigures f = figuresOf(*peer, triangles, path);
+    records.push_back(unbounded(peer->name() + ", median", f.cost / 1000, "us"));
+    records.push_back(unbounded(peer->name() + ", largest turn per tick", f.turn * 180 / M_PI, "deg"));
+    records.push_back(unbounded(peer->name() + ", depth error against the flat triangles", 1e6 * f.depth_error, "um"));
+    records.push_back(unbounded(peer->name() + ", overlaps missed, of 20 checked", f.missed, "-"));
+    records.push_back(atMost("pincer's cost over " + peer->name() + "'s", mine / f.cost, "-", 1));
+  }
+  return records;
+}
+
+}  // namespace
+
+std::vector<Measurement> costMeasurements(const ContactBenchOptions& options) {
+  std::vector<Measurement> measurements = {{"cost/warm", warmCost}, {"cost/global-guard", guardCost}, {"cost/growth", growth}};
+  if (!options.meshes.empty()) {
+    for (const MeshFile& file : meshFilesIn(options.meshes)) {
+      const auto run = [file](MeasureContext& context) {
+        return measureFile(file, [&](const BenchObject& object) { return fileCost(object, context); });
+      };
+      measurements.push_back({"cost/file/" + file.name, run});
+    }
+  }
+  if (options.peers) {
+    for (const int n : {7, 22, 71}) {
+      measurements.push_back(
+          {fmt::format("peers/sphere-{}", 20 * n * n), [n](MeasureContext& context) { return besidePeers(n, context); }});
+    }
+  }
+  return measurements;
+}
+
+}  // namespace pincer::tasks
