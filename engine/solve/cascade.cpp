@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/solve/contact_equations.h"
 #include "engine/solve/gauss_seidel.h"
 #include "engine/solve/interior_point.h"
 #include "engine/solve/newton.h"
@@ -15,6 +16,8 @@ constexpr double kConeRoundOff =
 constexpr double kNearSolution = 1e-8;  // residual from which Newton's method needs a step or two
 constexpr double kShiftedGap = 1e-6;    // of a problem with frozen shift, itself an approximation
 constexpr int kSweepsPerRound = 15;     // enough to leave the basin in which Newton's method failed
+constexpr int kDenseContacts = 40;      // beyond, a dense matrix costs more than any graph of movers that fits
+constexpr int kBlocksPerMover = 40;     // of the sparse matrix: enough for dense graphs of 40 movers, and for long stacks
 
 // The residual that is enough when the tolerance is out of reach, for a problem of speeds of order `reference_speed` [m/s].
 double contentResidual(const SolverOptions& options, double reference_speed) {
@@ -39,7 +42,10 @@ class Search {
  public:
   // r, u, residual: the warm start, evaluated
   Search(const ContactProblem& problem, SolverScratch& scratch, const double* r, const double* u, double residual)
-      : problem_(scaleProblem(problem, scratch)), scratch_(scratch) {
+      : form_(chooseForm(problem, scratch)),
+        problem_(scaleProblem(problem, form_ == EquationForm::kContacts, scratch)),
+        equations_(problem_, form_, scratch),
+        scratch_(scratch) {
     Iterate* const iterates[] = {&current_, &trial_, &best_};
     for (std::size_t k = 0; k < 3; ++k) *iterates[k] = {scratch.impulses[k].data(), scratch.velocities[k].data()};
     for (int i = 0; i < problem.contactCount(); ++i)
@@ -53,17 +59,35 @@ class Search {
   }
 
   SolveMethod run(const SolverOptions& options) {
+    if (form_ == EquationForm::kTooLarge) return sweep(options);
     if (finish(options)) return SolveMethod::kNewton;
-    iterations_ += followCentralPath(problem_, nullptr, kNearSolution, options.interior_point_iterations, scratch_, current_);
+    restartFromBest();
+    evaluate(problem_, current_);
+    iterations_ += iterateProximally(problem_, 0.5 * options.tolerance, options.proximal_rounds, equations_, scratch_, current_, trial_);
+    keepBest();
+    if (isEnough(options)) return SolveMethod::kProximalNewton;
+    iterations_ += followCentralPath(problem_, nullptr, kNearSolution, options.interior_point_iterations, equations_, scratch_, current_);
     if (finish(options)) return SolveMethod::kInteriorPoint;
     if (iterateOnShift(options)) return SolveMethod::kInteriorPoint;
     for (int sweeps = 0; sweeps < options.gauss_seidel_sweeps; sweeps += kSweepsPerRound) {
       restartFromBest();
-      sweepGaussSeidel(problem_, kSweepsPerRound, current_);
+      sweepGaussSeidel(problem_, kSweepsPerRound, scratch_, current_);
       iterations_ += kSweepsPerRound;
       if (finish(options)) return SolveMethod::kGaussSeidel;
     }
     return SolveMethod::kNotConverged;
+  }
+
+  // Too large for linear equations: Gauss-Seidel alone, warm-started from tick to tick.
+  SolveMethod sweep(const SolverOptions& options) {
+    keepBest();
+    const double enough = contentResidual(options, problem_.speed);
+    for (int sweeps = 0; sweeps < options.large_sweeps && !(best_.residual <= enough); ++sweeps) {
+      sweepGaussSeidel(problem_, 1, scratch_, current_);
+      ++iterations_;
+      keepBest();
+    }
+    return best_.residual <= enough ? SolveMethod::kGaussSeidel : SolveMethod::kNotConverged;
   }
 
   // The best impulses, in the caller's variables; none if nothing finite was found.
@@ -79,9 +103,12 @@ class Search {
   bool finish(const SolverOptions& options) {
     const double tolerance = 0.5 * options.tolerance;  // leaves room for the round-off of scaling back
     keepBest();
-    iterations_ += iterateNewton(problem_, tolerance, options.newton_iterations, scratch_, current_, trial_);
+    iterations_ += iterateNewton(problem_, tolerance, options.newton_iterations, equations_, scratch_, current_, trial_);
     keepBest();
-    return best_.residual <= std::max(tolerance, contentResidual(options, problem_.speed));
+    return isEnough(options);
+  }
+  bool isEnough(const SolverOptions& options) const {
+    return best_.residual <= std::max(0.5 * options.tolerance, contentResidual(options, problem_.speed));
   }
 
   bool iterateOnShift(const SolverOptions& options) {
@@ -89,7 +116,8 @@ class Search {
     evaluate(problem_, current_);
     takeShift();
     for (int n = 0; n < options.shift_updates; ++n) {
-      iterations_ += followCentralPath(problem_, scratch_.shift.data(), kShiftedGap, options.interior_point_iterations, scratch_, current_);
+      iterations_ += followCentralPath(problem_, scratch_.shift.data(), kShiftedGap, options.interior_point_iterations, equations_,
+                                       scratch_, current_);
       takeShift();
       if (finish(options)) return true;
     }
@@ -107,7 +135,9 @@ class Search {
   }
   void restartFromBest() { std::copy(best_.r, best_.r + problem_.rowCount(), current_.r); }
 
+  EquationForm form_;
   ScaledProblem problem_;
+  ContactEquations equations_;
   SolverScratch& scratch_;
   Iterate current_{}, trial_{}, best_{};
   int iterations_ = 0;
@@ -130,15 +160,23 @@ void removeAddedEnergy(const ContactProblem& problem, VectorMap r, VectorMap u) 
 
 }  // namespace
 
-SolverScratch::SolverScratch(int contacts) : max_contacts(contacts) {
-  const auto n = static_cast<std::size_t>(contacts);
-  const std::size_t m = kMaxContactRows * n;
-  for (std::vector<double>* matrix : {&W, &jacobian}) matrix->resize(m * m);
-  for (std::vector<double>* vector : {&q, &step}) vector->resize(m);
+SolverScratch::SolverScratch(int contacts, int movers)
+    : max_contacts(contacts),
+      dense_contacts(std::min(contacts, kDenseContacts)),
+      movers_lu(std::min(movers, contacts), kBlocksPerMover * std::min({movers, contacts, BlockLu::kMaxNodes})) {
+  const auto n = static_cast<std::size_t>(contacts), dense = static_cast<std::size_t>(dense_contacts);
+  const std::size_t m = kMaxContactRows * n, rows = kMaxContactRows * dense;
+  for (std::vector<double>* matrix : {&W, &jacobian}) matrix->resize(rows * rows);
+  for (std::vector<double>* vector : {&q, &step, &response, &shift_centre}) vector->resize(m);
   for (std::vector<double>& vector : impulses) vector.resize(m);
   for (std::vector<double>& vector : velocities) vector.resize(m);
+  y.resize(kMoverFreedoms * static_cast<std::size_t>(movers));
+  rhs.resize(std::max(m, y.size()));
   interior.resize(kInteriorPointVectors * m);
-  pivots.resize(m);
+  pivots.resize(rows);
+  node.resize(static_cast<std::size_t>(movers));
+  sides.resize(n);
+  terms.resize(n);
   scale.resize(n);
   shift.resize(n);
   active.resize(n);
@@ -147,17 +185,17 @@ SolverScratch::SolverScratch(int contacts) : max_contacts(contacts) {
 SolveResult solveContacts(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch, VectorMap r, VectorMap u) {
   if (problem.contactCount() == 0) return {};
   project(problem, r.data());
-  double residual = contactResidual(problem, r, u);
+  double residual = contactResidual(problem, r, scratch, u);
   if (residual <= options.tolerance) return {SolveMethod::kWarmStart, 0, residual, true};
   Search search(problem, scratch, r.data(), u.data(), residual);
   SolveMethod method = search.run(options);
   search.write(r.data());
   project(problem, r.data());
-  residual = contactResidual(problem, r, u);
+  residual = contactResidual(problem, r, scratch, u);
   if (!(residual <= std::max(options.tolerance, contentResidual(options, referenceSpeed(problem))))) {
     method = SolveMethod::kNotConverged;
     removeAddedEnergy(problem, r, u);
-    residual = contactResidual(problem, r, u);
+    residual = contactResidual(problem, r, scratch, u);
   }
   return {method, search.iterations(), residual, method != SolveMethod::kNotConverged};
 }

@@ -1,6 +1,6 @@
 // cascade: solves a ContactProblem, cheapest method first.
 //
-//   warm start's residual -> semi-smooth Newton (Alart-Curnier) -> interior point -> interior point with frozen shift, updated ->
+//   warm start's residual -> semi-smooth Newton (Alart-Curnier) -> the same with a proximal term -> interior point -> interior point with frozen shift, updated ->
 //   projected Gauss-Seidel with exact local solves -> best iterate, flagged.     Newton's method finishes what the others begin.
 //
 // Never throws, allocates or prints; deterministic.
@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "engine/solve/block_lu.h"
 #include "engine/solve/contact_problem.h"
 
 namespace pincer::engine {
@@ -20,12 +21,14 @@ struct SolverOptions {
   double contentment = 1e-8;
   double content_speed = 1e-8;
   int newton_iterations = 12;          // each time that Newton's method is tried
+  int proximal_rounds = 12;            // of Newton's method with a proximal term
   int interior_point_iterations = 30;  // each time that the interior-point method is tried
   int shift_updates = 3;               // of the interior-point method with frozen shift
   int gauss_seidel_sweeps = 60;
+  int large_sweeps = 10;  // of Gauss-Seidel, where contacts are too many and too entangled for anything else
 };
 
-enum class SolveMethod : std::uint8_t { kNoContact, kWarmStart, kNewton, kInteriorPoint, kGaussSeidel, kNotConverged };
+enum class SolveMethod : std::uint8_t { kNoContact, kWarmStart, kNewton, kProximalNewton, kInteriorPoint, kGaussSeidel, kNotConverged };
 
 struct SolveResult {
   SolveMethod method = SolveMethod::kNoContact;
@@ -35,16 +38,31 @@ struct SolveResult {
       true;  // to the tolerance, or to contentment by the costlier methods; false: the returned r is the best iterate in the cones, scaled so that it adds no energy
 };
 
-// Working memory, sized once for at most `max_contacts`; what it holds means nothing between calls.
-struct SolverScratch {
-  explicit SolverScratch(int max_contacts);
+// How a contact takes part in the linear equations of contact_equations.h; blocks row-major with stride kMaxContactRows.
+enum class Coupling : std::uint8_t { kNone, kIdentity, kGeneral };
+struct ContactTerms {
+  static constexpr int kSize = kMaxContactRows * kMaxContactRows;
+  Coupling coupling = Coupling::kNone;
+  bool has_R = false;
+  double epsilon = 0;
+  double E[kSize], P[kSize], R[kSize], K_inverse[kSize], G[kSize];
+};
 
-  int max_contacts;
-  std::vector<double> W, q, scale;                          // the scaled problem (scaled_problem.h)
-  std::vector<double> shift;                                // |u_T| at which interior_point.h freezes it
-  std::vector<double> jacobian, step, interior;             // linear equations and vectors of newton.h and interior_point.h
+// Working memory, sized once for at most `max_contacts` that touch at most `max_movers`; what it holds means nothing between calls.
+struct SolverScratch {
+  SolverScratch(int max_contacts, int max_movers);
+
+  int max_contacts, dense_contacts;  // dense_contacts: up to so many may be treated as a dense matrix
+  std::vector<ContactSides> sides;   // the scaled problem (scaled_problem.h)
+  std::vector<double> W, q, scale, y;
+  std::vector<double> shift;  // |u_T| at which interior_point.h freezes it
+  std::vector<double> jacobian, step, rhs, response, interior,
+      shift_centre;                                         // linear equations and vectors of newton.h and interior_point.h
   std::array<std::vector<double>, 3> impulses, velocities;  // current, trial and best iterate
-  std::vector<int> active, pivots;                          // contacts in Newton's equations; row swaps
+  std::vector<int> active, pivots;                          // contacts in the dense equations; row swaps
+  std::vector<ContactTerms> terms;                          // contact_equations.h
+  std::vector<int> node;                                    // of movers in movers_lu
+  BlockLu movers_lu;
 };
 
 // The slowest motion that counts as motion; residuals are relative to the speeds of the problem, but never to less [m/s].
@@ -52,8 +70,10 @@ constexpr double kVelocityFloor = 1e-6;
 
 // Relative natural-map residual: max_i w_i |r_i - P_K(r_i - u~_i / w_i)| / max(|q|_inf, kVelocityFloor, 1e-4 max_i w_i r_in), with
 // u~_i = u_i + mu_i |u_iT| e_n and w_i the mean of W_ii's diagonal. The last term of the maximum speaks up only where W r cancels to less than
-// 1e-4 of itself (mass ratios above 1e4), and keeps a tolerance of 1e-10 above the round-off of that sum. Infinite if anything is not finite (a NaN never passes). `u` receives W r + q.
-double contactResidual(const ContactProblem& problem, const Eigen::Ref<const Eigen::VectorXd>& r, Eigen::Ref<Eigen::VectorXd> u);
+// 1e-4 of itself (mass ratios above 1e4), and keeps a tolerance of 1e-10 above the round-off of that sum. Infinite if anything is not finite
+// (a NaN never passes). `u` receives W r + q, `scratch` is working memory.
+double contactResidual(const ContactProblem& problem, const Eigen::Ref<const Eigen::VectorXd>& r, SolverScratch& scratch,
+                       Eigen::Ref<Eigen::VectorXd> u);
 
 // Solves `problem`. `r` holds the warm start on entry (zeros are fine) and the impulses on return: in the cones to 1e-12 relative, whatever
 // happened. `u` receives the contact velocities.

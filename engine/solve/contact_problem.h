@@ -1,35 +1,46 @@
 // contact_problem: the one-step frictional contact problem on which engine/solve works.
 //
 //   u = W r + q,     K*_mu contains u + mu |u_T| e_n,  perpendicular to  r in K_mu      (per contact)
+//   W = A A^T,       A_ib = J_ib M_b^-1/2      (contact i, mover b)
 //
-//   W  Delassus operator J M^-1 J^T + R [1/kg], symmetric positive semi-definite; R the compliance of soft contacts
+//   W  Delassus operator J M^-1 J^T [1/kg], symmetric positive semi-definite. It is never stored whole: A has two blocks per contact
+//   A  how contact i's velocity follows mover b's scaled velocity M_b^1/2 v_b [kg^-1/2]; M^-1/2 any factor with M^-1/2 M^-T/2 = M^-1
 //   q  contact velocity that the step would end with if no contact acted, plus biases [m/s]
 //   r  contact impulses [N s];  u  contact velocities [m/s]
 // A contact has 3 rows (t1, t2, n), or 4: (t1, t2, n, torsion), the torsional row scaled by the patch's equivalent radius so that it,
 // too, is in m/s and N s. K_mu = { |(r_t1, r_t2[, r_tau])| <= mu r_n }. The shift mu |u_T| e_n is de Saxce's: with it sliding is tangential
-// (no dilation).
+// (no dilation). A mover that doesn't move has no block. Compliance is inertia: a mover of its own.
 // Source: G. De Saxce, Z.-Q. Feng, Math. Comput. Modelling 28 (1998) 225-245; notation of V. Acary, F. Cadoux, C. Lemarechal, J. Malick,
 // ZAMM 91 (2011) 155-175, eq. (10).
 #pragma once
 #include <Eigen/Core>
+#include <array>
 #include <span>
 
 #include "contact/math.h"
 
 namespace pincer::engine {
 
-using MatrixMap = Eigen::Map<Eigen::MatrixXd>;  // column-major
 using VectorMap = Eigen::Map<Eigen::VectorXd>;
 
 constexpr int kNormalRow = 2;
 constexpr int kMaxContactRows = 4;
+constexpr int kMoverFreedoms = 6;
+
+// A's block of one contact and one of the two that touch; rows beyond the contact's are never read.
+struct ContactSide {
+  int mover = -1;  // 0 .. movers - 1; -1: nothing there moves, A isn't read
+  double A[kMaxContactRows][kMoverFreedoms];
+};
+using ContactSides = std::array<ContactSide, 2>;  // never both of one mover
 
 // Views onto memory that somebody else owns (engine/world's scratch). n contacts, m rows in all.
 struct ContactProblem {
-  std::span<const int> first_row;  // size n + 1; contact i owns rows first_row[i] .. first_row[i + 1] - 1 (3 or 4 of them)
-  std::span<const double> mu;      // size n, each >= 0 [-]
-  MatrixMap W;                     // m x m
-  VectorMap q;                     // m
+  std::span<const int> first_row;       // size n + 1; contact i owns rows first_row[i] .. first_row[i + 1] - 1 (3 or 4 of them)
+  std::span<const double> mu;           // size n, each >= 0 [-]
+  std::span<const ContactSides> sides;  // size n
+  VectorMap q;                          // m
+  int movers = 0;
 
   int contactCount() const { return static_cast<int>(mu.size()); }
   int rowCount() const { return static_cast<int>(q.size()); }

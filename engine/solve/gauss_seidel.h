@@ -7,7 +7,7 @@
 
 namespace pincer::engine {
 
-// `sweeps` passes over all contacts, in order. `it` is evaluated on return.
-void sweepGaussSeidel(const ScaledProblem& problem, int sweeps, Iterate& it);
+// `sweeps` passes over all contacts, in order, each at a cost linear in their number. `it` is evaluated on return.
+void sweepGaussSeidel(const ScaledProblem& problem, int sweeps, SolverScratch& scratch, Iterate& it);
 
 }  // namespace pincer::engine

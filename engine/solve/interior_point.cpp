@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "engine/solve/linear.h"
 #include "engine/solve/lorentz.h"
 
 namespace pincer::engine {
@@ -16,8 +15,8 @@ constexpr double kSmoothing = 1e-15;       // of |u_T|, relative to the start's 
 
 class CentralPath {
  public:
-  CentralPath(const ScaledProblem& problem, const double* shift, SolverScratch& scratch, Iterate& it)
-      : problem_(problem), shift_(shift), scratch_(scratch), it_(it) {
+  CentralPath(const ScaledProblem& problem, const double* shift, ContactEquations& equations, SolverScratch& scratch, Iterate& it)
+      : problem_(problem), shift_(shift), equations_(equations), scratch_(scratch), it_(it) {
     double** const vectors[] = {&x_, &z_, &dx_, &dz_, &lambda_, &target_, &defect_, &t_};
     double* memory = scratch.interior.data();
     for (double** vector : vectors) {
@@ -85,35 +84,25 @@ class CentralPath {
     return sum / problem_.contactCount();
   }
 
-  // S W^ S with (I + e_n t^T) in front: the block column of contact j's k-th row, for contact i.
-  void mobility(int i, int j, int k, double* column) const {
-    const int m = problem_.rowCount();
-    const int rows = problem_.rows(i);
-    const double* const W = problem_.W + (problem_.firstRow(j) + k) * m + problem_.firstRow(i);
-    for (int l = 0; l < rows; ++l) column[l] = W[l] * stretch(i, l) * stretch(j, k);
-    column[kNormalRow] += tangentDot(t_ + problem_.firstRow(i), column, rows);
-  }
-
+  // The equations for dr = S dx:  N^2 S^-1 dr + (I + e_n t^T) S W^ dr = right-hand side.
   bool linearise() {
-    const int m = problem_.rowCount();
-    double* const A = scratch_.jacobian.data();
-    for (int j = 0; j < problem_.contactCount(); ++j)
-      for (int k = 0; k < problem_.rows(j); ++k)
-        for (int i = 0; i < problem_.contactCount(); ++i) mobility(i, j, k, A + (problem_.firstRow(j) + k) * m + problem_.firstRow(i));
     for (int i = 0; i < problem_.contactCount(); ++i) {
-      const int first = problem_.firstRow(i);
-      const int rows = problem_.rows(i);
+      const int first = problem_.firstRow(i), rows = problem_.rows(i);
       const NesterovTodd N(x_ + first, z_ + first, rows);
       N.apply(x_ + first, rows, lambda_ + first);
+      double E[ContactTerms::kSize] = {}, P[ContactTerms::kSize] = {};
       for (int k = 0; k < rows; ++k) {
         double column[kMaxContactRows] = {};
         column[k] = 1;
         N.apply(column, rows, column);
         N.apply(column, rows, column);
-        for (int l = 0; l < rows; ++l) A[(first + k) * m + first + l] += column[l] + (k == l ? kRegularisation : 0);
+        for (int l = 0; l < rows; ++l) E[kMaxContactRows * l + k] = (column[l] + (k == l ? kRegularisation : 0)) / stretch(i, k);
+        P[(kMaxContactRows + 1) * k] = stretch(i, k);
+        if (k != kNormalRow) P[kMaxContactRows * kNormalRow + k] = t_[first + k];
       }
+      equations_.setGeneral(i, E, P);
     }
-    return factoriseLu(A, m, scratch_.pivots.data());
+    return equations_.factorise();
   }
 
   // c = -lambda o lambda: straight to complementarity.
@@ -149,30 +138,29 @@ class CentralPath {
       NesterovTodd(x_ + first, z_ + first, rows).apply(dx_ + first, rows, dx_ + first);
       for (int k = 0; k < rows; ++k) dx_[first + k] += defect_[first + k];
     }
-    solveLu(scratch_.jacobian.data(), problem_.rowCount(), scratch_.pivots.data(), dx_);
+    equations_.solve(dx_);
+    double* const W_dr = scratch_.step.data();
+    multiply(problem_, dx_, W_dr);
     double length = 1e3;
     for (int i = 0; i < problem_.contactCount(); ++i) {
-      const int first = problem_.firstRow(i);
-      responseTo(i, dz_ + first);
-      length = std::min(
-          {length, stepToBoundary(x_ + first, dx_ + first, problem_.rows(i)), stepToBoundary(z_ + first, dz_ + first, problem_.rows(i))});
+      const int first = problem_.firstRow(i), rows = problem_.rows(i);
+      for (int k = 0; k < rows; ++k) dx_[first + k] /= stretch(i, k);
+      respond(i, W_dr + first, dz_ + first);
+      length = std::min({length, stepToBoundary(x_ + first, dx_ + first, rows), stepToBoundary(z_ + first, dz_ + first, rows)});
     }
     return length;
   }
 
-  // dz of contact i.
-  void responseTo(int i, double* dz) const {
-    for (int k = 0; k < problem_.rows(i); ++k) dz[k] = -defect_[problem_.firstRow(i) + k];
-    double column[kMaxContactRows];
-    for (int j = 0; j < problem_.contactCount(); ++j)
-      for (int k = 0; k < problem_.rows(j); ++k) {
-        mobility(i, j, k, column);
-        for (int l = 0; l < problem_.rows(i); ++l) dz[l] += column[l] * dx_[problem_.firstRow(j) + k];
-      }
+  // dz of contact i: (I + e_n t^T) S W^ dr, less what z lacked.
+  void respond(int i, const double* W_dr, double* dz) const {
+    const int first = problem_.firstRow(i), rows = problem_.rows(i);
+    for (int k = 0; k < rows; ++k) dz[k] = stretch(i, k) * W_dr[k] - defect_[first + k];
+    dz[kNormalRow] += tangentDot(t_ + first, W_dr, rows);
   }
 
   const ScaledProblem& problem_;
   const double* shift_;
+  ContactEquations& equations_;
   SolverScratch& scratch_;
   Iterate& it_;
   double *x_, *z_, *dx_, *dz_, *lambda_, *target_, *defect_, *t_;
@@ -181,9 +169,9 @@ class CentralPath {
 
 }  // namespace
 
-int followCentralPath(const ScaledProblem& problem, const double* shift, double tolerance, int iterations, SolverScratch& scratch,
-                      Iterate& it) {
-  CentralPath path(problem, shift, scratch, it);
+int followCentralPath(const ScaledProblem& problem, const double* shift, double tolerance, int iterations, ContactEquations& equations,
+                      SolverScratch& scratch, Iterate& it) {
+  CentralPath path(problem, shift, equations, scratch, it);
   for (int n = 0; n < iterations; ++n)
     if (it.residual <= tolerance || path.isSolved(tolerance) || !path.step()) return n;
   return iterations;

@@ -8,7 +8,7 @@
 // Sources: L. Vandenberghe, "The CVXOPT linear and quadratic cone program solvers" (2010); the shift: V. Acary, P. Armand,
 // H. M. Nguyen, M. Shpakovych, Optim. Methods Softw. 39 (2024).
 #pragma once
-#include "engine/solve/scaled_problem.h"
+#include "engine/solve/contact_equations.h"
 
 namespace pincer::engine {
 
@@ -19,7 +19,7 @@ constexpr int kInteriorPointVectors = 8;  // of working memory in SolverScratch:
 //   shift  if not null: values, one per contact, at which |u_T| is frozen [sqrt(J)]. The problem is convex then, and its solution always found,
 //          where the full law can trap the path; iterating on the values leads to the law's solution (V. Acary, F. Cadoux, C. Lemarechal,
 //          J. Malick, ZAMM 91 (2011) 155-175).
-int followCentralPath(const ScaledProblem& problem, const double* shift, double tolerance, int iterations, SolverScratch& scratch,
-                      Iterate& it);
+int followCentralPath(const ScaledProblem& problem, const double* shift, double tolerance, int iterations, ContactEquations& equations,
+                      SolverScratch& scratch, Iterate& it);
 
 }  // namespace pincer::engine

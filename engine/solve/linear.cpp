@@ -48,7 +48,7 @@ void solveLu(const double* LU, int n, const int* pivots, double* b) {
   }
 }
 
-bool solveByLdlt(double* A, int n, double* b) {
+bool factoriseLdlt(double* A, int n) {
   for (int k = 0; k < n; ++k) {
     double* const column = A + k * n;
     const double pivot = column[k];
@@ -56,12 +56,18 @@ bool solveByLdlt(double* A, int n, double* b) {
     const double inverse = 1 / pivot;
     for (int j = k + 1; j < n; ++j) subtractScaled(A + j * n, column[j] * inverse, column, j, n);
     for (int i = k + 1; i < n; ++i) column[i] *= inverse;
-    subtractScaled(b, b[k], column, k + 1, n);
-    b[k] *= inverse;
   }
-  for (int k = n - 1; k >= 0; --k)
-    for (int i = k + 1; i < n; ++i) b[k] -= A[i + k * n] * b[i];
   return true;
+}
+
+void solveLdlt(const double* LDLT, int n, double* b) {
+  for (int k = 0; k < n; ++k) {
+    subtractScaled(b, b[k], LDLT + k * n, k + 1, n);
+    b[k] /= LDLT[k + k * n];
+  }
+  for (int k = n - 1; k >= 0; --k) {
+    for (int i = k + 1; i < n; ++i) b[k] -= LDLT[i + k * n] * b[i];
+  }
 }
 
 }  // namespace pincer::engine

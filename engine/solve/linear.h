@@ -15,8 +15,18 @@ bool factoriseLu(double* A, int n, int* pivots);
 // b becomes the solution of A x = b, from A's factors.
 void solveLu(const double* LU, int n, const int* pivots, double* b);
 
-// Solves A x = b for symmetric positive definite A, half the work of LU: A's lower triangle, all that is read, is overwritten by its factors,
-// b by x. False, with b undefined, if a pivot isn't positive.
-bool solveByLdlt(double* A, int n, double* b);
+// L D L^T = A in place for symmetric positive definite A, half the work of LU; only A's lower triangle is read and written. False if a pivot
+// isn't positive.
+bool factoriseLdlt(double* A, int n);
+
+// b becomes the solution of A x = b, from A's factors.
+void solveLdlt(const double* LDLT, int n, double* b);
+
+// Both. False, with b undefined, if a pivot isn't positive.
+inline bool solveByLdlt(double* A, int n, double* b) {
+  if (!factoriseLdlt(A, n)) return false;
+  solveLdlt(A, n, b);
+  return true;
+}
 
 }  // namespace pincer::engine

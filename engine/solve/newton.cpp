@@ -4,12 +4,16 @@
 #include <utility>
 
 #include "engine/solve/cone.h"
-#include "engine/solve/linear.h"
 
 namespace pincer::engine {
 namespace {
 
-constexpr double kRegularisation = 1e-11;     // far above round-off, far below the W^ of one contact (1)
+constexpr double kContactsEpsilon = 1e-11;  // far above round-off, far below the W^ of one contact (1)
+constexpr double kMoversEpsilon = 1e-8;     // the square root of round-off
+constexpr double kProximalEpsilon = 1e-3;   // small enough that a few rounds do, large enough for the equations to be tame
+constexpr double kRoundDecrease = 1e-8;     // of |Phi|^2 in a round
+constexpr int kStepsPerRound = 8;
+constexpr int kPatience = 5;                  // steps without a residual half as large as the best before, after which it won't come
 constexpr int kTrials = 6;                    // step lengths 1, 1/2, .. 1/32
 constexpr double kSufficientDecrease = 1e-4;  // Armijo's, on |Phi|^2
 
@@ -29,127 +33,135 @@ ContactMode alartCurnier(const double* r, const double* u, int rows, double mu, 
   return mode;
 }
 
-double merit(const ScaledProblem& problem, const Iterate& it) {
+// The proximal term of a round: velocities count as u + epsilon (r - r_c).
+struct Centre {
+  const double* r = nullptr;  // null for none
+  double epsilon = 0;
+};
+
+void velocityAt(const Iterate& it, const Centre& centre, int first, int rows, double* u) {
+  std::copy(it.u + first, it.u + first + rows, u);
+  if (!centre.r) return;
+  for (int k = 0; k < rows; ++k) u[k] += centre.epsilon * (it.r[first + k] - centre.r[first + k]);
+}
+
+double merit(const ScaledProblem& problem, const Centre& centre, const Iterate& it) {
   double sum = 0;
   double y[kMaxContactRows];
   double phi[kMaxContactRows];
   for (int i = 0; i < problem.contactCount(); ++i) {
-    const int rows = problem.rows(i);
-    alartCurnier(it.r + problem.firstRow(i), it.u + problem.firstRow(i), rows, problem.friction(i), y, phi);
+    const int first = problem.firstRow(i), rows = problem.rows(i);
+    double u[kMaxContactRows];
+    velocityAt(it, centre, first, rows, u);
+    alartCurnier(it.r + first, u, rows, problem.friction(i), y, phi);
     for (int k = 0; k < rows; ++k) sum += phi[k] * phi[k];
   }
   return sum;
 }
 
-bool carriesNothing(const double* r, int rows) {
-  bool nothing = true;
-  for (int k = 0; k < rows; ++k) nothing = nothing && r[k] == 0;
-  return nothing;
-}
-
-// Newton's equations of the active contacts, assembled contact by contact in SolverScratch.
-class Equations {
+// Newton's equations at one iterate.
+class NewtonStep {
  public:
-  Equations(const ScaledProblem& problem, const Iterate& it, SolverScratch& scratch)
-      : problem_(problem),
-        it_(it),
-        active_(scratch.active.data()),
-        A_(scratch.jacobian.data()),
-        b_(scratch.step.data()),
-        pivots_(scratch.pivots.data()) {
-    double y[kMaxContactRows];
-    double phi[kMaxContactRows];
-    for (int i = 0; i < problem.contactCount(); ++i) {
-      const int first = problem.firstRow(i);
-      const int rows = problem.rows(i);
-      const bool open = alartCurnier(it.r + first, it.u + first, rows, problem.friction(i), y, phi) == ContactMode::kOpen;
-      if (open && carriesNothing(it.r + first, rows)) continue;
-      active_[count_++] = i;
-      size_ += rows;
-    }
+  NewtonStep(const ScaledProblem& problem, const Iterate& it, const Centre& centre, ContactEquations& equations, SolverScratch& scratch)
+      : problem_(problem), it_(it), centre_(centre), equations_(equations), scratch_(scratch), dr_(scratch.step.data()) {
+    epsilon_ = centre.r ? centre.epsilon : equations.form() == EquationForm::kMovers ? kMoversEpsilon : kContactsEpsilon;
   }
 
   // Solves for dr; false if the equations are singular in spite of epsilon.
   bool solve() {
-    bool symmetric = true;
-    int row = 0;
-    for (int a = 0; a < count_; ++a) row += assemble(active_[a], row, symmetric);
-    for (int k = 0; k < size_; ++k) A_[k * (size_ + 1)] += kRegularisation;
-    if (symmetric) return solveByLdlt(A_, size_, b_);
-    if (!factoriseLu(A_, size_, pivots_)) return false;
-    solveLu(A_, size_, pivots_, b_);
+    for (int i = 0; i < problem_.contactCount(); ++i) linearise(i);
+    if (!equations_.factorise()) return false;
+    const int m = problem_.rowCount();
+    if (centre_.r || equations_.form() == EquationForm::kContacts) {
+      equations_.solve(dr_);
+      return true;
+    }
+    double* const b = scratch_.interior.data();
+    double* const correction = b + m;
+    std::copy(dr_, dr_ + m, b);
+    equations_.solve(dr_);
+    subtractResponse(b);
+    std::copy(b, b + m, correction);
+    equations_.solve(correction);
+    for (int row = 0; row < m; ++row) dr_[row] += correction[row];
     return true;
   }
 
   // r = P_K(r + t dr)
   void step(double t, double* r) const {
-    for (int row = 0; row < problem_.rowCount(); ++row) r[row] = 0;
-    const double* dr = b_;
-    for (int a = 0; a < count_; ++a) {
-      const int first = problem_.firstRow(active_[a]);
-      const int rows = problem_.rows(active_[a]);
-      for (int k = 0; k < rows; ++k) r[first + k] = it_.r[first + k] + t * dr[k];
-      projectOntoCone(r + first, rows, problem_.friction(active_[a]), r + first);
-      dr += rows;
+    for (int i = 0; i < problem_.contactCount(); ++i) {
+      const int first = problem_.firstRow(i), rows = problem_.rows(i);
+      for (int k = first; k < first + rows; ++k) r[k] = it_.r[k] + t * dr_[k];
+      projectOntoCone(r + first, rows, problem_.friction(i), r + first);
     }
   }
 
  private:
-  // Fills the rows of contact i; returns their number.
-  int assemble(int i, int row, bool& symmetric) {
+  void linearise(int i) {
     double y[kMaxContactRows];
-    const int first = problem_.firstRow(i);
-    const int rows = problem_.rows(i);
-    const ContactMode mode = alartCurnier(it_.r + first, it_.u + first, rows, problem_.friction(i), y, b_ + row);
-    for (int k = 0; k < rows; ++k) b_[row + k] = -b_[row + k];
-    symmetric = symmetric && mode == ContactMode::kStick;
-    const SlideDerivative slide = mode == ContactMode::kSlide ? slideDerivative(y, rows, problem_.friction(i)) : SlideDerivative{};
-    double* out = A_ + row;
-    for (int a = 0; a < count_; ++a)
-      for (int column = problem_.firstRow(active_[a]); column < problem_.firstRow(active_[a] + 1); ++column, out += size_) {
-        const double* const W = problem_.W + column * problem_.rowCount() + first;
-        const int diagonal = column - first;  // the row of this block that meets the diagonal, if within [0, rows)
-        if (mode == ContactMode::kStick)
-          for (int k = 0; k < rows; ++k) out[k] = W[k];
-        else if (mode == ContactMode::kOpen)
-          for (int k = 0; k < rows; ++k) out[k] = k == diagonal ? 1 : 0;
-        else
-          slideColumn(slide, W, rows, diagonal, out);
+    const int first = problem_.firstRow(i), rows = problem_.rows(i);
+    double u[kMaxContactRows];
+    velocityAt(it_, centre_, first, rows, u);
+    const ContactMode mode = alartCurnier(it_.r + first, u, rows, problem_.friction(i), y, dr_ + first);
+    for (int k = first; k < first + rows; ++k) dr_[k] = -dr_[k];
+    if (mode == ContactMode::kOpen) return equations_.decouple(i);
+    if (mode == ContactMode::kStick) return equations_.identify(i, epsilon_);
+    const SlideDerivative slide = slideDerivative(y, rows, problem_.friction(i));
+    double E[ContactTerms::kSize] = {}, D[ContactTerms::kSize] = {};
+    for (int l = 0; l < rows; ++l) {
+      double unit[kMaxContactRows] = {}, column[kMaxContactRows];
+      unit[l] = 1;
+      slide.apply(unit, rows, column);
+      for (int k = 0; k < rows; ++k) {
+        D[kMaxContactRows * k + l] = column[k];
+        E[kMaxContactRows * k + l] = (k == l ? 1 : 0) - column[k] + epsilon_ * (centre_.r ? column[k] : k == l ? 1 : 0);
       }
-    return rows;
+    }
+    equations_.setGeneral(i, E, D);
   }
 
-  // One column of (I - D) + D W = I + D (W - I).
-  static void slideColumn(const SlideDerivative& slide, const double* W, int rows, int diagonal, double* out) {
-    double d[kMaxContactRows] = {};
-    for (int k = 0; k < rows; ++k) d[k] = k == diagonal ? W[k] - 1 : W[k];
-    slide.apply(d, rows, out);
-    if (diagonal >= 0 && diagonal < rows) out[diagonal] += 1;
+  // b -= (I - D) dr + D W^ dr: what the step, taken with epsilon, leaves.
+  void subtractResponse(double* b) const {
+    double* const W_dr = scratch_.response.data();
+    multiply(problem_, dr_, W_dr);
+    for (int i = 0; i < problem_.contactCount(); ++i) {
+      const int first = problem_.firstRow(i), rows = problem_.rows(i);
+      const ContactTerms& t = scratch_.terms[static_cast<std::size_t>(i)];
+      for (int k = 0; k < rows; ++k) {
+        if (t.coupling == Coupling::kNone) b[first + k] -= dr_[first + k];
+        if (t.coupling == Coupling::kIdentity) b[first + k] -= W_dr[first + k];
+        if (t.coupling != Coupling::kGeneral) continue;
+        b[first + k] += epsilon_ * dr_[first + k];
+        for (int l = 0; l < rows; ++l) {
+          b[first + k] -= t.E[kMaxContactRows * k + l] * dr_[first + l] + t.P[kMaxContactRows * k + l] * W_dr[first + l];
+        }
+      }
+    }
   }
 
   const ScaledProblem& problem_;
   const Iterate& it_;
-  int* active_;
-  double* A_;
-  double* b_;
-  int* pivots_;
-  int count_ = 0;
-  int size_ = 0;
+  const Centre& centre_;
+  ContactEquations& equations_;
+  SolverScratch& scratch_;
+  double* dr_;
+  double epsilon_;
 };
 
 // Halves the step until |Phi| falls enough. If it never does the shortest step is taken all the same: that leaves the cycles and the corners of
 // |Phi| where insisting on descent gets stuck (of 1000 grasps with 2-10 fingers from a cold start, 5 % fail instead of 8 %).
-void searchLine(const ScaledProblem& problem, const Equations& equations, double tolerance, const Iterate& current, Iterate& trial) {
+void searchLine(const ScaledProblem& problem, const Centre& centre, const NewtonStep& newton, double tolerance, const Iterate& current,
+                Iterate& trial) {
   const auto attempt = [&](double t) {
-    equations.step(t, trial.r);
+    newton.step(t, trial.r);
     evaluate(problem, trial);
     return trial.residual <= tolerance;
   };
   double t = 1;
   if (attempt(t)) return;  // as nearly always from a warm start: |Phi| needn't be known
-  const double phi2 = merit(problem, current);
+  const double phi2 = merit(problem, centre, current);
   for (int n = 1; n < kTrials; ++n) {
-    if (merit(problem, trial) <= (1 - kSufficientDecrease * t) * phi2) return;
+    if (merit(problem, centre, trial) <= (1 - kSufficientDecrease * t) * phi2) return;
     t *= 0.5;
     if (attempt(t)) return;
   }
@@ -157,16 +169,52 @@ void searchLine(const ScaledProblem& problem, const Equations& equations, double
 
 }  // namespace
 
-int iterateNewton(const ScaledProblem& problem, double tolerance, int iterations, SolverScratch& scratch, Iterate& current,
-                  Iterate& trial) {
+int iterateNewton(const ScaledProblem& problem, double tolerance, int iterations, ContactEquations& equations, SolverScratch& scratch,
+                  Iterate& current, Iterate& trial) {
+  double best = current.residual;
+  int patience = kPatience;
   for (int n = 0; n < iterations; ++n) {
     if (current.residual <= tolerance || !std::isfinite(current.residual)) return n;
-    Equations equations(problem, current, scratch);
-    if (!equations.solve()) return n;
-    searchLine(problem, equations, tolerance, current, trial);
+    NewtonStep newton(problem, current, {}, equations, scratch);
+    if (!newton.solve()) return n;
+    searchLine(problem, {}, newton, tolerance, current, trial);
     std::swap(current, trial);
+    if (current.residual < 0.5 * best) {
+      best = current.residual;
+      patience = kPatience;
+    } else if (--patience == 0) {
+      return n + 1;
+    }
   }
   return iterations;
+}
+
+int iterateProximally(const ScaledProblem& problem, double tolerance, int rounds, ContactEquations& equations, SolverScratch& scratch,
+                      Iterate& current, Iterate& trial) {
+  double* const r_c = scratch.shift_centre.data();
+  double best = current.residual;
+  int steps = 0, patience = kPatience;
+  for (int round = 0; round < rounds; ++round) {
+    if (current.residual <= tolerance || !std::isfinite(current.residual)) return steps;
+    std::copy(current.r, current.r + problem.rowCount(), r_c);
+    const Centre centre{r_c, kProximalEpsilon};
+    const double start = merit(problem, centre, current);
+    for (int n = 0; n < kStepsPerRound; ++n) {
+      NewtonStep newton(problem, current, centre, equations, scratch);
+      if (!newton.solve()) return steps;
+      searchLine(problem, centre, newton, tolerance, current, trial);
+      std::swap(current, trial);
+      ++steps;
+      if (current.residual <= tolerance || merit(problem, centre, current) <= kRoundDecrease * start) break;
+    }
+    if (current.residual < 0.5 * best) {
+      best = current.residual;
+      patience = kPatience;
+    } else if (--patience == 0) {
+      return steps;
+    }
+  }
+  return steps;
 }
 
 }  // namespace pincer::engine

@@ -4,17 +4,25 @@
 //   ((I - D) + D W^ + epsilon I) dr = -Phi,   D = dP/dy,   r <- P_K(r + t dr)
 //
 // epsilon is a proximal term: it leaves the solution alone and picks the smallest step among the many of redundant contacts (a box on four
-// corners). A contact that is open and carries nothing drops out of the equations.
+// corners). It is larger where the equations are solved mover by mover, whose round-off is that of 1 / epsilon; a correction with the same
+// factors (the proximal-point method's second step) makes up for that. A contact that is open and carries nothing drops out.
 // Sources: P. Alart, A. Curnier, Comput. Methods Appl. Mech. Engrg. 92 (1991) 353-375; line search and comparison of variants: V. Acary,
 // M. Bremond, O. Huber, in Advanced Topics in Nonsmooth Dynamics (2018) 375-457. Departure: each iterate is put back into the cones, so
 // that any of them may be returned.
 #pragma once
-#include "engine/solve/scaled_problem.h"
+#include "engine/solve/contact_equations.h"
 
 namespace pincer::engine {
 
 // Up to `iterations` steps from `current` (evaluated) until its residual is within `tolerance`; `trial` is working memory. Swaps the two as it
-// goes; `current` is the last iterate on return. Returns the number of steps.
-int iterateNewton(const ScaledProblem& problem, double tolerance, int iterations, SolverScratch& scratch, Iterate& current, Iterate& trial);
+// goes; `current` is the last iterate on return. Gives up early where the residual has stopped falling. Returns the number of steps.
+int iterateNewton(const ScaledProblem& problem, double tolerance, int iterations, ContactEquations& equations, SolverScratch& scratch,
+                  Iterate& current, Iterate& trial);
+
+// The same for problems on which Newton's method alone cycles: up to `rounds` problems with the velocities u + epsilon (r - r_c), r_c the
+// answer of the round before. Each is tame (contacts that contradict each other give way by epsilon), and their answers tend to the true one,
+// at once in directions that redundant contacts leave open. Source: R. Rockafellar, SIAM J. Control Optim. 14 (1976) 877-898 (proximal point).
+int iterateProximally(const ScaledProblem& problem, double tolerance, int rounds, ContactEquations& equations, SolverScratch& scratch,
+                      Iterate& current, Iterate& trial);
 
 }  // namespace pincer::engine

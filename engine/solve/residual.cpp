@@ -1,15 +1,18 @@
 #include "engine/solve/residual.h"
 
 #include "engine/solve/cascade.h"
+#include "engine/solve/mobility.h"
 
 namespace pincer::engine {
 
 double meanDiagonal(const ContactProblem& problem, int contact) {
   const int rows = problem.rows(contact);
-  const int next = problem.rowCount() + 1;
-  const double* const diagonal = problem.W.data() + problem.firstRow(contact) * next;
-  const double sum = diagonal[0] + diagonal[next] + diagonal[2 * next];
-  return rows == 4 ? 0.25 * (sum + diagonal[3 * next]) : sum / 3;
+  double sum = 0;
+  for (const ContactSide& side : problem.sides[static_cast<std::size_t>(contact)]) {
+    if (side.mover < 0) continue;
+    for (int k = 0; k < rows; ++k) sum += dot6(side.A[k], side.A[k]);
+  }
+  return sum / rows;
 }
 
 double referenceSpeed(const ContactProblem& problem) {
@@ -18,8 +21,9 @@ double referenceSpeed(const ContactProblem& problem) {
   return speed;
 }
 
-double contactResidual(const ContactProblem& problem, const Eigen::Ref<const Eigen::VectorXd>& r, Eigen::Ref<Eigen::VectorXd> u) {
-  contactVelocities(problem.W.data(), problem.q.data(), r.data(), problem.rowCount(), u.data());
+double contactResidual(const ContactProblem& problem, const Eigen::Ref<const Eigen::VectorXd>& r, SolverScratch& scratch,
+                       Eigen::Ref<Eigen::VectorXd> u) {
+  contactVelocities(problem.sides, problem.first_row, problem.q.data(), r.data(), problem.movers, scratch.y.data(), u.data());
   WorstResidual worst;
   for (int i = 0; i < problem.contactCount(); ++i) {
     const int first = problem.firstRow(i);

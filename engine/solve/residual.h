@@ -8,13 +8,6 @@
 
 namespace pincer::engine {
 
-// u = W r + q, all of size m; W column-major. By hand: Eigen's general product costs more to set up than six rows cost to sum.
-inline void contactVelocities(const double* W, const double* q, const double* r, int m, double* u) {
-  for (int row = 0; row < m; ++row) u[row] = q[row];
-  for (int column = 0; column < m; ++column, W += m)
-    for (int row = 0; row < m; ++row) u[row] += W[row] * r[column];
-}
-
 // The largest natural map of all contacts.
 class WorstResidual {
  public:

@@ -1,42 +1,98 @@
 #include "engine/solve/scaled_problem.h"
 
+#include "engine/solve/mobility.h"
 #include "engine/solve/residual.h"
 
 namespace pincer::engine {
 namespace {
 
-void scaleColumn(const ContactProblem& problem, const double* scale, double scale_j, const double* from, double* to) {
-  for (int i = 0; i < problem.contactCount(); ++i) {
-    const double factor = 1 / (scale[i] * scale_j);
-    for (int row = problem.firstRow(i); row < problem.firstRow(i + 1); ++row) to[row] = from[row] * factor;
+void scaleSides(const ContactSides& from, int rows, double factor, ContactSides& to) {
+  for (std::size_t s = 0; s < 2; ++s) {
+    to[s].mover = from[s].mover;
+    if (from[s].mover < 0) continue;
+    for (int k = 0; k < rows; ++k) {
+      for (int j = 0; j < kMoverFreedoms; ++j) to[s].A[k][j] = factor * from[s].A[k][j];
+    }
+  }
+}
+
+// W^'s block of contacts i and j, and its transpose.
+void fillBlock(const ScaledProblem& problem, int i, int j, double* W) {
+  const int m = problem.rowCount(), rows = problem.rows(i), columns = problem.rows(j);
+  double* const block = W + problem.firstRow(i) * m + problem.firstRow(j);
+  for (int k = 0; k < rows; ++k) std::fill(block + k * m, block + k * m + columns, 0.0);
+  for (const ContactSide& x : problem.sides[static_cast<std::size_t>(i)]) {
+    for (const ContactSide& y : problem.sides[static_cast<std::size_t>(j)]) {
+      if (x.mover >= 0 && x.mover == y.mover) addCoupling(x, rows, y, columns, block, m);
+    }
+  }
+  double* const transposed = W + problem.firstRow(j) * m + problem.firstRow(i);
+  for (int k = 0; k < rows; ++k) {
+    for (int l = 0; l < columns; ++l) transposed[l * m + k] = block[k * m + l];
   }
 }
 
 }  // namespace
 
-ScaledProblem scaleProblem(const ContactProblem& problem, SolverScratch& scratch) {
-  const int m = problem.rowCount();
-  double* const scale = scratch.scale.data();
-  for (int i = 0; i < problem.contactCount(); ++i) scale[i] = std::sqrt(meanDiagonal(problem, i));
-  for (int j = 0; j < problem.contactCount(); ++j)
-    for (int row = problem.firstRow(j); row < problem.firstRow(j + 1); ++row) {
-      scaleColumn(problem, scale, scale[j], problem.W.data() + row * m, scratch.W.data() + row * m);
-      scratch.q.data()[row] = problem.q.data()[row] / scale[j];
-    }
-  return {problem.first_row, problem.mu, scratch.W.data(), scratch.q.data(), scale, referenceSpeed(problem)};
+ScaledProblem scaleProblem(const ContactProblem& problem, bool dense, SolverScratch& scratch) {
+  const int n = problem.contactCount();
+  for (int i = 0; i < n; ++i) {
+    const double scale = scratch.scale[i] = std::sqrt(meanDiagonal(problem, i));
+    scaleSides(problem.sides[static_cast<std::size_t>(i)], problem.rows(i), 1 / scale, scratch.sides[i]);
+    for (int row = problem.firstRow(i); row < problem.firstRow(i + 1); ++row) scratch.q[row] = problem.q.data()[row] / scale;
+  }
+  ScaledProblem scaled{problem.first_row,
+                       problem.mu,
+                       {scratch.sides.data(), static_cast<std::size_t>(n)},
+                       nullptr,
+                       scratch.q.data(),
+                       scratch.scale.data(),
+                       scratch.y.data(),
+                       referenceSpeed(problem),
+                       problem.movers};
+  if (!dense) return scaled;
+  for (int i = 0; i < n; ++i) {
+    for (int j = i; j < n; ++j) fillBlock(scaled, i, j, scratch.W.data());
+  }
+  scaled.W = scratch.W.data();
+  return scaled;
 }
 
-void evaluate(const ScaledProblem& problem, Iterate& it) {
-  contactVelocities(problem.W, problem.q, it.r, problem.rowCount(), it.u);
+void multiply(const ScaledProblem& problem, const double* r, double* out) {
+  const int m = problem.rowCount();
+  for (int row = 0; row < m; ++row) out[row] = 0;
+  if (problem.W) {
+    const double* column = problem.W;
+    for (int l = 0; l < m; ++l, column += m) {
+      for (int row = 0; row < m; ++row) out[row] += column[row] * r[l];
+    }
+    return;
+  }
+  std::fill(problem.y, problem.y + kMoverFreedoms * problem.movers, 0.0);
+  for (int i = 0; i < problem.contactCount(); ++i) {
+    addImpulse(problem.sides[static_cast<std::size_t>(i)], problem.rows(i), r + problem.firstRow(i), problem.y);
+  }
+  for (int i = 0; i < problem.contactCount(); ++i) {
+    addVelocity(problem.sides[static_cast<std::size_t>(i)], problem.rows(i), problem.y, out + problem.firstRow(i));
+  }
+}
+
+void judge(const ScaledProblem& problem, Iterate& it) {
   WorstResidual worst;
   for (int i = 0; i < problem.contactCount(); ++i) {
     const int first = problem.firstRow(i);
-    const int rows = problem.rows(i);
     const double* const u_i = it.u + first;
-    const double error2 = naturalMap2(it.r + first, u_i, rows, problem.friction(i), 1);  // in scaled variables w_i is 1
-    worst.add(error2 * problem.scale[i] * problem.scale[i], u_i[kNormalRow], problem.scale[i] * it.r[first + kNormalRow]);
+    const double error2 = naturalMap2(it.r + first, u_i, problem.rows(i), problem.friction(i), 1);  // in scaled variables w_i is 1
+    const double scale = problem.scale[i];
+    worst.add(error2 * scale * scale, u_i[kNormalRow], scale * it.r[first + kNormalRow]);
   }
   it.residual = worst.relativeTo(problem.speed);
+}
+
+void evaluate(const ScaledProblem& problem, Iterate& it) {
+  multiply(problem, it.r, it.u);
+  for (int row = 0; row < problem.rowCount(); ++row) it.u[row] += problem.q[row];
+  judge(problem, it);
 }
 
 }  // namespace pincer::engine

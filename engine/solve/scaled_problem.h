@@ -1,6 +1,6 @@
 // scaled_problem: a ContactProblem in variables in which every contact weighs the same.
 //
-//   r^ = s r,   u^ = u / s,   W^_ij = W_ij / (s_i s_j),   q^ = q / s,   s_i = sqrt(w_i),   w_i = mean of W_ii's diagonal
+//   r^ = s r,   u^ = u / s,   A^_i = A_i / s_i,   W^ = A^ A^^T,   q^ = q / s,   s_i = sqrt(w_i),   w_i = mean of W_ii's diagonal
 //
 // s is one number per contact, so the cones and the law are unchanged; r^ and u^ are both in sqrt(J). The diagonal of W^ is about 1, whatever
 // the masses, so Alart-Curnier's rho, the line search's merit and the regularisation need no tuning.
@@ -13,10 +13,13 @@ namespace pincer::engine {
 struct ScaledProblem {
   std::span<const int> first_row;
   std::span<const double> mu;
-  const double* W = nullptr;      // m x m, column-major [-]
-  const double* q = nullptr;      // [sqrt(J)]
-  const double* scale = nullptr;  // s, one per contact [1/sqrt(kg)]
-  double speed = 1;               // what residuals are relative to [m/s], see contactResidual
+  std::span<const ContactSides> sides;  // A^ [-]
+  const double* W = nullptr;            // W^, m x m [-]; null where the problem is better treated mover by mover (contact_equations.h)
+  const double* q = nullptr;            // [sqrt(J)]
+  const double* scale = nullptr;        // s, one per contact [1/sqrt(kg)]
+  double* y = nullptr;                  // working memory, kMoverFreedoms per mover
+  double speed = 1;                     // what residuals are relative to [m/s], see contactResidual
+  int movers = 0;
 
   int contactCount() const { return static_cast<int>(mu.size()); }
   int rowCount() const { return first_row.back(); }
@@ -25,8 +28,8 @@ struct ScaledProblem {
   double friction(int contact) const { return mu[static_cast<std::size_t>(contact)]; }
 };
 
-// Scales `problem` into `scratch`. Where some w_i isn't positive and finite, no iterate has a finite residual.
-ScaledProblem scaleProblem(const ContactProblem& problem, SolverScratch& scratch);
+// Scales `problem` into `scratch`; W^ as well if `dense`. Where some w_i isn't positive and finite, no iterate has a finite residual.
+ScaledProblem scaleProblem(const ContactProblem& problem, bool dense, SolverScratch& scratch);
 
 // An attempt at a solution, in scaled variables; the arrays belong to SolverScratch.
 struct Iterate {
@@ -35,7 +38,11 @@ struct Iterate {
   double residual = 0;  // contactResidual of r
 };
 
-// Fills `it.u` and `it.residual` from `it.r`.
+// out = W^ r
+void multiply(const ScaledProblem& problem, const double* r, double* out);
+
+// Fills `it.u` and `it.residual` from `it.r`; the second where u is known.
 void evaluate(const ScaledProblem& problem, Iterate& it);
+void judge(const ScaledProblem& problem, Iterate& it);
 
 }  // namespace pincer::engine

@@ -1,4 +1,4 @@
-// contact_rows: from contacts to the numbers that the solver sees: what each remembers, its biases, Jacobian rows, Delassus operator.
+// contact_rows: from contacts to the numbers that the solver sees: what each remembers, its velocity and biases. (Jacobians: islands.h.)
 //
 // Biases (the solver makes u + mu |u_T| e_n lie in K*, u including the bias b):
 //   open, not touching before    b_n = phi_0 / h                 so that it lands exactly, phi_0 the gap at the start of the tick
@@ -26,7 +26,7 @@ constexpr double kClosingSpeed = 1e-6;       // slower approaches count as rest 
 // Sorts the contacts by id, finds what the state remembers of each, fills frame, arms, friction and stick offset.
 void recallContacts(const WorldState& state, WorldScratch& scratch);
 
-// Fills rows, W, q, mu and the warm start r; returns views onto them.
-ContactProblem assembleProblem(const WorldModel& model, const WorldState& state, WorldScratch& scratch);
+// Fills first_row, q, mu and the warm start r, in the order of scratch.contacts.
+void fillContacts(const WorldModel& model, const WorldState& state, WorldScratch& scratch);
 
 }  // namespace pincer::engine

@@ -62,7 +62,8 @@ Material combine(const Material& a, const Material& b) {
 WorldBuilder::WorldBuilder(const WorldOptions& options) {
   requireRange("tick", options.h, 1e-5, 1e-2, "The tick is in seconds; 0.001 is the usual one.");
   requireRange("contact_margin", options.contact_margin, 1e-9, 1, "It is in metres; 0.001 suits hand-sized bodies.");
-  requireRange("max_contacts", options.max_contacts, 4, 256, "64 suits hand-sized scenes.");
+  requireRange("max_contacts", options.max_contacts, 4, 16384, "64 suits hand-sized scenes; four to six per body suit heaps.");
+  requireRange("threads", options.threads, 1, 16, "1 suits hand-sized scenes; more pay where many heaps lie apart.");
   requireRange("solver.tolerance", options.solver.tolerance, 1e-14, 1e-2, "1e-10 is the usual one.");
   if (!options.gravity_W.allFinite()) throw InputError("gravity isn't finite. Give three numbers in m/s^2, for example [0, 0, -9.81].");
   model_.options = options;

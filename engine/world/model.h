@@ -71,7 +71,8 @@ struct WorldOptions {
   double h = 1e-3;                     // tick [s], 1e-5 .. 1e-2
   Vec3 gravity_W = Vec3(0, 0, -9.81);  // [m/s^2]
   double contact_margin = 1e-3;        // pairs closer than this make contacts [m], > 0
-  int max_contacts = 64;               // 4 .. 256; more are dropped, deepest kept, and StepStatus says so
+  int max_contacts = 64;               // 4 .. 16384; more are dropped, deepest kept, and StepStatus says so
+  int threads = 1;                     // that solve islands, 1 .. 16; the results are the same to the bit
   SolverOptions solver;
 };
 

@@ -4,16 +4,14 @@
 
 namespace pincer::engine {
 
-WorldScratch::WorldScratch(const WorldModel& model) : solver(model.options.max_contacts) {
+WorldScratch::WorldScratch(const WorldModel& model) : islands(model) {
   const auto contact_count = static_cast<std::size_t>(model.options.max_contacts);
   const std::size_t row_count = contact_count * kMaxContactRows;
   bodies.resize(model.bodies.size());
   points.resize(model.points.size());
   contacts.reserve(contact_count);
-  columns.resize(contact_count);
   first_row.resize(contact_count + 1);
   mu.resize(contact_count);
-  W.resize(row_count * row_count);
   q.resize(row_count);
   r.resize(row_count);
   u.resize(row_count);

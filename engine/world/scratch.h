@@ -7,6 +7,7 @@
 
 #include "contact/surface/patch_cache.h"
 #include "engine/solve/cascade.h"
+#include "engine/world/islands.h"
 #include "engine/world/model.h"
 #include "engine/world/stage_clock.h"
 
@@ -35,6 +36,8 @@ struct Contact {
   Eigen::Vector4d v_start_C = Eigen::Vector4d::Zero();  // of a relative to b at the start of the tick, see relativeVelocity
   Eigen::Vector4d offset_C = Eigen::Vector4d::Zero();   // anchored stick, at the start of the tick; see ContactMemory
   bool closing = false;                                 // it closes in this tick, from a positive gap or with an approaching velocity
+  bool stuck = false;                                   // it stuck in the last tick: its tangential biases undo the offset
+  Eigen::Vector4d bias_C = Eigen::Vector4d::Zero();     // part of q that isn't velocity [m/s], about n [rad/s]
   Eigen::Vector4d r = Eigen::Vector4d::Zero();          // impulse on a in C, torsion last [N s]
   Vec3 impulse_W = Vec3::Zero();                        // impulse on a at p_W [N s]; b got exactly its negative
   Vec3 u_C = Vec3::Zero();                              // velocity of a relative to b at the end of the tick, biases included [m/s]
@@ -42,17 +45,6 @@ struct Contact {
 
   Vec3 n_W() const { return R_WC.col(2); }
   bool active() const { return r[2] > 0; }
-};
-
-// Jacobian of one contact, a column per row of the problem (t1, t2, n, torsion): u = lin^T (v_a - v_b) + ang_a^T w_a - ang_b^T w_b.
-using Columns = Eigen::Matrix<double, 3, kMaxContactRows>;
-struct SideColumns {
-  Columns ang;         // arm x lin [m]
-  Columns mlin, mang;  // inverse mass times lin, inverse inertia times ang
-};
-struct ContactColumns {
-  Columns lin;
-  std::array<SideColumns, 2> sides;  // of a, of b
 };
 
 // Velocity of a body's centre of mass or of a point, and angular velocity; a point's is zero.
@@ -87,11 +79,10 @@ struct WorldScratch {
   std::vector<PointScratch> points;
   std::vector<Contact> contacts;  // capacity options.max_contacts
   bool contacts_dropped = false;
-  std::vector<ContactColumns> columns;
   std::vector<int> first_row;
-  std::vector<double> mu, W, q, r, u;
+  std::vector<double> mu, q, r, u;
   contact::PatchCache patches;
-  SolverScratch solver;
+  IslandScratch islands;
   SolveResult solve;
   StageClock* clock = nullptr;  // set it to have the stages timed; null costs nothing
 };

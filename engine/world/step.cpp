@@ -28,10 +28,8 @@ void solveContacts(const WorldModel& model, const WorldState& state, WorldScratc
   scratch.solve = {};
   if (scratch.contacts.empty()) return;
   recallContacts(state, scratch);
-  const ContactProblem problem = assembleProblem(model, state, scratch);
-  const int m = problem.rowCount();
-  scratch.solve =
-      solveContacts(problem, model.options.solver, scratch.solver, VectorMap(scratch.r.data(), m), VectorMap(scratch.u.data(), m));
+  fillContacts(model, state, scratch);
+  solveIslands(model, scratch);
   for (std::size_t i = 0; i < scratch.contacts.size(); ++i) readSolution(scratch, static_cast<int>(i), scratch.contacts[i]);
 }
 

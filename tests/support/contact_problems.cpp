@@ -60,11 +60,32 @@ OwnedContactProblem ContactScene::build() const {
   }
   for (std::size_t c = 0; c < contacts_.size(); ++c) bias[problem.first_row[c] + engine::kNormalRow] = contacts_[c].normal_bias;
   const Eigen::MatrixXd scaled = J * inverse_mass.cwiseSqrt().asDiagonal();
+  problem.movers = static_cast<int>(bodies_.size());
+  problem.sides.resize(contacts_.size());
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    const std::array<int, 2> ends = {contacts_[c].a, contacts_[c].b};
+    for (std::size_t s = 0; s < 2; ++s) {
+      problem.sides[c][s].mover = ends[s];
+      for (int row = problem.first_row[c]; ends[s] >= 0 && row < problem.first_row[c + 1]; ++row) {
+        for (int j = 0; j < 6; ++j) problem.sides[c][s].A[row - problem.first_row[c]][j] = scaled(row, 6 * ends[s] + j);
+      }
+    }
+  }
   problem.W = Eigen::MatrixXd::Zero(m, m);
   problem.W.selfadjointView<Eigen::Lower>().rankUpdate(scaled);
   problem.W = problem.W.selfadjointView<Eigen::Lower>();
   problem.q = J * v + bias;
   return problem;
+}
+
+void OwnedContactProblem::soften(int contact, double compliance) {
+  const auto c = static_cast<std::size_t>(contact);
+  engine::ContactSide& spring = sides[c][1];
+  spring = {};
+  spring.mover = movers++;
+  spring.A[engine::kNormalRow][0] = std::sqrt(compliance);
+  const int row = first_row[c] + engine::kNormalRow;
+  W(row, row) += compliance;
 }
 
 double RandomScenes::uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(generator_); }
@@ -139,7 +160,7 @@ Solved solve(OwnedContactProblem& problem, const engine::SolverOptions& options,
   Solved solved;
   solved.r = warm_start ? *warm_start : Eigen::VectorXd(Eigen::VectorXd::Zero(view.rowCount()));
   solved.u = Eigen::VectorXd::Zero(view.rowCount());
-  engine::SolverScratch scratch(view.contactCount());
+  engine::SolverScratch scratch(view.contactCount(), view.movers);
   solved.result = engine::solveContacts(view, options, scratch, {solved.r.data(), solved.r.size()}, {solved.u.data(), solved.u.size()});
   return solved;
 }

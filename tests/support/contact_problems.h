@@ -12,10 +12,14 @@ namespace pincer::tests {
 struct OwnedContactProblem {
   std::vector<int> first_row{0};
   std::vector<double> mu;
-  Eigen::MatrixXd W;
+  std::vector<engine::ContactSides> sides;
+  int movers = 0;
+  Eigen::MatrixXd W;  // what `sides` stand for, for the tests to judge by
   Eigen::VectorXd q;
 
-  engine::ContactProblem view() { return {first_row, mu, {W.data(), W.rows(), W.cols()}, {q.data(), q.size()}}; }
+  engine::ContactProblem view() { return {first_row, mu, sides, {q.data(), q.size()}, movers}; }
+  // Makes a contact with the world softer by `compliance` [1/kg] along the normal.
+  void soften(int contact, double compliance);
 };
 
 // Bodies (a point mass at `p` with an isotropic inertia) and contacts between them or with the world (body -1).

@@ -1,0 +1,292 @@
+#include "engine/solve/contact_equations.h"
+
+#include <algorithm>
+
+#include "engine/solve/linear.h"
+#include "engine/solve/mobility.h"
+
+namespace pincer::engine {
+namespace {
+
+constexpr int kStride = kMaxContactRows;
+
+// C = A B over rows x rows.
+void multiplyBlocks(const double* A, const double* B, int rows, double* C) {
+  for (int i = 0; i < rows; ++i) {
+    for (int j = 0; j < rows; ++j) {
+      double sum = 0;
+      for (int k = 0; k < rows; ++k) sum += A[kStride * i + k] * B[kStride * k + j];
+      C[kStride * i + j] = sum;
+    }
+  }
+}
+
+void multiplyVector(const double* A, const double* x, int rows, double* y) {
+  for (int i = 0; i < rows; ++i) {
+    y[i] = 0;
+    for (int k = 0; k < rows; ++k) y[i] += A[kStride * i + k] * x[k];
+  }
+}
+
+// A becomes its inverse. False if it is singular or not finite.
+bool invertBlock(double* A, int rows) {
+  double LU[kStride * kStride], inverse[kStride * kStride];
+  int pivots[kStride];
+  for (int j = 0; j < rows; ++j) {
+    for (int i = 0; i < rows; ++i) LU[rows * j + i] = A[kStride * i + j];
+  }
+  if (!factoriseLu(LU, rows, pivots)) return false;
+  for (int j = 0; j < rows; ++j) {
+    double column[kStride] = {};
+    column[j] = 1;
+    solveLu(LU, rows, pivots, column);
+    for (int i = 0; i < rows; ++i) inverse[kStride * i + j] = column[i];
+  }
+  for (int i = 0; i < rows; ++i) std::copy(inverse + kStride * i, inverse + kStride * i + rows, A + kStride * i);
+  return true;
+}
+
+// Numbers the movers that two or more contacts touch; returns how many they are. The others get -1.
+int numberMovers(const ContactProblem& problem, int* node) {
+  std::fill(node, node + problem.movers, 0);
+  for (const ContactSides& sides : problem.sides) {
+    for (const ContactSide& side : sides) {
+      if (side.mover >= 0) ++node[side.mover];
+    }
+  }
+  int nodes = 0;
+  for (int mover = 0; mover < problem.movers; ++mover) node[mover] = node[mover] > 1 ? nodes++ : -1;
+  return nodes;
+}
+
+int nodeOf(const SolverScratch& scratch, const ContactSide& side) { return side.mover < 0 ? -1 : scratch.node[side.mover]; }
+
+}  // namespace
+
+EquationForm chooseForm(const ContactProblem& problem, SolverScratch& scratch) {
+  const int n = problem.contactCount();
+  const int nodes = numberMovers(problem, scratch.node.data());
+  if (n <= scratch.dense_contacts && kMoverFreedoms * nodes >= problem.rowCount()) return EquationForm::kContacts;
+  scratch.movers_lu.begin(nodes);
+  for (const ContactSides& sides : problem.sides) {
+    const int a = nodeOf(scratch, sides[0]), b = nodeOf(scratch, sides[1]);
+    if (a >= 0 && b >= 0) scratch.movers_lu.connect(a, b);
+  }
+  if (scratch.movers_lu.order()) return EquationForm::kMovers;
+  return n <= scratch.dense_contacts ? EquationForm::kContacts : EquationForm::kTooLarge;
+}
+
+ContactEquations::ContactEquations(const ScaledProblem& problem, EquationForm form, SolverScratch& scratch)
+    : problem_(problem),
+      form_(form),
+      scratch_(scratch),
+      terms_(scratch.terms.data()),
+      A_(scratch.jacobian.data()),
+      active_(scratch.active.data()) {
+  if (form != EquationForm::kMovers) return;
+  for (int i = 0; i < problem.contactCount(); ++i) {
+    ContactTerms& t = terms_[i];
+    std::fill(t.R, t.R + kStride * kStride, 0.0);
+    t.has_R = false;
+    for (const ContactSide& side : problem.sides[static_cast<std::size_t>(i)]) {
+      if (side.mover < 0 || nodeOf(scratch, side) >= 0) continue;
+      addCoupling(side, problem.rows(i), side, problem.rows(i), t.R, kStride);
+      t.has_R = true;
+    }
+  }
+}
+
+void ContactEquations::identify(int i, double epsilon) {
+  terms_[i].coupling = Coupling::kIdentity;
+  terms_[i].epsilon = epsilon;
+}
+
+void ContactEquations::setGeneral(int i, const double* E, const double* P) {
+  ContactTerms& t = terms_[i];
+  t.coupling = Coupling::kGeneral;
+  std::copy(E, E + kStride * kStride, t.E);
+  std::copy(P, P + kStride * kStride, t.P);
+}
+
+bool ContactEquations::factorise() { return form_ == EquationForm::kContacts ? factoriseContacts() : factoriseMovers(); }
+
+void ContactEquations::solve(double* x) { form_ == EquationForm::kContacts ? solveContacts(x) : solveMovers(x); }
+
+bool ContactEquations::factoriseContacts() {
+  active_count_ = size_ = 0;
+  symmetric_ = true;
+  for (int i = 0; i < problem_.contactCount(); ++i) {
+    if (terms_[i].coupling == Coupling::kNone) continue;
+    symmetric_ = symmetric_ && terms_[i].coupling == Coupling::kIdentity;
+    active_[active_count_++] = i;
+    size_ += problem_.rows(i);
+  }
+  int row = 0;
+  for (int a = 0; a < active_count_; ++a) row += assembleRows(active_[a], row);
+  return symmetric_ ? factoriseLdlt(A_, size_) : factoriseLu(A_, size_, scratch_.pivots.data());
+}
+
+// Fills the rows of contact i, from `row` on; returns their number.
+int ContactEquations::assembleRows(int i, int row) {
+  const ContactTerms& t = terms_[i];
+  const int m = problem_.rowCount(), rows = problem_.rows(i), first = problem_.firstRow(i);
+  double* out = A_ + row;
+  int diagonal = 0;  // number of the first column of contact i's own block
+  for (int a = 0; active_[a] != i; ++a) diagonal += problem_.rows(active_[a]);
+  for (int a = 0; a < active_count_; ++a) {
+    for (int column = problem_.firstRow(active_[a]); column < problem_.firstRow(active_[a] + 1); ++column, out += size_) {
+      const double* const W = problem_.W + column * m + first;
+      if (t.coupling == Coupling::kIdentity) {
+        for (int k = 0; k < rows; ++k) out[k] = W[k];
+      } else {
+        multiplyVector(t.P, W, rows, out);
+      }
+    }
+  }
+  double* const block = A_ + diagonal * size_ + row;
+  for (int k = 0; k < rows; ++k) {
+    if (t.coupling == Coupling::kIdentity) {
+      block[k * size_ + k] += t.epsilon;
+    } else {
+      for (int l = 0; l < rows; ++l) block[l * size_ + k] += t.E[kStride * k + l];
+    }
+  }
+  return rows;
+}
+
+void ContactEquations::solveContacts(double* x) {
+  const int m = problem_.rowCount();
+  double* const b = scratch_.rhs.data();
+  // what is known already goes to the right
+  double* const known = scratch_.response.data();
+  std::fill(known, known + m, 0.0);
+  for (int j = 0; j < problem_.contactCount(); ++j) {
+    if (terms_[j].coupling != Coupling::kNone) continue;
+    for (int l = problem_.firstRow(j); l < problem_.firstRow(j + 1); ++l) {
+      if (x[l] == 0) continue;
+      for (int k = 0; k < m; ++k) known[k] += problem_.W[l * m + k] * x[l];
+    }
+  }
+  int row = 0;
+  for (int a = 0; a < active_count_; ++a) {
+    const int i = active_[a], first = problem_.firstRow(i), rows = problem_.rows(i);
+    double Pw[kStride];
+    if (terms_[i].coupling == Coupling::kIdentity)
+      std::copy(known + first, known + first + rows, Pw);
+    else
+      multiplyVector(terms_[i].P, known + first, rows, Pw);
+    for (int k = 0; k < rows; ++k) b[row++] = x[first + k] - Pw[k];
+  }
+  symmetric_ ? solveLdlt(A_, size_, b) : solveLu(A_, size_, scratch_.pivots.data(), b);
+  row = 0;
+  for (int a = 0; a < active_count_; ++a) {
+    for (int k = problem_.firstRow(active_[a]); k < problem_.firstRow(active_[a] + 1); ++k) x[k] = b[row++];
+  }
+}
+
+// K^-1 and G of contact i, K^-1 zero if K is singular.
+void ContactEquations::eliminate(int i) {
+  ContactTerms& t = terms_[i];
+  const int rows = problem_.rows(i);
+  if (t.coupling == Coupling::kIdentity) {
+    std::copy(t.R, t.R + kStride * kStride, t.K_inverse);
+    for (int k = 0; k < rows; ++k) t.K_inverse[kStride * k + k] += t.epsilon;
+    if (t.has_R) {
+      if (!invertBlock(t.K_inverse, rows)) std::fill(t.K_inverse, t.K_inverse + kStride * kStride, 0.0);
+    } else {
+      for (int k = 0; k < rows; ++k) t.K_inverse[kStride * k + k] = 1 / t.epsilon;
+    }
+    std::copy(t.K_inverse, t.K_inverse + kStride * kStride, t.G);
+    return;
+  }
+  multiplyBlocks(t.P, t.R, rows, t.K_inverse);
+  for (int k = 0; k < rows; ++k) {
+    for (int l = 0; l < rows; ++l) t.K_inverse[kStride * k + l] += t.E[kStride * k + l];
+  }
+  if (!invertBlock(t.K_inverse, rows)) std::fill(t.K_inverse, t.K_inverse + kStride * kStride, 0.0);
+  multiplyBlocks(t.K_inverse, t.P, rows, t.G);
+}
+
+// H += A_i^T G_i A_i
+void ContactEquations::addToMovers(int i) {
+  const ContactTerms& t = terms_[i];
+  const int rows = problem_.rows(i);
+  for (const ContactSide& b : problem_.sides[static_cast<std::size_t>(i)]) {
+    const int column = nodeOf(scratch_, b);
+    if (column < 0) continue;
+    double GA[kStride][kMoverFreedoms];
+    for (int k = 0; k < rows; ++k) {
+      for (int j = 0; j < kMoverFreedoms; ++j) {
+        GA[k][j] = 0;
+        for (int l = 0; l < rows; ++l) GA[k][j] += t.G[kStride * k + l] * b.A[l][j];
+      }
+    }
+    for (const ContactSide& a : problem_.sides[static_cast<std::size_t>(i)]) {
+      const int row = nodeOf(scratch_, a);
+      if (row < 0) continue;
+      double* H = scratch_.movers_lu.block(row, column);
+      for (int k = 0; k < kMoverFreedoms; ++k, H += kMoverFreedoms) {
+        for (int l = 0; l < rows; ++l) {
+          for (int j = 0; j < kMoverFreedoms; ++j) H[j] += a.A[l][k] * GA[l][j];
+        }
+      }
+    }
+  }
+}
+
+bool ContactEquations::factoriseMovers() {
+  BlockLu& H = scratch_.movers_lu;
+  H.clear();
+  for (int mover = 0; mover < problem_.movers; ++mover) {
+    const int node = scratch_.node[mover];
+    if (node < 0) continue;
+    for (int k = 0; k < kMoverFreedoms; ++k) H.block(node, node)[k * (kMoverFreedoms + 1)] = 1;
+  }
+  for (int i = 0; i < problem_.contactCount(); ++i) {
+    if (terms_[i].coupling == Coupling::kNone) continue;
+    eliminate(i);
+    addToMovers(i);
+  }
+  return H.factorise();
+}
+
+void ContactEquations::solveMovers(double* x) {
+  double* const y = scratch_.rhs.data();
+  const auto forNodes = [&](int i, const auto& act) {
+    for (const ContactSide& side : problem_.sides[static_cast<std::size_t>(i)]) {
+      const int node = nodeOf(scratch_, side);
+      if (node >= 0) act(side, y + kMoverFreedoms * node);
+    }
+  };
+  int nodes = 0;
+  for (int mover = 0; mover < problem_.movers; ++mover) nodes = std::max(nodes, scratch_.node[mover] + 1);
+  std::fill(y, y + kMoverFreedoms * nodes, 0.0);
+  // x_i = K^-1 b_i - G A y, and y = A^T x: a decoupled contact's x is known, and acts through y alone
+  for (int i = 0; i < problem_.contactCount(); ++i) {
+    double* const x_i = x + problem_.firstRow(i);
+    const int rows = problem_.rows(i);
+    if (terms_[i].coupling != Coupling::kNone) {
+      double b[kStride];
+      std::copy(x_i, x_i + rows, b);
+      multiplyVector(terms_[i].K_inverse, b, rows, x_i);
+    }
+    forNodes(i, [&](const ContactSide& side, double* y_b) {
+      for (int k = 0; k < rows; ++k) {
+        for (int j = 0; j < kMoverFreedoms; ++j) y_b[j] += side.A[k][j] * x_i[k];
+      }
+    });
+  }
+  scratch_.movers_lu.solve(y);
+  for (int i = 0; i < problem_.contactCount(); ++i) {
+    if (terms_[i].coupling == Coupling::kNone) continue;
+    const int rows = problem_.rows(i);
+    double u[kStride] = {}, G_u[kStride];
+    forNodes(i, [&](const ContactSide& side, const double* y_b) {
+      for (int k = 0; k < rows; ++k) u[k] += dot6(side.A[k], y_b);
+    });
+    multiplyVector(terms_[i].G, u, rows, G_u);
+    for (int k = 0; k < rows; ++k) x[problem_.firstRow(i) + k] -= G_u[k];
+  }
+}
+
+}  // namespace pincer::engine

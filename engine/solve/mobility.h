@@ -1,0 +1,53 @@
+// mobility: products with A, the factor of the Delassus operator W = A A^T (contact_problem.h), contact by contact.
+//
+//   y = A^T r   movers' scaled velocity changes, y_b = M_b^1/2 dv_b [sqrt(J)], kMoverFreedoms per mover;   W r = A y
+//
+// Linear in the number of contacts, whatever the number of pairs of them that see each other. Sums in a fixed order.
+#pragma once
+#include "engine/solve/contact_problem.h"
+
+namespace pincer::engine {
+
+inline double dot6(const double* a, const double* b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3] + a[4] * b[4] + a[5] * b[5];
+}
+
+// y += A_i^T r_i
+inline void addImpulse(const ContactSides& sides, int rows, const double* r, double* y) {
+  for (const ContactSide& side : sides) {
+    if (side.mover < 0) continue;
+    double* const y_b = y + kMoverFreedoms * side.mover;
+    for (int k = 0; k < rows; ++k) {
+      for (int j = 0; j < kMoverFreedoms; ++j) y_b[j] += side.A[k][j] * r[k];
+    }
+  }
+}
+
+// u_i += A_i y
+inline void addVelocity(const ContactSides& sides, int rows, const double* y, double* u) {
+  for (const ContactSide& side : sides) {
+    if (side.mover < 0) continue;
+    const double* const y_b = y + kMoverFreedoms * side.mover;
+    for (int k = 0; k < rows; ++k) u[k] += dot6(side.A[k], y_b);
+  }
+}
+
+// block (row-major, `stride` per row) += A_ib A_jb^T, for one mover b that contacts i and j both touch.
+inline void addCoupling(const ContactSide& i, int rows, const ContactSide& j, int columns, double* block, int stride) {
+  for (int k = 0; k < rows; ++k) {
+    for (int l = 0; l < columns; ++l) block[k * stride + l] += dot6(i.A[k], j.A[l]);
+  }
+}
+
+// u = W r + q; y (movers) is working memory, A^T r on return.
+inline void contactVelocities(std::span<const ContactSides> sides, std::span<const int> first_row, const double* q, const double* r,
+                              int movers, double* y, double* u) {
+  for (int j = 0; j < kMoverFreedoms * movers; ++j) y[j] = 0;
+  for (std::size_t i = 0; i < sides.size(); ++i) addImpulse(sides[i], first_row[i + 1] - first_row[i], r + first_row[i], y);
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    for (int row = first_row[i]; row < first_row[i + 1]; ++row) u[row] = q[row];
+    addVelocity(sides[i], first_row[i + 1] - first_row[i], y, u + first_row[i]);
+  }
+}
+
+}  // namespace pincer::engine

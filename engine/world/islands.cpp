@@ -1,0 +1,216 @@
+#include "engine/world/islands.h"
+
+#include <algorithm>
+
+#include "engine/world/island_threads.h"
+#include "engine/world/scratch.h"
+
+namespace pincer::engine {
+namespace {
+
+// The number of what moves there in IslandScratch's arrays per mover; -1 for what doesn't.
+int moverOf(const WorldModel& model, const WorldScratch& scratch, const Side& side) {
+  if (side.kind == SideKind::kBody) return model.bodies[side.index].dynamic ? side.index : -1;
+  return scratch.points[side.index].inverse_mass.isZero(0) ? -1 : static_cast<int>(model.bodies.size()) + side.index;
+}
+
+int rootOf(std::vector<int>& parent, int mover) {
+  while (parent[mover] != mover) mover = parent[mover] = parent[parent[mover]];
+  return mover;
+}
+
+struct Ends {
+  int a, b;
+};
+Ends endsOf(const WorldModel& model, const WorldScratch& scratch, const Contact& c) {
+  return {moverOf(model, scratch, c.a), moverOf(model, scratch, c.b)};
+}
+
+void uniteMovers(const WorldModel& model, const WorldScratch& scratch, IslandScratch& s) {
+  for (const Contact& c : scratch.contacts) {
+    const Ends ends = endsOf(model, scratch, c);
+    for (const int mover : {ends.a, ends.b}) {
+      if (mover < 0) continue;
+      s.parent[mover] = mover;
+      s.number[mover] = s.island_of[mover] = -1;
+    }
+  }
+  for (const Contact& c : scratch.contacts) {
+    const Ends ends = endsOf(model, scratch, c);
+    if (ends.a < 0 || ends.b < 0) continue;
+    const int a = rootOf(s.parent, ends.a), b = rootOf(s.parent, ends.b);
+    s.parent[std::max(a, b)] = std::min(a, b);
+  }
+}
+
+void sortContacts(const WorldModel& model, const WorldScratch& scratch, IslandScratch& s) {
+  const int n = static_cast<int>(scratch.contacts.size());
+  s.islands.clear();
+  for (int i = 0; i < n; ++i) {
+    const Ends ends = endsOf(model, scratch, scratch.contacts[i]);
+    const int root = rootOf(s.parent, std::max(ends.a, ends.b));
+    if (s.island_of[root] < 0) {
+      s.island_of[root] = static_cast<int>(s.islands.size());
+      s.islands.emplace_back();
+    }
+    s.contact_island[i] = s.island_of[root];
+    ++s.islands[s.island_of[root]].contacts;
+  }
+  int place = 0;
+  for (Island& island : s.islands) {
+    island.place = place;
+    place += island.contacts;
+    island.contacts = 0;
+  }
+  for (int i = 0; i < n; ++i) {
+    Island& island = s.islands[s.contact_island[i]];
+    s.order[island.place + island.contacts++] = i;
+  }
+}
+
+// Of a body: F = R diag(1 / sqrt(I_k)).
+Mat3 rootOfInertia(const FreeRotation& rotation, const Quat& q_WI) {
+  if (rotation.kind == FreeRotation::Kind::kSpherical) return std::sqrt(rotation.inverse_moments[0]) * Mat3::Identity();
+  Mat3 F = q_WI.toRotationMatrix();
+  for (int k = 0; k < 3; ++k) F.col(k) *= std::sqrt(rotation.inverse_moments[k]);
+  return F;
+}
+
+void fillPointSide(const Contact& c, int rows, double sign, const Vec3& inverse_mass, ContactSide& out) {
+  for (int k = 0; k < rows; ++k) {
+    for (int j = 0; j < 3; ++j) {
+      out.A[k][j] = k < 3 ? sign * std::sqrt(inverse_mass[j]) * c.R_WC(j, k) : 0;
+      out.A[k][3 + j] = 0;
+    }
+  }
+}
+
+void fillBodySide(const Contact& c, int rows, double sign, const Vec3& arm_W, double root_mass, const Mat3& F, ContactSide& out) {
+  for (int k = 0; k < rows; ++k) {
+    const Vec3 lin = c.R_WC.col(std::min(k, kNormalRow));
+    const Vec3 ang = k < 3 ? Vec3(arm_W.cross(lin)) : Vec3(c.material.torsion_radius * lin);
+    for (int j = 0; j < 3; ++j) {
+      out.A[k][j] = k < 3 ? sign * root_mass * lin[j] : 0;
+      out.A[k][3 + j] = sign * (F(0, j) * ang[0] + F(1, j) * ang[1] + F(2, j) * ang[2]);
+    }
+  }
+}
+
+void fillSide(const WorldModel& model, const WorldScratch& scratch, const Contact& c, int rows, bool is_a, int mover, int number,
+              IslandScratch& s, ContactSide& out) {
+  out.mover = number;
+  if (mover < 0) return;
+  const Side& side = is_a ? c.a : c.b;
+  const double sign = is_a ? 1 : -1;
+  if (side.kind == SideKind::kPoint) return fillPointSide(c, rows, sign, scratch.points[side.index].inverse_mass, out);
+  fillBodySide(c, rows, sign, is_a ? c.arm_a_W : c.arm_b_W, std::sqrt(model.bodies[side.index].inverse_mass), s.root_inertia[mover], out);
+}
+
+int numberOf(const WorldModel& model, const WorldScratch& scratch, const Side& side, int mover, Island& island, IslandScratch& s) {
+  if (mover < 0) return -1;
+  if (s.number[mover] < 0) {
+    s.number[mover] = island.movers++;
+    if (side.kind == SideKind::kBody)
+      s.root_inertia[mover] = rootOfInertia(model.bodies[side.index].rotation, scratch.bodies[side.index].X_WI_mid.q);
+  }
+  return s.number[mover];
+}
+
+// Copies what the contacts of island k are to the solver.
+void gather(const WorldModel& model, const WorldScratch& scratch, int k, int row, IslandScratch& s) {
+  Island& island = s.islands[k];
+  island.row = row;
+  int* const first_row = s.first_row.data() + island.place + k;
+  for (int n = 0; n < island.contacts; ++n) {
+    const int i = s.order[island.place + n], from = scratch.first_row[i], rows = scratch.first_row[i + 1] - from;
+    const Contact& c = scratch.contacts[i];
+    const Ends ends = endsOf(model, scratch, c);
+    ContactSides& sides = s.sides[island.place + n];
+    fillSide(model, scratch, c, rows, true, ends.a, numberOf(model, scratch, c.a, ends.a, island, s), s, sides[0]);
+    fillSide(model, scratch, c, rows, false, ends.b, numberOf(model, scratch, c.b, ends.b, island, s), s, sides[1]);
+    first_row[n] = island.rows;
+    s.mu[island.place + n] = scratch.mu[i];
+    for (int l = 0; l < rows; ++l) {
+      s.q[row + island.rows + l] = scratch.q[from + l];
+      s.r[row + island.rows + l] = scratch.r[from + l];
+    }
+    island.rows += rows;
+  }
+  first_row[island.contacts] = island.rows;
+}
+
+void scatter(const IslandScratch& s, const Island& island, WorldScratch& scratch) {
+  int from = island.row;
+  for (int n = 0; n < island.contacts; ++n) {
+    const int i = s.order[island.place + n];
+    for (int row = scratch.first_row[i]; row < scratch.first_row[i + 1]; ++row, ++from) {
+      scratch.r[row] = s.r[from];
+      scratch.u[row] = s.u[from];
+    }
+  }
+}
+
+void addResult(const SolveResult& island, SolveResult& all) {
+  all.method = std::max(all.method, island.method);
+  all.iterations += island.iterations;
+  all.residual = std::max(all.residual, island.residual);
+  all.converged = all.converged && island.converged;
+}
+
+}  // namespace
+
+IslandScratch::IslandScratch(const WorldModel& model) {
+  const auto n = static_cast<std::size_t>(model.options.max_contacts), m = kMaxContactRows * n;
+  const std::size_t movers = model.bodies.size() + model.points.size();
+  islands.reserve(n);
+  for (std::vector<int>* per_contact : {&order, &contact_island}) per_contact->resize(n);
+  for (std::vector<int>* per_mover : {&parent, &number, &island_of}) per_mover->resize(movers);
+  first_row.resize(2 * n + 1);
+  sides.resize(n);
+  root_inertia.resize(movers);
+  mu.resize(n);
+  for (std::vector<double>* rows : {&q, &r, &u}) rows->resize(m);
+  for (int t = 0; t < model.options.threads; ++t)
+    solvers.push_back(std::make_unique<SolverScratch>(model.options.max_contacts, static_cast<int>(movers)));
+  if (model.options.threads > 1) threads = std::make_unique<IslandThreads>(model.options.threads);
+}
+
+IslandScratch::~IslandScratch() = default;
+
+void solveIsland(const WorldModel& model, int k, int thread, IslandScratch& s) {
+  Island& island = s.islands[k];
+  const auto n = static_cast<std::size_t>(island.contacts);
+  const ContactProblem problem{{s.first_row.data() + island.place + k, n + 1},
+                               {s.mu.data() + island.place, n},
+                               {s.sides.data() + island.place, n},
+                               VectorMap(s.q.data() + island.row, island.rows),
+                               island.movers};
+  island.result = solveContacts(problem, model.options.solver, *s.solvers[thread], VectorMap(s.r.data() + island.row, island.rows),
+                                VectorMap(s.u.data() + island.row, island.rows));
+}
+
+void solveIslands(const WorldModel& model, WorldScratch& scratch) {
+  IslandScratch& s = scratch.islands;
+  scratch.solve = {};
+  if (scratch.contacts.empty()) return;
+  uniteMovers(model, scratch, s);
+  sortContacts(model, scratch, s);
+  int row = 0;
+  const int count = static_cast<int>(s.islands.size());
+  for (int k = 0; k < count; ++k) {
+    gather(model, scratch, k, row, s);
+    row += s.islands[k].rows;
+  }
+  const auto solve = [&](int k, int thread) { solveIsland(model, k, thread, s); };
+  if (s.threads && count > 1) {
+    s.threads->run(count, solve);
+  } else {
+    for (int k = 0; k < count; ++k) solve(k, 0);
+  }
+  for (const Island& island : s.islands) {
+    scatter(s, island, scratch);
+    addResult(island.result, scratch.solve);
+  }
+}
+
+}  // namespace pincer::engine

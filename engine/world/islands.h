@@ -1,0 +1,50 @@
+// islands: groups of bodies and points that contacts tie together, each a contact problem of its own.
+//
+// Two contacts are of one island when a chain of contacts links them through things that move; what is static ties nothing. Found by
+// union-find over the contacts. Islands are in the order of their first contact, contacts within one in the order of their ids, movers in the
+// order in which these name them: an island's numbers, and so its answer to the bit, don't depend on what else is in the world.
+// Source: R. Tarjan, J. ACM 22 (1975) 215-225.
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "contact/math.h"
+#include "engine/solve/cascade.h"
+
+namespace pincer::engine {
+
+struct WorldModel;
+struct WorldScratch;
+class IslandThreads;
+
+// Contacts place .. place + contacts - 1 of IslandScratch's arrays.
+struct Island {
+  int place = 0, contacts = 0, row = 0, rows = 0, movers = 0;
+  SolveResult result;
+};
+
+// Working memory. All arrays but `order` and those per mover are in the order of islands.
+struct IslandScratch {
+  explicit IslandScratch(const WorldModel& model);
+  ~IslandScratch();
+  IslandScratch(const IslandScratch&) = delete;
+  IslandScratch& operator=(const IslandScratch&) = delete;
+
+  std::vector<Island> islands;
+  std::vector<int> order;           // which contact is at a place
+  std::vector<int> parent, number;  // per mover: union-find; its number within its island
+  std::vector<int> island_of;       // per root mover; per contact, while sorting
+  std::vector<int> contact_island;
+  std::vector<int> first_row;  // island by island, each from 0: entries place + index of the island ..
+  std::vector<ContactSides> sides;
+  std::vector<Mat3> root_inertia;  // per mover of the world: F with F F^T = I^-1, in W [kg^-1/2 m^-1]
+  std::vector<double> mu, q, r, u;
+  std::vector<std::unique_ptr<SolverScratch>> solvers;  // one per thread
+  std::unique_ptr<IslandThreads> threads;               // null with one thread
+};
+
+// Sorts scratch.contacts into islands, solves each from scratch.q, mu and r, and fills scratch.r, u and solve (the worst of all islands'
+// methods and residuals, the sum of their iterations). Allocates nothing.
+void solveIslands(const WorldModel& model, WorldScratch& scratch);
+
+}  // namespace pincer::engine

@@ -1,0 +1,107 @@
+#include "engine/world/stick_bias.h"
+
+#include <span>
+
+#include "engine/solve/linear.h"
+
+namespace pincer::engine {
+namespace {
+
+constexpr double kNormalWeight = 10;   // w_n
+constexpr double kRidge = 1e-12;       // relative: motions that no contact sees get none
+constexpr double kSamePlane = 0.9999;  // cosine of the angle between the normals; as in alignFaces
+
+using Vec6 = Eigen::Matrix<double, 6, 1>;
+using Mat6 = Eigen::Matrix<double, 6, 6>;
+
+bool isOfSamePair(const Contact& x, const Contact& y) { return x.id >> 32 == y.id >> 32; }
+
+struct StuckSet {
+  Vec3 centre = Vec3::Zero();  // mean of p_W [m]
+  double spread = 0;           // sum of squared distances from it [m^2]
+  int count = 0;
+  bool flat = true;
+};
+
+StuckSet stuckOf(std::span<const Contact> pair) {
+  StuckSet set;
+  const Contact* first = nullptr;
+  for (const Contact& c : pair) {
+    if (!c.stuck) continue;
+    if (!first) first = &c;
+    set.flat = set.flat && c.n_W().dot(first->n_W()) > kSamePlane;
+    set.centre += c.p_W;
+    ++set.count;
+  }
+  set.centre /= std::max(set.count, 1);
+  for (const Contact& c : pair) {
+    if (c.stuck) set.spread += (c.p_W - set.centre).squaredNorm();
+  }
+  return set;
+}
+
+// The row of J that gives component k of contact c's velocity from xi, torsion in m/s.
+Vec6 rowOf(const Contact& c, const Vec3& centre, int k) {
+  Vec6 row = Vec6::Zero();
+  if (k == 3) {
+    row.tail<3>() = c.material.torsion_radius * c.n_W();
+    return row;
+  }
+  row.head<3>() = c.R_WC.col(k);
+  row.tail<3>() = (c.p_W - centre).cross(c.R_WC.col(k));
+  return row;
+}
+
+double unitOf(const Contact& c, int k) { return k == 3 ? c.material.torsion_radius : 1; }
+int rowsOf(const Contact& c) { return c.material.torsion_radius > 0 ? 4 : 3; }
+
+// False if the equations can't be solved (something isn't finite).
+bool fitMotion(std::span<const Contact> pair, const StuckSet& set, Vec6& xi) {
+  Mat6 A = Mat6::Zero();
+  xi.setZero();
+  for (const Contact& c : pair) {
+    if (!c.stuck) continue;
+    for (int k = 0; k < rowsOf(c); ++k) {
+      const double weight = k == kNormalRow ? kNormalWeight * kNormalWeight : 1;
+      const Vec6 row = rowOf(c, set.centre, k);
+      for (int j = 0; j < 6; ++j) {
+        for (int i = j; i < 6; ++i) A(i, j) += weight * row[i] * row[j];
+        xi[j] -= weight * unitOf(c, k) * c.bias_C[k] * row[j];
+      }
+    }
+  }
+  for (int j = 0; j < 6; ++j) A(j, j) += kRidge * (j < 3 ? set.count : set.spread);
+  return solveByLdlt(A.data(), 6, xi.data());
+}
+
+void alignPair(std::span<Contact> pair, int first, double h, double offset_rate, WorldScratch& scratch) {
+  const StuckSet set = stuckOf(pair);
+  Vec6 xi;
+  if (set.count < 2 || set.flat || !fitMotion(pair, set, xi)) return;
+  for (Contact& c : pair) {
+    const int row = scratch.first_row[first++];
+    if (!c.stuck) continue;
+    for (int k = 0; k < rowsOf(c); ++k) {
+      if (k == kNormalRow) continue;
+      const double bias = -rowOf(c, set.centre, k).dot(xi) / unitOf(c, k);
+      scratch.q[row + k] += unitOf(c, k) * (bias - c.bias_C[k]);
+      c.bias_C[k] = bias;
+      c.offset_C[k] = bias / offset_rate - 0.5 * h * c.v_start_C[k];
+    }
+  }
+}
+
+}  // namespace
+
+void alignStickBiases(double h, double offset_rate, WorldScratch& scratch) {
+  if (!(offset_rate > 0)) return;
+  const std::span<Contact> contacts = scratch.contacts;
+  for (std::size_t first = 0; first < contacts.size();) {
+    std::size_t end = first + 1;
+    while (end < contacts.size() && isOfSamePair(contacts[first], contacts[end])) ++end;
+    if (end > first + 1) alignPair(contacts.subspan(first, end - first), static_cast<int>(first), h, offset_rate, scratch);
+    first = end;
+  }
+}
+
+}  // namespace pincer::engine
