@@ -13,11 +13,13 @@ namespace {
 
 constexpr double kConeRoundOff =
     1e-14;  // relative: an impulse on the cone isn't projected again, so a warm start that fits stays, to the bit
-constexpr double kNearSolution = 1e-8;  // residual from which Newton's method needs a step or two
-constexpr double kShiftedGap = 1e-6;    // of a problem with frozen shift, itself an approximation
-constexpr int kSweepsPerRound = 15;     // enough to leave the basin in which Newton's method failed
-constexpr int kDenseContacts = 40;      // beyond, a dense matrix costs more than any graph of movers that fits
-constexpr int kBlocksPerMover = 40;     // of the sparse matrix: enough for dense graphs of 40 movers, and for long stacks
+constexpr double kNearSolution = 1e-8;   // residual from which Newton's method needs a step or two
+constexpr double kShiftedGap = 1e-6;     // of a problem with frozen shift, itself an approximation
+constexpr int kSweepsPerRound = 15;      // enough to leave the basin in which Newton's method failed
+constexpr int kAffordableContacts = 20;  // beyond, only one attempt from the interior
+constexpr int kCostlyContacts = 80;      // beyond, an interior point costs milliseconds; the next tick begins where this one gives up
+constexpr int kDenseContacts = 40;       // beyond, a dense matrix costs more than any graph of movers that fits
+constexpr int kBlocksPerMover = 40;      // of the sparse matrix: enough for dense graphs of 40 movers, and for long stacks
 
 // The residual that is enough when the tolerance is out of reach, for a problem of speeds of order `reference_speed` [m/s].
 double contentResidual(const SolverOptions& options, double reference_speed) {
@@ -66,8 +68,10 @@ class Search {
     iterations_ += iterateProximally(problem_, 0.5 * options.tolerance, options.proximal_rounds, equations_, scratch_, current_, trial_);
     keepBest();
     if (isEnough(options)) return SolveMethod::kProximalNewton;
+    if (problem_.contactCount() > kCostlyContacts) return sweep(options);
     iterations_ += followCentralPath(problem_, nullptr, kNearSolution, options.interior_point_iterations, equations_, scratch_, current_);
     if (finish(options)) return SolveMethod::kInteriorPoint;
+    if (problem_.contactCount() > kAffordableContacts) return sweep(options);
     if (iterateOnShift(options)) return SolveMethod::kInteriorPoint;
     for (int sweeps = 0; sweeps < options.gauss_seidel_sweeps; sweeps += kSweepsPerRound) {
       restartFromBest();
@@ -78,9 +82,10 @@ class Search {
     return SolveMethod::kNotConverged;
   }
 
-  // Too large for linear equations: Gauss-Seidel alone, warm-started from tick to tick.
+  // Too large for the costlier methods, or for linear equations at all: Gauss-Seidel, warm-started from tick to tick.
   SolveMethod sweep(const SolverOptions& options) {
     keepBest();
+    restartFromBest();
     const double enough = contentResidual(options, problem_.speed);
     for (int sweeps = 0; sweeps < options.large_sweeps && !(best_.residual <= enough); ++sweeps) {
       sweepGaussSeidel(problem_, 1, scratch_, current_);

@@ -141,7 +141,7 @@ class NewtonStep {
 
   const ScaledProblem& problem_;
   const Iterate& it_;
-  const Centre& centre_;
+  const Centre centre_;
   ContactEquations& equations_;
   SolverScratch& scratch_;
   double* dr_;

@@ -9,7 +9,8 @@ bool boundsTouch(const BodyModel& a, const BodyModel& b, const BodyScratch& sa, 
   return !((sa.X_WI_mid.p - sb.X_WI_mid.p).squaredNorm() > reach * reach);
 }
 
-void collidePair(const WorldModel& model, const PairModel& pair, double h, WorldScratch& scratch) {
+// material  of the pair, null where it is combined once they touch
+void collidePair(const WorldModel& model, const BodyPair& pair, const Material* material, double h, WorldScratch& scratch) {
   const BodyModel &a = model.bodies[pair.a], &b = model.bodies[pair.b];
   const BodyScratch &sa = scratch.bodies[pair.a], &sb = scratch.bodies[pair.b];
   // What closes within the tick must be seen at its middle.
@@ -17,6 +18,8 @@ void collidePair(const WorldModel& model, const PairModel& pair, double h, World
   if (!boundsTouch(a, b, sa, sb, margin)) return;
   contact::PairPoints found;
   contact::collideShapes(a.shape, sa.X_WB_mid, b.shape, sb.X_WB_mid, margin, scratch.patches, found);
+  if (found.count == 0) return;
+  const Material combined = material ? *material : combine(a.material, b.material);
   for (int i = 0; i < found.count; ++i) {
     const contact::PairPoint& point = found.points[i];
     Contact* const contact = addContact(scratch, point.phi);
@@ -26,14 +29,17 @@ void collidePair(const WorldModel& model, const PairModel& pair, double h, World
     contact->b = {SideKind::kBody, pair.b};
     contact->p_W = point.p_W;
     contact->R_WC.col(2) = point.n_W;
-    contact->material = pair.material;
+    contact->material = combined;
   }
 }
 
 }  // namespace
 
 void collideBodies(const WorldModel& model, WorldScratch& scratch) {
-  for (const PairModel& pair : model.pairs) collidePair(model, pair, model.options.h, scratch);
+  const double h = model.options.h;
+  for (const PairModel& pair : model.pairs) collidePair(model, {pair.a, pair.b}, &pair.material, h, scratch);
+  if (!scratch.broad_phase) return;
+  for (const BodyPair& pair : scratch.broad_phase->candidates(model, scratch)) collidePair(model, pair, nullptr, h, scratch);
 }
 
 }  // namespace pincer::engine

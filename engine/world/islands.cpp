@@ -176,6 +176,9 @@ IslandScratch::IslandScratch(const WorldModel& model) {
 }
 
 IslandScratch::~IslandScratch() = default;
+IslandScratch::IslandScratch(IslandScratch&&) noexcept = default;
+
+namespace {
 
 void solveIsland(const WorldModel& model, int k, int thread, IslandScratch& s) {
   Island& island = s.islands[k];
@@ -188,6 +191,8 @@ void solveIsland(const WorldModel& model, int k, int thread, IslandScratch& s) {
   island.result = solveContacts(problem, model.options.solver, *s.solvers[thread], VectorMap(s.r.data() + island.row, island.rows),
                                 VectorMap(s.u.data() + island.row, island.rows));
 }
+
+}  // namespace
 
 void solveIslands(const WorldModel& model, WorldScratch& scratch) {
   IslandScratch& s = scratch.islands;

@@ -27,8 +27,7 @@ struct Island {
 struct IslandScratch {
   explicit IslandScratch(const WorldModel& model);
   ~IslandScratch();
-  IslandScratch(const IslandScratch&) = delete;
-  IslandScratch& operator=(const IslandScratch&) = delete;
+  IslandScratch(IslandScratch&&) noexcept;
 
   std::vector<Island> islands;
   std::vector<int> order;           // which contact is at a place

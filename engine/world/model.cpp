@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "contact/shape/pair_query.h"
+#include "engine/world/broad_phase.h"
 
 namespace pincer::engine {
 namespace {
@@ -109,20 +110,24 @@ WorldModel WorldBuilder::build() const {
     model.point_forms.push_back({formOf(point, 0, h), formOf(point, 1, h), formOf(point, 2, h)});
   }
   const int n = static_cast<int>(model.bodies.size());
+  model.has_broad_phase = n > kAllPairsBodies;
+  std::vector<std::pair<int, int>> excluded = excluded_;
+  std::sort(excluded.begin(), excluded.end());
   for (int a = 0; a < n; ++a) {
     for (int b = a + 1; b < n; ++b) {
       BodyModel &A = model.bodies[a], &B = model.bodies[b];
       if (!A.dynamic && !B.dynamic) continue;
-      if (std::find(excluded_.begin(), excluded_.end(), std::pair(a, b)) != excluded_.end()) continue;
+      if (std::binary_search(excluded.begin(), excluded.end(), std::pair(a, b))) continue;
       if (!contact::pairIsSupported(A.shape, B.shape)) {
         throw InputError(fmt::format(
             "bodies \"{}\" and \"{}\": this pair of shapes has no contact routine. Exclude the pair, or use a sphere for one of them.",
             A.name, B.name));
       }
-      model.pairs.push_back({a, b, combine(A.material, B.material)});
+      if (!model.has_broad_phase) model.pairs.push_back({a, b, combine(A.material, B.material)});
       A.may_touch = B.may_touch = true;
     }
   }
+  if (model.has_broad_phase) model.excluded_pairs = std::move(excluded);
   if (!model.points.empty()) {
     for (BodyModel& body : model.bodies) body.may_touch = true;
   }

@@ -81,7 +81,9 @@ struct WorldModel {
   std::vector<BodyModel> bodies;
   std::vector<DrivenPointModel> points;
   std::vector<std::array<AxisForm, 3>> point_forms;
-  std::vector<PairModel> pairs;  // only those that can touch: at least one dynamic, shapes supported
+  std::vector<PairModel> pairs;  // only those that can touch: at least one dynamic, shapes supported; none with a broad phase
+  bool has_broad_phase = false;  // of more than kAllPairsBodies bodies: pairs are found tick by tick (broad_phase.h)
+  std::vector<std::pair<int, int>> excluded_pairs;  // sorted; only with a broad phase
 };
 
 // What the builder is told about a body; B's pose and velocity at the start live in BodyStart.

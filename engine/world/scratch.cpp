@@ -15,6 +15,7 @@ WorldScratch::WorldScratch(const WorldModel& model) : islands(model) {
   q.resize(row_count);
   r.resize(row_count);
   u.resize(row_count);
+  if (model.has_broad_phase) broad_phase = std::make_unique<BroadPhase>(model);
 }
 
 std::uint64_t contactId(int kind, int a, int b, std::uint32_t feature) {

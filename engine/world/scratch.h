@@ -7,6 +7,7 @@
 
 #include "contact/surface/patch_cache.h"
 #include "engine/solve/cascade.h"
+#include "engine/world/broad_phase.h"
 #include "engine/world/islands.h"
 #include "engine/world/model.h"
 #include "engine/world/stage_clock.h"
@@ -83,6 +84,7 @@ struct WorldScratch {
   std::vector<double> mu, q, r, u;
   contact::PatchCache patches;
   IslandScratch islands;
+  std::unique_ptr<BroadPhase> broad_phase;  // null where every pair is looked at
   SolveResult solve;
   StageClock* clock = nullptr;  // set it to have the stages timed; null costs nothing
 };

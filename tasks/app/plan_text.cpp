@@ -89,11 +89,22 @@ void describeFinger(const grasp::GraspModel& model, std::size_t finger, std::vec
   }
 }
 
+void describeMany(const grasp::GraspModel& model, std::vector<PlanLine>& lines) {
+  const engine::WorldModel& world = model.world;
+  if (world.has_broad_phase)
+    lines.push_back(
+        {"pairs", "broad phase", fmt::format("tree of the boxes of {} bodies; materials combined where two touch", world.bodies.size())});
+  if (world.options.threads > 1)
+    lines.push_back({"solve", "threads", fmt::format("islands shared by {} threads, the same bits as on one", world.options.threads)});
+}
+
 void describeSkipped(const grasp::GraspModel& model, std::vector<PlanLine>& lines) {
-  if (model.world.pairs.empty()) lines.push_back({"skipped", "body contacts", "no two bodies can touch"});
+  const bool bodies_touch = !model.world.pairs.empty() || model.world.has_broad_phase;
+  if (!bodies_touch) lines.push_back({"skipped", "body contacts", "no two bodies can touch"});
   if (model.fingers.empty()) lines.push_back({"skipped", "finger contacts, pad places", "there are no fingers"});
-  if (model.world.pairs.empty() && model.fingers.empty()) lines.push_back({"skipped", "solve", "nothing can touch"});
-  lines.push_back({"skipped", "broad phase", "every pair is looked at: cheaper for so few bodies"});
+  if (!bodies_touch && model.fingers.empty()) lines.push_back({"skipped", "solve", "nothing can touch"});
+  if (!model.world.has_broad_phase) lines.push_back({"skipped", "broad phase", "every pair is looked at: cheaper for so few bodies"});
+  if (model.world.options.threads == 1) lines.push_back({"skipped", "threads", "islands are solved one after the other"});
 }
 
 }  // namespace
@@ -110,6 +121,7 @@ std::vector<PlanLine> describePlan(const grasp::GraspModel& model) {
     lines.push_back({"pair", name, pairForm(bodies, pair)});
   }
   for (std::size_t i = 0; i < model.fingers.size(); ++i) describeFinger(model, i, lines);
+  describeMany(model, lines);
   describeSkipped(model, lines);
   return lines;
 }

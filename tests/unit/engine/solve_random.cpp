@@ -148,7 +148,7 @@ TEST(Solver, AllocatesNothing) {
   if (!pincer::testing::allocationsAreCounted()) GTEST_SKIP() << "the sanitizer owns the allocator";
   RandomScenes random(18);
   SolverScratch scratch(28, 6);
-  int methods[6] = {};
+  int methods[7] = {};
   for (int n = 0; n < 300; ++n) {
     OwnedContactProblem p =
         n % 10 == 0 ? random.ring(28, 0.01) : random.cluster(random.integer(1, 6), random.integer(1, 12), 100, 3, n % 2 == 0);
@@ -161,7 +161,7 @@ TEST(Solver, AllocatesNothing) {
     ++methods[static_cast<int>(result.method)];
   }
   EXPECT_GT(methods[static_cast<int>(SolveMethod::kNewton)], 0);
-  EXPECT_GT(methods[static_cast<int>(SolveMethod::kInteriorPoint)], 0);
+  EXPECT_GT(methods[static_cast<int>(SolveMethod::kProximalNewton)], 0);
 }
 
 // A stack of three whose top is a million times as heavy as its base, resting: the interface forces are the weights.

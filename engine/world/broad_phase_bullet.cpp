@@ -1,0 +1,121 @@
+#include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/world/broad_phase.h"
+#include "engine/world/scratch.h"
+
+namespace pincer::engine {
+namespace {
+
+constexpr double kTreeMargin = 5e-4;  // by which the tree's boxes are larger [m]; Bullet's own 50 mm is for rooms, not for hands
+constexpr int kPairsPerBody = 16;     // for which memory is there from the start
+
+bool isBounded(const BodyModel& body) { return body.bounding_radius < 1e9; }
+
+struct Box {
+  btVector3 low, high;
+};
+
+Box boxOf(const WorldModel& model, const WorldScratch& scratch, int body) {
+  const BodyScratch& s = scratch.bodies[body];
+  const double reach = model.bodies[body].bounding_radius + 0.5 * model.options.contact_margin + model.options.h * s.start.v_W.norm();
+  const Vec3 low = s.X_WI_mid.p - Vec3::Constant(reach), high = s.X_WI_mid.p + Vec3::Constant(reach);
+  return {{low.x(), low.y(), low.z()}, {high.x(), high.y(), high.z()}};
+}
+
+int bodyOf(const btBroadphaseProxy& proxy) { return *static_cast<const int*>(proxy.m_clientObject); }
+
+bool overlap(const btBroadphaseProxy& x, const btBroadphaseProxy& y) {
+  for (int k = 0; k < 3; ++k) {
+    if (!(x.m_aabbMin[k] <= y.m_aabbMax[k] && y.m_aabbMin[k] <= x.m_aabbMax[k])) return false;
+  }
+  return true;
+}
+
+// A half-space's far side is all that matters of it.
+bool isNear(const WorldModel& model, const WorldScratch& scratch, int unbounded, int body) {
+  if (!std::holds_alternative<contact::HalfSpace>(model.bodies[unbounded].shape)) return true;
+  const BodyScratch &plane = scratch.bodies[unbounded], &s = scratch.bodies[body];
+  const double height = plane.R_WB_mid.col(2).dot(s.X_WI_mid.p - plane.X_WB_mid.p);
+  const double speed = (s.start.v_W - plane.start.v_W).norm();
+  return height <= model.bodies[body].bounding_radius + model.options.contact_margin + model.options.h * speed;
+}
+
+}  // namespace
+
+struct BroadPhase::Tree {
+  btDbvtBroadphase bullet;
+  std::vector<btBroadphaseProxy*> proxies;  // per body, null for unbounded ones
+  std::vector<int> numbers;                 // of bodies, for proxies to point to
+
+  explicit Tree(const WorldModel& model) : proxies(model.bodies.size(), nullptr), numbers(model.bodies.size()) {
+    gDbvtMargin = kTreeMargin;
+    reservePairs(static_cast<int>(model.bodies.size()));
+    for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+      const BodyModel& body = model.bodies[i];
+      if (!isBounded(body)) continue;
+      constexpr int kDynamic = 1, kStatic = 2;
+      numbers[i] = static_cast<int>(i);
+      const btVector3 apart(1e3 * static_cast<double>(i), 0, 0);  // a pair of all with all would be found otherwise
+      proxies[i] = bullet.createProxy(apart, apart, 0, &numbers[i], body.dynamic ? kDynamic : kStatic,
+                                      body.dynamic ? kDynamic | kStatic : kDynamic, nullptr);
+    }
+  }
+  ~Tree() {
+    for (btBroadphaseProxy* proxy : proxies) {
+      if (proxy) bullet.destroyProxy(proxy, nullptr);
+    }
+  }
+
+ private:
+  // Bullet's pair cache grows as pairs come; so many that all overlap make it grow now.
+  void reservePairs(int bodies) {
+    const int count = 2 + static_cast<int>(std::sqrt(2.0 * kPairsPerBody * bodies));
+    std::vector<btBroadphaseProxy*> dummies;
+    const btVector3 low(-1, -1, -1), high(1, 1, 1);
+    for (int i = 0; i < count; ++i) dummies.push_back(bullet.createProxy(low, high, 0, nullptr, 1, 1, nullptr));
+    bullet.calculateOverlappingPairs(nullptr);
+    for (btBroadphaseProxy* proxy : dummies) bullet.destroyProxy(proxy, nullptr);
+    bullet.calculateOverlappingPairs(nullptr);
+  }
+};
+
+BroadPhase::BroadPhase(const WorldModel& model) : tree_(std::make_unique<Tree>(model)) {
+  for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+    if (model.bodies[i].dynamic) dynamic_.push_back(static_cast<int>(i));
+    if (!isBounded(model.bodies[i])) unbounded_.push_back(static_cast<int>(i));
+  }
+  pairs_.reserve((kPairsPerBody + unbounded_.size()) * model.bodies.size());
+}
+
+BroadPhase::~BroadPhase() = default;
+
+std::span<const BodyPair> BroadPhase::candidates(const WorldModel& model, const WorldScratch& scratch) {
+  pairs_.clear();
+  for (std::size_t i = 0; i < tree_->proxies.size(); ++i) {
+    if (!tree_->proxies[i]) continue;
+    const Box box = boxOf(model, scratch, static_cast<int>(i));
+    tree_->bullet.setAabb(tree_->proxies[i], box.low, box.high, nullptr);
+  }
+  tree_->bullet.calculateOverlappingPairs(nullptr);
+  const btBroadphasePairArray& found = tree_->bullet.getOverlappingPairCache()->getOverlappingPairArray();
+  for (int i = 0; i < found.size(); ++i) {
+    const btBroadphaseProxy &x = *found[i].m_pProxy0, &y = *found[i].m_pProxy1;
+    if (overlap(x, y)) pairs_.push_back({std::min(bodyOf(x), bodyOf(y)), std::max(bodyOf(x), bodyOf(y))});
+  }
+  for (const int wall : unbounded_) {
+    for (const int body : dynamic_) {
+      if (isNear(model, scratch, wall, body)) pairs_.push_back({std::min(wall, body), std::max(wall, body)});
+    }
+  }
+  const auto excluded = [&](const BodyPair& p) {
+    return std::binary_search(model.excluded_pairs.begin(), model.excluded_pairs.end(), std::pair(p.a, p.b));
+  };
+  if (!model.excluded_pairs.empty()) pairs_.erase(std::remove_if(pairs_.begin(), pairs_.end(), excluded), pairs_.end());
+  std::sort(pairs_.begin(), pairs_.end(), [](const BodyPair& x, const BodyPair& y) { return x.a != y.a ? x.a < y.a : x.b < y.b; });
+  return pairs_;
+}
+
+}  // namespace pincer::engine
