@@ -19,8 +19,8 @@ struct BenchFinger {
   contact::SurfaceTracker tracker;
   contact::PatchCache cache;
 
-  contact::SurfaceContacts on(const contact::SmoothMesh& mesh, const Vec3& p_BC, double r = kBenchFinger) {
-    return mesh.querySphere(p_BC, r, kBenchMargin, tracker, cache);
+  contact::SurfaceContacts on(const contact::SmoothMesh& mesh, const Vec3& p_BC, double margin = kBenchMargin) {
+    return mesh.querySphere(p_BC, kBenchFinger, margin, tracker, cache);
   }
 };
 

@@ -77,7 +77,7 @@ PathFigures walkPath(const contact::SmoothMesh& mesh, const FingerPath& path, do
     if (fresh) finger.tracker = {};
     const contact::SurfaceContacts contacts = finger.on(mesh, path.centres[i]);
     const Felt now{feltDirection(contacts), contacts.main().phi};
-    f.held += contacts.cost.held > 0;
+    f.held += (finger.tracker.status & contact::kQueryHeldDirection) != 0;
     f.not_finite += !isFinite(contacts);
     if (!fresh) {
       countCost(contacts.cost, f);

@@ -71,6 +71,9 @@ void addRow(const Sweep& sweep, const NamedVariant& variant, const SweepTrace& t
   if (facet && sweep.facet_jump > 0) {  // the baseline must be what the literature says of it, or the comparison means nothing
     records.push_back(atMost(of + "largest step on the finger, off r theta by", std::abs(step - 1e3 * sweep.facet_jump), "mm", 0.06));
   }
+  const bool smooth = variant.variant == SurfaceVariant::smooth;
+  const auto held = static_cast<double>(trace.held);
+  records.push_back(smooth ? exactly(of + "ticks without an answer", held, "-", 0) : unbounded(of + "ticks without an answer", held, "-"));
   records.push_back(unbounded(of + "largest step on the finger per tick", step, "mm"));
   records.push_back(unbounded(of + "largest turn of the force per tick", largestTurn(trace.n) * 180 / M_PI, "deg"));
   if (sweep.circle > 0) {

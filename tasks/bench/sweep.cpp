@@ -53,6 +53,7 @@ SweepTrace traceAlong(const contact::SmoothMesh& mesh, const FingerPath& path, c
     trace.n.push_back(n);
     trace.place.push_back(kBenchFinger * turned);
     trace.phi.push_back(contacts.main().phi);
+    trace.held += (finger.tracker.status & contact::kQueryHeldDirection) != 0;
   }
   return trace;
 }

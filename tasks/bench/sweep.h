@@ -23,6 +23,7 @@ struct SweepTrace {
   std::vector<Vec3> n;        // felt direction at each tick
   std::vector<double> place;  // on the finger within the plane, r times the direction's angle, unwrapped, 0 at the first tick [m]
   std::vector<double> phi;    // of the main contact [m]
+  int held = 0;               // ticks left without an answer
 };
 SweepTrace traceAlong(const contact::SmoothMesh& mesh, const FingerPath& path, const SweepPlane& plane);
 
