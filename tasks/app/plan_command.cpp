@@ -14,6 +14,7 @@
 #include "tasks/app/progress.h"
 #include "tasks/app/tick_times.h"
 #include "tasks/scene/simulation.h"
+#include "tasks/scene/builtin_scenes.h"
 
 namespace pincer::tasks {
 namespace {
@@ -115,7 +116,7 @@ std::string planJson(const Scene& scene, const std::vector<PlanLine>& plan, cons
 
 int runPlan(const PlanArguments& arguments) {
   interruptFlag();
-  const Scene scene = readScene(arguments.scene);
+  const Scene scene = readSceneOrBuiltin(arguments.scene);
   const std::vector<PlanLine> plan = describePlan(buildWorld(scene));
   const StageTimes times = measureStages(scene, arguments.ticks);
   fmt::print("{}", arguments.json ? planJson(scene, plan, times) : planText(scene, plan, times));
@@ -127,7 +128,7 @@ int runPlan(const PlanArguments& arguments) {
 void addPlanCommand(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<PlanArguments>();
   CLI::App* command = app.add_subcommand("plan", "What runs in a tick of a scene, and what it costs");
-  command->add_option("scene", arguments->scene, "Scene file (JSON)")->required();
+  command->add_option("scene", arguments->scene, "Scene file (JSON), or the name of a built-in scene")->required();
   command->add_option("--ticks", arguments->ticks, "Ticks to measure")->check(CLI::Range(1, 10'000'000))->capture_default_str();
   command->add_flag("--json", arguments->json, "Print the plan as JSON");
   command->footer(kExample);

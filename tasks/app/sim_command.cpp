@@ -8,6 +8,7 @@
 #include "tasks/app/interrupt.h"
 #include "tasks/app/progress.h"
 #include "tasks/app/sim_run.h"
+#include "tasks/scene/builtin_scenes.h"
 
 namespace pincer::tasks {
 namespace {
@@ -27,7 +28,7 @@ struct SimArguments {
 
 int runSim(const SimArguments& arguments) {
   const std::atomic<bool>& interrupted = interruptFlag();
-  Scene scene = readScene(arguments.scene);
+  Scene scene = readSceneOrBuiltin(arguments.scene);
   applyOptions(arguments.options, scene);
   Simulation simulation(std::move(scene));
   SimResult result = [&] {
@@ -44,7 +45,7 @@ int runSim(const SimArguments& arguments) {
 void addSimCommand(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<SimArguments>();
   CLI::App* command = app.add_subcommand("sim", "Plain physics of a scene: states, records, expectations");
-  command->add_option("scene", arguments->scene, "Scene file (JSON)")->required();
+  command->add_option("scene", arguments->scene, "Scene file (JSON), or the name of a built-in scene")->required();
   command->add_option("--duration", arguments->options.duration, "Simulated time in place of the scene's [s]")->check(CLI::PositiveNumber);
   command->add_option("--every", arguments->options.every, "Time between recorded rows in place of the scene's [s]")
       ->check(CLI::PositiveNumber);

@@ -1,19 +1,11 @@
-#include "tests/accuracy/exact_solutions.h"
+#include "tasks/exact/pinch.h"
 
 #include <cmath>
 
+#include "tasks/exact/runge_kutta.h"
+
 namespace pincer::exact {
 namespace {
-
-// One step of the classical Runge-Kutta method for y' = f(t, y).
-template <typename State, typename Slope>
-State rungeKutta(const State& y, double t, double h, const Slope& f) {
-  const State k1 = f(t, y);
-  const State k2 = f(t + 0.5 * h, State(y + 0.5 * h * k1));
-  const State k3 = f(t + 0.5 * h, State(y + 0.5 * h * k2));
-  const State k4 = f(t + h, State(y + h * k3));
-  return y + (h / 6) * (k1 + 2 * k2 + 2 * k3 + k4);
-}
 
 struct Target {
   double height, velocity;
@@ -28,16 +20,6 @@ Target minimumJerk(double height, double reach_time, double t) {
 
 }  // namespace
 
-double SlideToRoll::position(double t) const {
-  const double t_roll = transitionTime();
-  if (t < t_roll) return v0 * t - 0.5 * mu * g * t * t;
-  return 12 * v0 * v0 / (49 * mu * g) + 5.0 / 7 * v0 * (t - t_roll);
-}
-
-double SlideToRoll::velocity(double t) const { return t < transitionTime() ? v0 - mu * g * t : 5.0 / 7 * v0; }
-
-double Slope::acceleration() const { return g * (std::sin(theta) - mu * std::cos(theta)); }
-
 double SlidingPinch::acceleration(double d, double v) const {
   const double L = sphere_radius + finger_radius;
   const double x = std::sqrt(L * L - d * d);
@@ -51,21 +33,7 @@ double SlidingPinch::acceleration(double d, double v) const {
 double SlidingPinch::dropTime(double depth) const {
   using State = Vec2;  // (d, d')
   const auto slope = [this](double, const State& y) { return State(y[1], acceleration(y[0], y[1])); };
-  constexpr double kStep = 1e-5;
-  State y = State::Zero();
-  long steps = 0;
-  for (;;) {
-    const State next = rungeKutta(y, 0, kStep, slope);
-    if (next[0] >= depth) break;
-    y = next;
-    ++steps;
-  }
-  double low = 0, high = kStep;  // the depth is reached within this step
-  for (int i = 0; i < 60; ++i) {
-    const double middle = 0.5 * (low + high);
-    (rungeKutta(y, 0, middle, slope)[0] < depth ? low : high) = middle;
-  }
-  return static_cast<double>(steps) * kStep + low;
+  return integrateUntil<State>(State::Zero(), 1e-5, slope, [&](const State& y) { return y[0] - depth; }).t;
 }
 
 std::vector<double> StuckLift::rises(int ticks, double h) const {
@@ -84,21 +52,32 @@ std::vector<double> StuckLift::rises(int ticks, double h) const {
   return heights;
 }
 
-Quat freeRotation(const Vec3& moments, const Vec3& w_B, double time) {
-  using State = Eigen::Matrix<double, 7, 1>;  // (w, q as x y z w)
+double leastFrictionOfOffsetPlate(double mass, double offset, double torsion_radius, double force, double g) {
+  return 0.5 * mass * g * std::hypot(1.0, offset / torsion_radius) / force;
+}
+
+PlateRest slidingSpinningPlate(double mass, double inertia, double torsion_radius, double friction_force, const Vec2& v0, double w0) {
+  using State = Eigen::Matrix<double, 6, 1>;                                                       // (p, angle, v, w)
+  const auto slip = [&](const State& y) { return Vec2(y[3] + y[5] * y[1], y[4] - y[5] * y[0]); };  // v + w x (-p)
+  const auto speed = [&](const State& y) { return std::hypot(slip(y).norm(), torsion_radius * y[5]); };
   const auto slope = [&](double, const State& y) {
-    const Vec3 w = y.head<3>();
-    const Quat spin(0, w.x(), w.y(), w.z());
+    const Vec2 f = -friction_force / speed(y) * slip(y);
+    const double moment = -friction_force * torsion_radius * torsion_radius * y[5] / speed(y) - y[0] * f[1] + y[1] * f[0];
     State dy;
-    dy.head<3>() = moments.cwiseProduct(w).cross(w).cwiseQuotient(moments);
-    dy.tail<4>() = 0.5 * (Quat(y.tail<4>()) * spin).coeffs();
+    dy << y[3], y[4], y[5], f / mass, moment / inertia;
     return dy;
   };
-  const int steps = static_cast<int>(std::lround(time / 2e-5));
   State y;
-  y << w_B, 0, 0, 0, 1;
-  for (int i = 0; i < steps; ++i) y = rungeKutta(y, 0, time / steps, slope);
-  return Quat(y.tail<4>()).normalized();
+  y << 0, 0, 0, v0, w0;
+  constexpr double kStep = 2e-6, kAtRest = 1e-7;
+  double t = 0;
+  for (double s = speed(y), before = 2 * s; s > kAtRest && s < before; s = speed(y)) {
+    const double h = std::min(kStep, 0.1 * s * mass / friction_force);  // finer towards the end, where the direction may still turn
+    before = s;
+    y = rungeKutta(y, t, h, slope);
+    t += h;
+  }
+  return {y.head<2>(), y[2], t};
 }
 
 }  // namespace pincer::exact

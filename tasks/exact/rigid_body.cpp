@@ -1,0 +1,38 @@
+#include "tasks/exact/rigid_body.h"
+
+#include <cmath>
+
+#include "tasks/exact/runge_kutta.h"
+
+namespace pincer::exact {
+
+Quat freeRotation(const Vec3& moments, const Vec3& w_B, double time) {
+  using State = Eigen::Matrix<double, 7, 1>;  // (w, q as x y z w)
+  const auto slope = [&](double, const State& y) {
+    const Vec3 w = y.head<3>();
+    const Quat spin(0, w.x(), w.y(), w.z());
+    State dy;
+    dy.head<3>() = moments.cwiseProduct(w).cross(w).cwiseQuotient(moments);
+    dy.tail<4>() = 0.5 * (Quat(y.tail<4>()) * spin).coeffs();
+    return dy;
+  };
+  const int steps = static_cast<int>(std::lround(time / 2e-5));
+  State y;
+  y << w_B, 0, 0, 0, 1;
+  for (int i = 0; i < steps; ++i) y = rungeKutta(y, 0, time / steps, slope);
+  return Quat(y.tail<4>()).normalized();
+}
+
+Quat symmetricTop(double I, double I3, const Vec3& w, double time) {
+  const Vec3 L(I * w.x(), I * w.y(), I3 * w.z());
+  const auto turn = [](const Vec3& angle) { return Quat(Eigen::AngleAxisd(angle.norm(), angle.normalized())); };
+  return turn(time / I * L) * turn(Vec3(0, 0, time * w.z() * (1 - I3 / I)));
+}
+
+double precessionOfEulersDisk(double R, double b, double inclination, double g) {
+  const double s = std::sin(inclination), c = std::cos(inclination);
+  const double diameter = (3 * R * R + 4 * b * b) / 12, axis = R * R / 2;  // moments of inertia per mass
+  return std::sqrt(g * (R * c - b * s) / (s * (diameter * c - axis * b / R * s)));
+}
+
+}  // namespace pincer::exact

@@ -1,0 +1,25 @@
+#include "tasks/exact/sliding_rolling.h"
+
+#include <cmath>
+
+namespace pincer::exact {
+
+double Slope::acceleration() const { return g * (std::sin(theta) - mu * std::cos(theta)); }
+
+double SlideToRoll::position(double t) const {
+  const double t_roll = transitionTime();
+  if (t < t_roll) return v0 * t - 0.5 * mu * g * t * t;
+  return 12 * v0 * v0 / (49 * mu * g) + 5.0 / 7 * v0 * (t - t_roll);
+}
+
+double SlideToRoll::velocity(double t) const { return t < transitionTime() ? v0 - mu * g * t : 5.0 / 7 * v0; }
+
+bool RollingIncline::rolls() const { return mu >= 2.0 / 7 * std::tan(theta); }
+
+double RollingIncline::acceleration() const {
+  return rolls() ? 5.0 / 7 * g * std::sin(theta) : g * (std::sin(theta) - mu * std::cos(theta));
+}
+
+double RollingIncline::surfaceAcceleration() const { return rolls() ? acceleration() : 2.5 * mu * g * std::cos(theta); }
+
+}  // namespace pincer::exact

@@ -1,0 +1,60 @@
+// sliding_rolling: closed forms of boxes and spheres on floors and slopes. SI units; none shares code with the engine.
+#pragma once
+
+namespace pincer::exact {
+
+// --- Box on a slope ---------------------------------------------------------------------------------------------------------------------
+// Along the slope m a = m g sin th - mu m g cos th while it slides; it stays if tan th <= mu.
+struct Slope {
+  double theta;  // [rad]
+  double mu;     // [-]
+  double g;      // [m/s^2]
+
+  double acceleration() const;                                                           // of a sliding box, downhill [m/s^2]
+  double way(double v0, double t) const { return (v0 + 0.5 * acceleration() * t) * t; }  // downhill, from v0 >= 0 [m]
+};
+
+// --- Box thrown along a floor -------------------------------------------------------------------------------------------------------------
+// m a = -mu m g until it stops.
+struct Stopping {
+  double v0, mu, g;
+
+  double time() const { return v0 / (mu * g); }          // [s]
+  double way() const { return v0 * v0 / (2 * mu * g); }  // [m]
+};
+
+// --- Sphere thrown along a floor without spin -------------------------------------------------------------------------------------------
+// Sliding: v = v0 - mu g t, and the friction's moment spins it up: (2/5) m r^2 w' = mu m g r, so r w = (5/2) mu g t. They meet, and it rolls
+// from then on, at t* = 2 v0/(7 mu g) with v = 5/7 v0, after the way 12 v0^2/(49 mu g).
+// Source: E. J. Routh, Dynamics of a System of Rigid Bodies, Elementary Part, 7th ed., 1905 (bowling ball); derived above.
+struct SlideToRoll {
+  double v0;  // [m/s]
+  double mu;  // [-]
+  double g;   // [m/s^2]
+
+  double transitionTime() const { return 2 * v0 / (7 * mu * g); }
+  double position(double t) const;  // [m]
+  double velocity(double t) const;  // [m/s]
+};
+
+// --- Sphere let go on a slope -------------------------------------------------------------------------------------------------------------
+// Rolling: m a = m g sin th - F and (2/5) m r^2 a/r = F r give a = 5/7 g sin th, F = 2/7 m g sin th <= mu m g cos th if mu >= 2/7 tan th.
+// Else it slides: a = g (sin th - mu cos th), r w' = 5/2 mu g cos th.
+struct RollingIncline {
+  double theta, mu, g;
+
+  bool rolls() const;
+  double acceleration() const;         // downhill [m/s^2]
+  double surfaceAcceleration() const;  // r w' [m/s^2]
+};
+
+// --- Sphere that spins on the spot --------------------------------------------------------------------------------------------------------
+// (2/5) m r^2 w' = -mu e m g, e the torsion radius: it stops after 2 r^2 w0/(5 mu e g).
+struct SpinDown {
+  double w0, radius, mu, torsion_radius, g;
+
+  double deceleration() const { return 5 * mu * torsion_radius * g / (2 * radius * radius); }  // [rad/s^2]
+  double time() const { return w0 / deceleration(); }                                          // [s]
+};
+
+}  // namespace pincer::exact

@@ -1,0 +1,46 @@
+#include "tasks/exact/toppling.h"
+
+#include <cmath>
+
+#include "tasks/exact/runge_kutta.h"
+
+namespace pincer::exact {
+
+double RockingBlock::fallTime(double tilt) const {
+  using State = Vec2;  // (th, th')
+  const double R = std::hypot(half_width, half_height), alpha = std::atan2(half_width, half_height);
+  const auto slope = [&](double, const State& y) { return State(y[1], -0.75 * g / R * std::sin(alpha - y[0])); };
+  return integrateUntil<State>({tilt, 0}, 1e-5, slope, [](const State& y) { return -y[0]; }).t;
+}
+
+double RockingBlock::angularVelocityRatio() const {
+  const double alpha = std::atan2(half_width, half_height);
+  return 1 - 1.5 * std::sin(alpha) * std::sin(alpha);
+}
+
+double RockingBlock::nextPeak(double tilt) const {
+  const double alpha = std::atan2(half_width, half_height), e = angularVelocityRatio();
+  return alpha - std::acos(std::cos(alpha) + e * e * (std::cos(alpha - tilt) - std::cos(alpha)));
+}
+
+double leastAngleOfLadder(double mu, double length, double end_radius) {
+  const auto excess = [&](double th) {
+    return 0.5 * length * std::cos(th) * (mu * mu - 1) + mu * length * std::sin(th) + end_radius * mu * (1 + mu);
+  };
+  double low = 0, high = M_PI / 2;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (low + high);
+    (excess(middle) < 0 ? low : high) = middle;
+  }
+  return low;
+}
+
+Jam jamOfTip(double mass, double inertia, const Vec2& tip, const Vec2& v) {
+  const double x = tip[0], z = tip[1];
+  Eigen::Matrix2d W;
+  W << 1 / mass + z * z / inertia, -x * z / inertia, -x * z / inertia, 1 / mass + x * x / inertia;
+  const Vec2 r = -W.inverse() * v;
+  return {r, v + r / mass, (z * r[0] - x * r[1]) / inertia};  // about y: z f_x - x f_z
+}
+
+}  // namespace pincer::exact

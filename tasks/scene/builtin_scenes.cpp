@@ -1,0 +1,40 @@
+#include "tasks/scene/builtin_scenes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <vector>
+
+#include "contact/error.h"
+#include "tasks/scene/spelling.h"
+
+namespace pincer::tasks {
+namespace {
+
+const BuiltinScene* findBuiltin(std::string_view name) {
+  const auto scenes = builtinScenes();
+  const auto found = std::find_if(scenes.begin(), scenes.end(), [&](const BuiltinScene& scene) { return scene.name == name; });
+  return found == scenes.end() ? nullptr : &*found;
+}
+
+std::string suggestedScene(std::string_view name) {
+  std::vector<std::string_view> names;
+  for (const BuiltinScene& scene : builtinScenes()) names.push_back(scene.name);
+  return suggestion(name, names);
+}
+
+}  // namespace
+
+Scene readBuiltinScene(std::string_view name) {
+  if (const BuiltinScene* scene = findBuiltin(name)) return parseScene(scene->json, fmt::format("{}.json", name));
+  throw InputError(fmt::format("there is no built-in scene \"{}\".{}", name, suggestedScene(name)));
+}
+
+Scene readSceneOrBuiltin(const std::string& path_or_name) {
+  const bool is_word = path_or_name.find_first_of("/.") == std::string::npos;
+  if (!is_word || std::filesystem::exists(path_or_name)) return readScene(path_or_name);
+  return readBuiltinScene(path_or_name);
+}
+
+}  // namespace pincer::tasks

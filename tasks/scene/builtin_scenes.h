@@ -1,0 +1,26 @@
+// builtin_scenes: the scenes of tasks/scenes, which the program carries with it, so that verify, benchmarks and `pincer sim NAME` find them
+// wherever it is installed.
+#pragma once
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "tasks/scene/scene.h"
+
+namespace pincer::tasks {
+
+struct BuiltinScene {
+  std::string_view name;  // of the file, without .json
+  std::string_view json;
+};
+
+// In the order of their names.
+std::span<const BuiltinScene> builtinScenes();
+
+// Throws InputError with the names when there is none of this name.
+Scene readBuiltinScene(std::string_view name);
+
+// A file's path, or the name of a built-in scene: what a user gives to `sim` and `plan`. A file of that path wins. Throws InputError.
+Scene readSceneOrBuiltin(const std::string& path_or_name);
+
+}  // namespace pincer::tasks
