@@ -1,0 +1,38 @@
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "tasks/app/app.h"
+#include "tasks/app/commands.h"
+#include "tasks/app/measure_command.h"
+#include "tasks/stress/stress.h"
+
+namespace pincer::tasks {
+namespace {
+
+constexpr const char* kExample = R"(
+Random worlds, class by class: what must hold whatever happens is checked in every tick. Exit code 1 if anything unflagged fails.
+
+Examples:
+  pincer stress                                          200 worlds of each class
+  pincer stress --seeds 1000                             10,000 worlds in all
+  pincer stress --only '*overlap' --seed 17 --seeds 1    one world again)";
+
+struct StressArguments {
+  MeasureOptions measure;
+  StressOptions stress;
+};
+
+}  // namespace
+
+void addStressCommand(CLI::App& app, int& exit_code) {
+  auto arguments = std::make_shared<StressArguments>();
+  CLI::App* command = app.add_subcommand("stress", "Random, hostile worlds by seed");
+  addMeasureOptions(*command, arguments->measure);
+  command->add_option("--seeds", arguments->stress.seeds, "Worlds per class")->check(CLI::Range(1, 100'000'000))->capture_default_str();
+  command->add_option("--seed", arguments->stress.first_seed, "The first seed")->capture_default_str();
+  command->footer(kExample);
+  command->callback(
+      [arguments, &exit_code] { exit_code = runMeasurements(stressMeasurements(arguments->stress), arguments->measure, "stress"); });
+}
+
+}  // namespace pincer::tasks

@@ -1,0 +1,31 @@
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "tasks/app/app.h"
+#include "tasks/app/commands.h"
+#include "tasks/app/measure_command.h"
+#include "tasks/verify/verify.h"
+
+namespace pincer::tasks {
+namespace {
+
+constexpr const char* kExample = R"(
+Runs named scenes whose exact answer is known, and compares: closed forms, or fine integrations of the exact equations (docs/accuracy.md).
+Exit code 1 if a bound isn't kept.
+
+Examples:
+  pincer verify                     all of it, in about a minute
+  pincer verify --only 'pinch/*'    what begins so
+  pincer verify --json              as records)";
+
+}  // namespace
+
+void addVerifyCommand(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<MeasureOptions>();
+  CLI::App* command = app.add_subcommand("verify", "The accuracy suite: scenes with exact answers");
+  addMeasureOptions(*command, *options);
+  command->footer(kExample);
+  command->callback([options, &exit_code] { exit_code = runMeasurements(verifyMeasurements(), *options, "verify"); });
+}
+
+}  // namespace pincer::tasks

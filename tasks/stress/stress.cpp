@@ -1,0 +1,90 @@
+#include "tasks/stress/stress.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "tasks/measure/timing.h"
+#include "tasks/stress/checks.h"
+#include "tasks/stress/random_world.h"
+
+namespace pincer::tasks {
+namespace {
+
+struct WorldResult {
+  std::string fault;  // the first, with its tick; empty if none
+  int ticks = 0, flagged = 0;
+};
+
+std::string faultOfTick(const StressWorld& world, const grasp::GraspState& state, const grasp::GraspScratch& scratch, bool flagged,
+                        double energy) {
+  const engine::WorldModel& model = world.model.world;
+  if (std::string fault = faultOfState(model, state.world); !fault.empty()) return fault;
+  if (std::string fault = faultOfCones(scratch.world); !fault.empty()) return fault;
+  if (!flagged) {
+    if (std::string fault = faultOfLaw(model, scratch.world); !fault.empty()) return fault;
+  }
+  if (world.hasFingers()) return {};
+  constexpr double kRoundOff = 1e-6;  // of the energy: positions are corrected by micrometres
+  const double now = totalEnergy(model, state.world), most = energy + world.allowed_lift;
+  return now <= most + kRoundOff * (std::abs(most) + 1e-6) ? std::string() : fmt::format("energy {:.6g} J, began with {:.6g} J", now, most);
+}
+
+WorldResult runWorld(StressClass kind, std::uint64_t seed, std::vector<double>& tick_times) {
+  StressWorld world(kind, seed);
+  grasp::GraspState state = grasp::makeState(world.model, world.starts, world.startDevices());
+  grasp::GraspScratch scratch(world.model);
+  const double energy = totalEnergy(world.model.world, state.world);
+  WorldResult result;
+  for (; result.ticks < world.ticks; ++result.ticks) {
+    const auto inputs = world.nextInputs();
+    const double begin = steadySeconds();
+    const engine::StepReport report = grasp::step(world.model, state, scratch, inputs);
+    tick_times.push_back(1e6 * (steadySeconds() - begin));
+    const bool flagged = report.status != engine::kStepOk;
+    result.flagged += flagged;
+    result.fault = faultOfTick(world, state, scratch, flagged, energy);
+    if (result.fault.empty()) continue;
+    result.fault = fmt::format("seed {}, tick {}: {}", seed, result.ticks, result.fault);
+    break;
+  }
+  return result;
+}
+
+std::vector<Record> stressClass(StressClass kind, const StressOptions& options, MeasureContext& context) {
+  std::vector<Record> failures;
+  std::vector<double> tick_times;
+  int ticks = 0, flagged = 0;
+  for (int i = 0; i < options.seeds && !context.interrupted(); ++i) {
+    context.progress(static_cast<double>(i) / options.seeds);
+    const WorldResult result = runWorld(kind, options.first_seed + static_cast<std::uint64_t>(i), tick_times);
+    ticks += result.ticks;
+    flagged += result.flagged;
+    constexpr std::size_t kShown = 8;
+    if (!result.fault.empty() && failures.size() < kShown)
+      failures.push_back(exactly(result.fault, 1, "-", 0));
+    else if (!result.fault.empty())
+      failures.back().value += 1;
+  }
+  double failed = 0;
+  for (const Record& record : failures) failed += record.value;
+  std::vector<Record> records = {exactly(fmt::format("unflagged failures in {} worlds", options.seeds), failed, "-", 0),
+                                 unbounded("flagged ticks", ticks > 0 ? 100.0 * flagged / ticks : 0, "%"),
+                                 unbounded("tick, median", quantileOf(tick_times, 0.5), "us"),
+                                 unbounded("tick, p99.9", quantileOf(tick_times, 0.999), "us")};
+  records.insert(records.end(), failures.begin(), failures.end());
+  return records;
+}
+
+}  // namespace
+
+std::vector<Measurement> stressMeasurements(const StressOptions& options) {
+  std::vector<Measurement> all;
+  for (std::size_t i = 0; i < std::size(kStressClassNames); ++i) {
+    all.push_back({fmt::format("stress/{}", kStressClassNames[i]),
+                   [=](MeasureContext& context) { return stressClass(static_cast<StressClass>(i), options, context); }});
+  }
+  return all;
+}
+
+}  // namespace pincer::tasks
