@@ -1,7 +1,6 @@
 #include "contact/mesh/polygon.h"
 
 #include <algorithm>
-#include <numeric>
 
 namespace pincer::contact {
 
@@ -50,28 +49,67 @@ bool isStrictlyConvex(const std::vector<Vec2>& p) {
   return turn < 7;  // 2 pi, or at least 4 pi
 }
 
-bool isEar(const std::vector<Vec2>& p, const std::vector<int>& left, std::size_t i) {
-  const std::size_t n = left.size();
-  const int a = left[(i + n - 1) % n], b = left[i], c = left[(i + 1) % n];
-  if (!turnsLeft(p[a], p[b], p[c])) return false;
-  return std::none_of(left.begin(), left.end(), [&](int k) { return k != a && k != b && k != c && triangleHolds(p[a], p[b], p[c], p[k]); });
-}
-
-std::vector<CornerTriple> clipEars(const std::vector<Vec2>& p) {
-  std::vector<int> left(p.size());
-  std::iota(left.begin(), left.end(), 0);
-  std::vector<CornerTriple> triangles;
-  while (left.size() >= 3) {
-    std::size_t i = 0;
-    while (i < left.size() && !isEar(p, left, i)) ++i;
-    if (i == left.size()) return {};
-    const std::size_t n = left.size();
-    triangles.push_back({left[(i + n - 1) % n], left[i], left[(i + 1) % n]});
-    left.erase(left.begin() + static_cast<std::ptrdiff_t>(i));
-    if (left.size() == 2) break;
+// Cuts off one ear after the other. Whether a corner is an ear changes when a neighbour is cut off; others are looked at again only when no
+// ear is left (corners that touch may have hidden one), and at most kRounds times: n^2 steps in all.
+class EarClipper {
+ public:
+  explicit EarClipper(const std::vector<Vec2>& p) : p_(p), next_(p.size()), previous_(p.size()), ear_(p.size()), left_(size()) {
+    for (int i = 0; i < size(); ++i) {
+      next_[i] = (i + 1) % size();
+      previous_[i] = (i + size() - 1) % size();
+    }
   }
-  return triangles;
-}
+
+  std::vector<CornerTriple> clip() {
+    for (int round = 0; round < kRounds && left_ >= 3; ++round) {
+      for (int i = first_, k = 0; k < left_; i = next_[i], ++k) ear_[i] = isEar(i);
+      clipKnownEars();
+    }
+    return left_ < 3 ? triangles_ : std::vector<CornerTriple>();
+  }
+
+ private:
+  static constexpr int kRounds = 16;
+
+  int size() const { return static_cast<int>(p_.size()); }
+
+  void clipKnownEars() {
+    for (int looked_at = 0, i = first_; left_ >= 3 && looked_at < left_; i = next_[i], ++looked_at) {
+      if (!ear_[i]) continue;
+      cut(i);
+      looked_at = -1;
+    }
+  }
+
+  void cut(int i) {
+    const int a = previous_[i], b = next_[i];
+    triangles_.push_back({a, i, b});
+    next_[a] = b;
+    previous_[b] = a;
+    first_ = b;
+    --left_;
+    if (left_ == 2) left_ = 0;
+    if (left_ < 3) return;
+    ear_[a] = isEar(a);
+    ear_[b] = isEar(b);
+  }
+
+  bool isEar(int i) const {
+    const int a = previous_[i], b = next_[i];
+    if (!turnsLeft(p_[a], p_[i], p_[b])) return false;
+    for (int k = next_[b]; k != a; k = next_[k]) {
+      if (triangleHolds(p_[a], p_[i], p_[b], p_[k])) return false;
+    }
+    return true;
+  }
+
+  const std::vector<Vec2>& p_;
+  std::vector<int> next_, previous_;  // corners not yet cut off, in a ring
+  std::vector<char> ear_;
+  int first_ = 0;
+  int left_;
+  std::vector<CornerTriple> triangles_;
+};
 
 std::vector<CornerTriple> fan(int corners) {
   std::vector<CornerTriple> triangles;
@@ -91,7 +129,7 @@ std::vector<CornerTriple> triangulate(const std::vector<Vec3>& polygon) {
   if (!(n.norm() > 0)) return {};
   const std::vector<Vec2> flat = inPlane(polygon, n.normalized());
   if (isStrictlyConvex(flat)) return fan(static_cast<int>(polygon.size()));
-  return clipEars(flat);
+  return EarClipper(flat).clip();
 }
 
 }  // namespace pincer::contact

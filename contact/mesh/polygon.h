@@ -18,7 +18,7 @@ using CornerTriple = std::array<int, 3>;
 bool hasZeroArea(const Vec3& p0, const Vec3& p1, const Vec3& p2);
 
 // Corners of `polygon` (at least 3), three per triangle, in the polygon's orientation. Empty if there is no such set: the polygon has no
-// area or crosses itself. Takes at most n^3 steps, n^2 on common shapes.
+// area or crosses itself. Takes at most some n^2 steps.
 std::vector<CornerTriple> triangulate(const std::vector<Vec3>& polygon);
 
 }  // namespace pincer::contact
