@@ -50,7 +50,12 @@ class CsvTable {
   }
 
   const std::string& text() const { return text_; }
-  std::string take() { return std::exchange(text_, {}); }  // what has come since the last take(), for streaming
+  // What has come since the last take(), for streaming.
+  std::string take() {
+    std::string taken;
+    taken.swap(text_);
+    return taken;
+  }
 
  private:
   void separate() {
