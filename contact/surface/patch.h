@@ -30,16 +30,26 @@ struct PatchPoint {
   Vec3 Nu, Nv;  // dN/du, dN/dv [-]
 };
 
+// Component by component: as vector expressions it took four times the instructions.
 inline PatchPoint evaluate(const Patch& p, double u, double v) {
   const double w = 1 - u - v;
   const double ww = w * w, uu = u * u, vv = v * v, wu = 2 * w * u, wv = 2 * w * v, uv = 2 * u * v;
-  const Vec3 Sw = p.b300 * ww + p.b120 * uu + p.b102 * vv + p.b210 * wu + p.b201 * wv + p.b111 * uv;
-  const Vec3 Su = p.b210 * ww + p.b030 * uu + p.b012 * vv + p.b120 * wu + p.b111 * wv + p.b021 * uv;
-  const Vec3 Sv = p.b201 * ww + p.b021 * uu + p.b003 * vv + p.b111 * wu + p.b102 * wv + p.b012 * uv;
-  const Vec3 Nw = p.n200 * w + p.n110 * u + p.n101 * v;
-  const Vec3 Nu = p.n110 * w + p.n020 * u + p.n011 * v;
-  const Vec3 Nv = p.n101 * w + p.n011 * u + p.n002 * v;
-  return {Sw * w + Su * u + Sv * v, Nw * w + Nu * u + Nv * v, 3 * (Su - Sw), 3 * (Sv - Sw), 2 * (Nu - Nw), 2 * (Nv - Nw)};
+  PatchPoint x;
+  for (int k = 0; k < 3; ++k) {
+    const double Sw = p.b300[k] * ww + p.b120[k] * uu + p.b102[k] * vv + p.b210[k] * wu + p.b201[k] * wv + p.b111[k] * uv;
+    const double Su = p.b210[k] * ww + p.b030[k] * uu + p.b012[k] * vv + p.b120[k] * wu + p.b111[k] * wv + p.b021[k] * uv;
+    const double Sv = p.b201[k] * ww + p.b021[k] * uu + p.b003[k] * vv + p.b111[k] * wu + p.b102[k] * wv + p.b012[k] * uv;
+    const double Nw = p.n200[k] * w + p.n110[k] * u + p.n101[k] * v;
+    const double Nu = p.n110[k] * w + p.n020[k] * u + p.n011[k] * v;
+    const double Nv = p.n101[k] * w + p.n011[k] * u + p.n002[k] * v;
+    x.S[k] = Sw * w + Su * u + Sv * v;
+    x.N[k] = Nw * w + Nu * u + Nv * v;
+    x.Su[k] = 3 * (Su - Sw);
+    x.Sv[k] = 3 * (Sv - Sw);
+    x.Nu[k] = 2 * (Nu - Nw);
+    x.Nv[k] = 2 * (Nv - Nw);
+  }
+  return x;
 }
 
 // The place alone, at a third of the cost.

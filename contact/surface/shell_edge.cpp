@@ -6,8 +6,8 @@ namespace pincer::contact {
 
 namespace {
 
-constexpr double kAlongEdge = 1e-3;       // eps
-constexpr double kEdgeTolerance = 1e-10;  // [m]
+constexpr double kAlongEdge = 1e-3;      // eps
+constexpr double kEdgeTolerance = 1e-8;  // of the chord
 constexpr int kMaxEdgeSteps = 24;
 
 struct Quadratic {
@@ -63,6 +63,7 @@ SharpEdgePoint evaluate(const SharpEdge& edge, double s) {
 }
 
 EdgeFoot footOnEdge(const SharpEdge& edge, const Vec3& C, double s) {
+  const double tolerance = kEdgeTolerance * (edge.curve[3] - edge.curve[0]).norm();
   double low = 0, high = 1;
   s = std::clamp(s, low, high);
   for (int i = 0; i < kMaxEdgeSteps; ++i) {
@@ -74,7 +75,7 @@ EdgeFoot footOnEdge(const SharpEdge& edge, const Vec3& C, double s) {
     const double flat = x.E1.dot(x.D);
     const double slope = std::max(flat - R.dot(x.D1), 0.1 * flat);
     double next = std::clamp(s + g / slope, 0.0, 1.0);
-    const bool is_solved = std::abs(next - s) * x.E1.norm() < kEdgeTolerance;
+    const bool is_solved = std::abs(next - s) * x.E1.norm() < tolerance;
     const bool end_unknown = (next == 0 && low == 0) || (next == 1 && high == 1);  // an end may be tried, an inner bracket not be left
     if (!is_solved && !end_unknown && (next <= low || next >= high)) next = 0.5 * (low + high);
     s = next;
@@ -83,11 +84,10 @@ EdgeFoot footOnEdge(const SharpEdge& edge, const Vec3& C, double s) {
   return describe(edge, C, s);
 }
 
-FeatureContact contactWithPoint(const Vec3& C, const Vec3& p, const Vec3& outward, bool is_border) {
-  constexpr double kOnFeature = 1e-9;  // [m] the direction to the centre is lost below this
+FeatureContact contactWithPoint(const Vec3& C, const Vec3& p, const Vec3& outward, bool is_border, double on_feature) {
   const Vec3 R = C - p;
   const double distance = R.norm();
-  if (distance < kOnFeature) return {outward.normalized(), R.dot(outward.normalized())};
+  if (distance < on_feature) return {outward.normalized(), R.dot(outward.normalized())};
   const double sign = is_border || R.dot(outward) >= 0 ? 1 : -1;
   return {sign / distance * R, sign * distance};
 }

@@ -41,11 +41,12 @@ SharpEdgePoint evaluate(const SharpEdge& edge, double s);
 // Safeguarded Newton (bisection where a step leaves the bracket) from `s`.
 EdgeFoot footOnEdge(const SharpEdge& edge, const Vec3& C, double s);
 
-// The normal and signed height of `C` over a point `p` of a feature whose neighbourhood faces along `outward` (of any length).
+// The normal and signed height of `C` over a point `p` of a feature whose neighbourhood faces along `outward` (of any length). Nearer than
+// `on_feature` [m] the direction between the two is lost, and `outward` stands for it.
 struct FeatureContact {
   Vec3 n;    // unit
   double h;  // [m]
 };
-FeatureContact contactWithPoint(const Vec3& C, const Vec3& p, const Vec3& outward, bool is_border);
+FeatureContact contactWithPoint(const Vec3& C, const Vec3& p, const Vec3& outward, bool is_border, double on_feature);
 
 }  // namespace pincer::contact

@@ -55,20 +55,38 @@ Vec2 divideByEigenvalueSizes(double p, double q, double s, const Vec2& T) {
   return {f2 * T.x() + k * ((p - lambda2) * T.x() + q * T.y()), f2 * T.y() + k * (q * T.x() + (s - lambda2) * T.y())};
 }
 
-Vec2 saddleFreeStep(const PatchPoint& x, const Residual& r) {
-  const Vec3 e1 = (x.Su - r.n * r.n.dot(x.Su)).normalized(), e2 = r.n.cross(e1);
-  const PlaneMap moves{x.Su.dot(e1), x.Sv.dot(e1), x.Su.dot(e2), x.Sv.dot(e2)};
-  if (!(moves.det() > 0.01 * moves.a * moves.d)) return stepAlongResidual(x, r);  // folded
+// J in the plane across n.
+struct ShellJacobian {
+  Vec3 e1, e2;     // unit axes of the plane
+  PlaneMap moves;  // dS
+  bool is_folded;
+  double p, q, s;  // symmetric part [p q; q s]
+};
+
+ShellJacobian shellJacobian(const PatchPoint& x, const Residual& r) {
+  ShellJacobian J;
+  J.e1 = (x.Su - r.n * r.n.dot(x.Su)).normalized();
+  J.e2 = r.n.cross(J.e1);
+  J.moves = {x.Su.dot(J.e1), x.Sv.dot(J.e1), x.Su.dot(J.e2), x.Sv.dot(J.e2)};
+  J.is_folded = !(J.moves.det() > 0.01 * J.moves.a * J.moves.d);
   const Vec3 A = x.Su + r.hN * x.Nu, B = x.Sv + r.hN * x.Nv;
-  // J = image * moves^-1, row by row
-  const double image[2][2] = {{A.dot(e1), B.dot(e1)}, {A.dot(e2), B.dot(e2)}};
-  double J[2][2];
+  // image * moves^-1, row by row
+  const double image[2][2] = {{A.dot(J.e1), B.dot(J.e1)}, {A.dot(J.e2), B.dot(J.e2)}};
+  double full[2][2];
   for (int i = 0; i < 2; ++i) {
-    J[i][0] = (image[i][0] * moves.d - image[i][1] * moves.c) / moves.det();
-    J[i][1] = (image[i][1] * moves.a - image[i][0] * moves.b) / moves.det();
+    full[i][0] = (image[i][0] * J.moves.d - image[i][1] * J.moves.c) / J.moves.det();
+    full[i][1] = (image[i][1] * J.moves.a - image[i][0] * J.moves.b) / J.moves.det();
   }
-  const Vec2 dS = divideByEigenvalueSizes(J[0][0], 0.5 * (J[0][1] + J[1][0]), J[1][1], {r.T.dot(e1), r.T.dot(e2)});
-  return moves.solve(dS);
+  J.p = full[0][0];
+  J.q = 0.5 * (full[0][1] + full[1][0]);
+  J.s = full[1][1];
+  return J;
+}
+
+Vec2 saddleFreeStep(const PatchPoint& x, const Residual& r) {
+  const ShellJacobian J = shellJacobian(x, r);
+  if (J.is_folded) return stepAlongResidual(x, r);
+  return J.moves.solve(divideByEigenvalueSizes(J.p, J.q, J.s, {r.T.dot(J.e1), r.T.dot(J.e2)}));
 }
 
 // Newton's step; `usable` tells whether it may be taken.
@@ -85,6 +103,11 @@ Vec2 newtonStep(const PatchPoint& x, const Residual& r, bool& usable) {
 }
 
 }  // namespace
+
+bool isStable(const PatchPoint& x, const Vec3& C) {
+  const ShellJacobian J = shellJacobian(x, residualOf(x, C));
+  return !J.is_folded && J.p > 0 && J.p * J.s > J.q * J.q;
+}
 
 FaceStep faceStep(const PatchPoint& x, const Vec3& C, StepKind kind) {
   const Residual r = residualOf(x, C);

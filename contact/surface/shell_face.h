@@ -27,4 +27,7 @@ struct FaceStep {
 
 FaceStep faceStep(const PatchPoint& x, const Vec3& C, StepKind kind);
 
+// Whether J is positive: a solution here is a place that the finger stays at, none that it slides away from to either side.
+bool isStable(const PatchPoint& x, const Vec3& C);
+
 }  // namespace pincer::contact

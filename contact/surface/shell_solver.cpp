@@ -7,15 +7,16 @@ namespace pincer::contact {
 
 namespace {
 
-constexpr double kDone = 1e-9;        // [m] residual that needs no further step
-constexpr double kNear = 1e-6;        // [m] residual after which one more step is the last: Newton squares it
-constexpr int kMaxSteps = 20;         // within faces
-constexpr int kMaxCrossings = 200;    // of edges, at most one per step of a walk over fine triangles
-constexpr int kMaxFeatureVisits = 6;  // of edges and of vertices, each
+constexpr double kDone = 1e-8;         // of the surface's length: a residual that needs no further step
+constexpr double kNear = 4e-5;         // of it: a residual from which Newton's next step, squaring it, need not be looked at again
+constexpr int kMaxSteps = 20;          // within faces
+constexpr int kMaxCrossings = 200;     // of edges, at most one per step of a walk over fine triangles
+constexpr int kMaxFeatureVisits = 12;  // of edges and of vertices, each
 
 class ShellWalk {
  public:
-  ShellWalk(const SurfaceNet& net, PatchCache& cache, const Vec3& C, const Foot& start) : net_(net), cache_(cache), C_(C), foot_(start) {
+  ShellWalk(const SurfaceNet& net, PatchCache& cache, const Vec3& C, const Foot& start)
+      : net_(net), cache_(cache), C_(C), done_(kDone * net.length()), nearly_(kNear * net.length()), foot_(start) {
     result_.foot = start;
   }
 
@@ -34,14 +35,15 @@ class ShellWalk {
 
   const SurfaceCell& cell() const { return net_.cell(foot_.triangle, cache_); }
   void stepOnFace();
+  bool polish(const PatchPoint& x, const std::array<double, 3>& db);
   bool halveLastMove(double residual);
   void move(const std::array<double, 3>& db);
   void meetEdge(int edge, double s);
   void cross(int edge, double s);
   void settleOnEdge(int edge, double s);
-  void settleOnVertex(std::int32_t vertex);
-  bool leaveVertexIntoFace(std::int32_t vertex);
-  bool leaveVertexAlongEdge(std::int32_t vertex);
+  void settleOnVertex(const CellCorner& at);
+  bool leaveVertexIntoFace(const CellCorner& at);
+  bool leaveVertexAlongEdge(const CellCorner& at);
   void putOnEdge(int edge, double s);
   void enterFace();
   void accept(const Vec3& n, double h);
@@ -50,12 +52,13 @@ class ShellWalk {
   const SurfaceNet& net_;
   PatchCache& cache_;
   const Vec3 C_;
+  const double done_, nearly_;  // [m]
   Foot foot_;
   State state_ = State::onFace;
   ShellContact result_;
 
   StepKind next_kind_ = StepKind::newton;
-  bool near_ = false;  // the last residual was below kNear
+  bool near_ = false;  // the last residual was below nearly_
   Side entered_by_;    // the edge through which the walk came into this face, until a step stays inside
   int steps_ = 0, crossings_ = 0, edge_visits_ = 0, vertex_visits_ = 0;
 
@@ -65,10 +68,12 @@ class ShellWalk {
 };
 
 void ShellWalk::stepOnFace() {
-  const FaceStep step = faceStep(evaluate(cell().patch, foot_.b[1], foot_.b[2]), C_, next_kind_);
-  if (step.residual < kDone || (near_ && step.residual < kNear)) return accept(step.n, step.h);
+  const PatchPoint x = evaluate(cell().patch, foot_.b[1], foot_.b[2]);
+  const FaceStep step = faceStep(x, C_, next_kind_);
+  if (step.residual < done_ || (near_ && step.residual < nearly_)) return accept(step.n, step.h);
+  if (step.residual < nearly_ && step.is_newton && polish(x, step.db)) return;
   if (steps_ >= kMaxSteps || crossings_ >= kMaxCrossings) return giveUp();
-  near_ = step.residual < kNear;
+  near_ = step.residual < nearly_;
   if (!near_ && halveLastMove(step.residual)) return;
   last_ = foot_;
   last_db_ = step.db;
@@ -76,6 +81,17 @@ void ShellWalk::stepOnFace() {
   last_scale_ = step.is_newton ? 1 : 0;
   next_kind_ = StepKind::newton;
   move(step.db);
+}
+
+// The last step, if it stays within the face: its end is so near that the patch is as good as linear.
+bool ShellWalk::polish(const PatchPoint& x, const std::array<double, 3>& db) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (foot_.b[i] + db[i] < 0) return false;
+  }
+  for (std::size_t i = 0; i < 3; ++i) foot_.b[i] += db[i];
+  const Vec3 n = (x.N + db[1] * x.Nu + db[2] * x.Nv).normalized();
+  accept(n, (C_ - x.S - db[1] * x.Su - db[2] * x.Sv).dot(n));
+  return true;
 }
 
 bool ShellWalk::halveLastMove(double residual) {
@@ -116,7 +132,7 @@ void ShellWalk::meetEdge(int edge, double s) {
   if (turned_back || cell().neighbours[static_cast<std::size_t>(edge)].triangle < 0) return settleOnEdge(edge, s);
   const bool circling =
       (s == 0 || s == 1) && entered_by_.triangle == foot_.triangle;  // through a vertex, around which steps may lead forever
-  if (circling) return settleOnVertex(cell().vertices[static_cast<std::size_t>(s == 0 ? edge : (edge + 1) % 3)]);
+  if (circling) return settleOnVertex({foot_.triangle, s == 0 ? edge : (edge + 1) % 3});
   cross(edge, s);
 }
 
@@ -147,69 +163,64 @@ void ShellWalk::settleOnEdge(int edge, double s) {
   const SharpEdge curve = sharpEdge(net_, cache_, foot_.triangle, edge);
   const EdgeFoot foot = footOnEdge(curve, C_, s);
   putOnEdge(edge, foot.s);
-  if (foot.s == 0 || foot.s == 1) return settleOnVertex(cell().vertices[static_cast<std::size_t>(foot.s == 0 ? edge : (edge + 1) % 3)]);
+  if (foot.s == 0 || foot.s == 1) return settleOnVertex({foot_.triangle, foot.s == 0 ? edge : (edge + 1) % 3});
   if (foot.leads_left) return enterFace();
   if (foot.leads_right) {
     cross(edge, foot.s);
     return enterFace();
   }
-  const FeatureContact contact = contactWithPoint(C_, foot.x.E, foot.x.left.normalized() + foot.x.right.normalized(), curve.is_border);
+  const FeatureContact contact =
+      contactWithPoint(C_, foot.x.E, foot.x.left.normalized() + foot.x.right.normalized(), curve.is_border, done_);
   accept(contact.n, contact.h);
 }
 
-void ShellWalk::settleOnVertex(std::int32_t vertex) {
+void ShellWalk::settleOnVertex(const CellCorner& at) {
   if (++vertex_visits_ > kMaxFeatureVisits) return giveUp();
-  if (leaveVertexIntoFace(vertex)) return;
-  if (leaveVertexAlongEdge(vertex)) return;
-  Vec3 outward = Vec3::Zero(), p = Vec3::Zero();
-  bool has_border = false;
-  for (const auto& [triangle, corner] : net_.cornersAt(vertex)) {
-    const Patch& patch = net_.cell(triangle, cache_).patch;
-    outward += edgeNormals(patch, corner)[0];
-    p = edgeCurve(patch, corner)[0];
-    for (const int i : {corner, (corner + 2) % 3})
-      has_border |= net_.cell(triangle, cache_).neighbours[static_cast<std::size_t>(i)].triangle < 0;
-  }
-  const FeatureContact contact = contactWithPoint(C_, p, outward, has_border);
+  if (leaveVertexIntoFace(at)) return;
+  if (leaveVertexAlongEdge(at)) return;
+  Vec3 outward = Vec3::Zero();
+  const bool has_border = net_.visitCorners(at, [&](const CellCorner& c) { outward += net_.normal(c.triangle, c.corner); });
+  const Vec3& p = net_.vertex(at.triangle, at.corner);
+  const FeatureContact contact = contactWithPoint(C_, p, outward, has_border, done_);
   accept(contact.n, contact.h);
 }
 
 // Into the face whose residual leads inside, the largest if there are several.
-bool ShellWalk::leaveVertexIntoFace(std::int32_t vertex) {
-  double largest = kDone;
+bool ShellWalk::leaveVertexIntoFace(const CellCorner& at) {
+  double largest = done_;
   Foot best;
-  for (const auto& [triangle, corner] : net_.cornersAt(vertex)) {
-    Foot foot{triangle, {0, 0, 0}};
-    const auto c = static_cast<std::size_t>(corner);
+  net_.visitCorners(at, [&](const CellCorner& face) {
+    Foot foot{face.triangle, {0, 0, 0}};
+    const auto c = static_cast<std::size_t>(face.corner);
     foot.b[c] = 1;
-    const FaceStep step = faceStep(evaluate(net_.cell(triangle, cache_).patch, foot.b[1], foot.b[2]), C_, StepKind::alongResidual);
-    if (step.db[(c + 1) % 3] < 0 || step.db[(c + 2) % 3] < 0 || step.residual <= largest) continue;
+    const FaceStep step = faceStep(evaluate(net_.cell(face.triangle, cache_).patch, foot.b[1], foot.b[2]), C_, StepKind::alongResidual);
+    if (step.db[(c + 1) % 3] < 0 || step.db[(c + 2) % 3] < 0 || step.residual <= largest) return;
     largest = step.residual;
     best = foot;
-  }
-  if (largest == kDone) return false;
+  });
+  if (largest == done_) return false;
   foot_ = best;
   enterFace();
   return true;
 }
 
 // Along the sharp edge that leads away from the vertex most directly.
-bool ShellWalk::leaveVertexAlongEdge(std::int32_t vertex) {
-  double largest = kDone;
+bool ShellWalk::leaveVertexAlongEdge(const CellCorner& at) {
+  double largest = done_;
   Side best;
   double best_end = 0;
-  for (const auto& [triangle, corner] : net_.cornersAt(vertex)) {
-    for (const int edge : {corner, (corner + 2) % 3}) {
-      if (!net_.cell(triangle, cache_).sharp[static_cast<std::size_t>(edge)]) continue;
-      const double end = edge == corner ? 0 : 1;
-      const SharpEdgePoint x = evaluate(sharpEdge(net_, cache_, triangle, edge), end);
+  net_.visitCorners(at, [&](const CellCorner& face) {
+    for (const int edge : {face.corner, (face.corner + 2) % 3}) {
+      if (!net_.isSharp(face.triangle, edge)) continue;
+      const double end = edge == face.corner ? 0 : 1;
+      const SharpEdgePoint x = evaluate(sharpEdge(net_, cache_, face.triangle, edge), end);
       const double away = (end == 0 ? 1 : -1) * (C_ - x.E).dot(x.D.normalized());
       if (away <= largest) continue;
       largest = away;
-      best = {triangle, edge};
+      best = {face.triangle, edge};
       best_end = end;
     }
-  }
+  });
   if (best.triangle < 0) return false;
   foot_.triangle = best.triangle;
   settleOnEdge(best.edge, best_end);

@@ -2,11 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <limits>
-
 #include "contact/mesh/mesh_report.h"
+#include "contact/surface/contact_slots.h"
 #include "contact/surface/convex_hull.h"
-#include "contact/surface/shell_solver.h"
 #include "contact/surface/surface_net.h"
 #include "contact/surface/surface_search.h"
 #include "contact/surface/surface_variant.h"
@@ -14,8 +12,6 @@
 namespace pincer::contact {
 
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Vertices of the hull; those that no triangle uses have no part in it.
 std::vector<Vec3> hullOf(const TriangleMesh& mesh) {
@@ -29,80 +25,37 @@ std::vector<Vec3> hullOf(const TriangleMesh& mesh) {
   }
   std::vector<Vec3> hull;
   for (const std::int32_t i : hullCorners(points)) hull.push_back(points[static_cast<std::size_t>(i)]);
+  hull.shrink_to_fit();
   return hull;
 }
 
-double boundingRadiusOf(const SurfaceNet& net) {
-  double radius2 = 0;
-  for (std::int32_t t = 0; t < net.size(); ++t) {
-    for (const Vec3& p : controlPoints(net.build(t).patch)) radius2 = std::max(radius2, p.squaredNorm());
-  }
-  return std::sqrt(radius2);
-}
+// Shares of the time that building takes, as measured on a million triangles.
+constexpr double kManifoldKnown = 0.1, kNetBuilt = 0.5, kSearchBuilt = 0.9;
 
-Foot footOf(const SurfaceSlot& slot) {
-  const double w = std::max(0.0, 1 - slot.u - slot.v);
-  return {slot.triangle, {w, slot.u, slot.v}};
-}
+using Progress = std::function<void(double)>;
 
-SurfaceContacts report(const ShellContact& contact, const Vec3& C, double r, std::uint32_t status, SurfaceTracker& tracker) {
-  tracker.slots[0] = {contact.foot.triangle, contact.foot.b[1], contact.foot.b[2]};
-  tracker.p_BC = C;
-  tracker.has_centre = true;
-  tracker.status = status;
-  SurfaceContacts found;
-  found.points[0] = {C - contact.h * contact.n, contact.n, contact.h - r, 0};
-  found.count = 1;
-  return found;
+Progress part(const Progress& progress, double from, double to) {
+  if (!progress) return nullptr;
+  return [&progress, from, to](double share) { progress(from + (to - from) * share); };
 }
 
 }  // namespace
 
 struct SmoothMesh::Data {
-  Data(TriangleMesh m, const SurfaceOptions& options)
-      : net(std::move(m), options.crease_angle, options.use_file_normals),
+  Data(TriangleMesh mesh, const SurfaceOptions& options) : Data(std::move(mesh), options, NetInspector()) {}
+  Data(TriangleMesh mesh, const SurfaceOptions& options, NetInspector&& inspector)
+      : net(std::move(mesh), options.crease_angle, options.use_file_normals),
+        search(net, inspector, part(options.progress, kNetBuilt, kSearchBuilt)),
         variant(options.variant),
-        search(net),
         hull(hullOf(net.mesh())),
-        bounding_radius(boundingRadiusOf(net)),
-        folded(findFoldedTriangles(net)),
-        concave_radius(findTightestConcaveRadius(net)) {}
+        findings(inspector.findings()) {}
 
   SurfaceNet net;
-  SurfaceVariant variant;
   SurfaceSearch search;
+  SurfaceVariant variant;
   std::vector<Vec3> hull;
-  double bounding_radius;
-  std::vector<std::int32_t> folded;
-  double concave_radius;
-
-  bool isContact(const ShellContact& followed, PatchCache& cache, const Vec3& C, double r, const Foot& start) const;
-  ShellContact nearestWithin(PatchCache& cache, const Vec3& C, double r, double bound) const;
+  NetFindings findings;
 };
-
-// Whether the followed solution is one that the finger touches. A centre that begins well above the surface and ends below it has been led
-// to the far side of the body, where the equation has solutions too.
-bool SmoothMesh::Data::isContact(const ShellContact& followed, PatchCache& cache, const Vec3& C, double r, const Foot& start) const {
-  if (!followed.converged || followed.h >= r) return false;
-  return followed.h >= 0 || tangentContact(net, cache, C, start).h < 0.25 * r;
-}
-
-// The nearest solution; not converged if there is none nearer than `bound`. In free space a seed that leads to no solution as near (shading
-// normals may point past the nearest place by a few degrees) stands for itself: far from contact the distance counts, not the direction.
-ShellContact SmoothMesh::Data::nearestWithin(PatchCache& cache, const Vec3& C, double r, double bound) const {
-  constexpr double kStrayed = 20e-6;  // [m]
-  const SurfaceSeed seed = search.nearest(net, cache, C, bound);
-  if (!seed.found) return {};
-  ShellContact contact = followContact(variant, net, cache, C, seed.foot);
-  const bool strayed = !contact.converged || std::abs(contact.h) > seed.distance + kStrayed;
-  if (strayed && seed.distance > r) {
-    const PatchPoint x = evaluate(net.cell(seed.foot.triangle, cache).patch, seed.foot.b[1], seed.foot.b[2]);
-    const double sign = (C - x.S).dot(x.N) < 0 ? -1 : 1;
-    return {seed.foot, sign / seed.distance * (C - x.S), sign * seed.distance, true, {}};
-  }
-  contact.converged = contact.converged && std::abs(contact.h) < bound;
-  return contact;
-}
 
 SmoothMesh::SmoothMesh(std::unique_ptr<const Data> data) : data_(std::move(data)) {}
 SmoothMesh::~SmoothMesh() = default;
@@ -114,52 +67,42 @@ std::shared_ptr<const SmoothMesh> SmoothMesh::build(TriangleMesh mesh, const Sur
   }
   requireVariant(options.variant, mesh.source);
   requireManifold(mesh);
-  return std::shared_ptr<const SmoothMesh>(new SmoothMesh(std::make_unique<const Data>(std::move(mesh), options)));
+  if (options.progress) options.progress(kManifoldKnown);
+  std::shared_ptr<const SmoothMesh> built(new SmoothMesh(std::make_unique<const Data>(std::move(mesh), options)));
+  if (options.progress) options.progress(1);
+  return built;
 }
 
 SurfaceContacts SmoothMesh::querySphere(const Vec3& p_BC, double r, double margin, SurfaceTracker& tracker, PatchCache& cache) const {
-  static_cast<void>(margin);
-  const Data& d = *data_;
-  const SurfaceSlot& slot = tracker.slots[0];
-  const bool tracked = slot.triangle >= 0 && slot.triangle < d.net.size();
-  const Foot start = tracked ? footOf(slot) : Foot{};
-  ShellContact followed;
-  if (tracked) followed = followContact(d.variant, d.net, cache, p_BC, start);
-  if (d.isContact(followed, cache, p_BC, r, start)) return report(followed, p_BC, r, kQueryOk, tracker);
-
-  const ShellContact nearest = d.nearestWithin(cache, p_BC, r, followed.converged ? std::abs(followed.h) : kInfinity);
-  if (followed.converged) return report(nearest.converged ? nearest : followed, p_BC, r, kQueryOk, tracker);
-
-  // A contact that was lost may come back on its own side only: the far side of a thin wall is as near as this one.
-  const ShellContact held = tangentContact(d.net, cache, p_BC, tracked ? start : nearest.foot);
-  const bool same_side = !tracked || held.h >= r || nearest.n.dot(held.n) > 0;
-  if (nearest.converged && same_side) return report(nearest, p_BC, r, tracked ? kQueryReseeded : kQueryOk, tracker);
-  return report(held, p_BC, r, kQueryHeldDirection, tracker);
+  return touchSurface({data_->net, data_->search, data_->variant}, p_BC, r, margin, tracker, cache);
 }
 
 const std::vector<Vec3>& SmoothMesh::hullVertices() const { return data_->hull; }
-double SmoothMesh::boundingRadius() const { return data_->bounding_radius; }
+double SmoothMesh::boundingRadius() const { return data_->findings.bounding_radius; }
+std::size_t SmoothMesh::memoryBytes() const {
+  return data_->net.memoryBytes() + data_->search.memoryBytes() + data_->hull.capacity() * sizeof(Vec3);
+}
 const TriangleMesh& SmoothMesh::triangles() const { return data_->net.mesh(); }
-const std::vector<std::int32_t>& SmoothMesh::foldedTriangles() const { return data_->folded; }
-double SmoothMesh::tightestConcaveRadius() const { return data_->concave_radius; }
+const std::vector<std::int32_t>& SmoothMesh::foldedTriangles() const { return data_->findings.folded; }
+double SmoothMesh::tightestConcaveRadius() const { return data_->findings.concave_radius; }
 
 std::vector<std::string> SmoothMesh::findings(double r) const {
   std::vector<std::string> findings;
-  if (!data_->folded.empty()) {
+  if (!data_->findings.folded.empty()) {
     const Vec3 p =
-        1000 *
-        data_->net.mesh().vertices[static_cast<std::size_t>(data_->net.mesh().triangles[static_cast<std::size_t>(data_->folded[0])][0])];
+        1000 * data_->net.mesh()
+                   .vertices[static_cast<std::size_t>(data_->net.mesh().triangles[static_cast<std::size_t>(data_->findings.folded[0])][0])];
     findings.push_back(fmt::format(
         "the smooth surface folds over {} triangle(s), the first near ({:.4g}, {:.4g}, {:.4g}) mm: neighbouring normals differ too much. "
         "Refine the mesh there, or lower the crease angle.",
-        data_->folded.size(), p.x(), p.y(), p.z()));
+        data_->findings.folded.size(), p.x(), p.y(), p.z()));
   }
   constexpr double kTightest = 0.8;  // r kappa beyond which one contact jumps between the two sides of a groove
-  if (r > kTightest * data_->concave_radius) {
+  if (r > kTightest * data_->findings.concave_radius) {
     findings.push_back(
         fmt::format("a finger of {:.3g} mm radius doesn't fit into the tightest hollow, of {:.3g} mm radius: contact may jump across it. "
                     "Fill or widen such hollows.",
-                    1000 * r, 1000 * data_->concave_radius));
+                    1000 * r, 1000 * data_->findings.concave_radius));
   }
   return findings;
 }

@@ -12,6 +12,7 @@
 // on its own ends only; Bernstein normals with the factor 2 on mixed terms; Newton's method in place of the published iteration.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -27,26 +28,28 @@ struct SurfaceOptions {
   double crease_angle = 0.6981317007977318;  // [rad], 40 degrees; in (0, pi]: edges with a sharper angle between facets stay sharp
   bool use_file_normals = true;              // where the file has normals they decide what is sharp; false: the crease angle decides
   SurfaceVariant variant = SurfaceVariant::smooth;
+  std::function<void(double)> progress = {};  // told the share of the work that is done, 0 to 1, now and then
 };
 
 class SmoothMesh {
  public:
-  // Builds patches, search tree and convex hull. The mesh must be manifold (requireManifold, mesh_report.h); an open border is felt as a
+  // Builds neighbours, normals, search tree and convex hull; no patch. The mesh must be manifold (requireManifold, mesh_report.h); an open border is felt as a
   // sharp edge. Throws InputError.
   static std::shared_ptr<const SmoothMesh> build(TriangleMesh mesh, const SurfaceOptions& options = {});
   ~SmoothMesh();
   SmoothMesh(const SmoothMesh&) = delete;
   SmoothMesh& operator=(const SmoothMesh&) = delete;
 
-  // Contacts of a sphere of radius `r` > 0 [m] centred at the finite `p_BC`; the main one first, whatever its gap. While the finger
-  // overlaps the surface the contact that `tracker` follows is kept (the far side of a thin wall never takes over); in free space the
-  // closest one wins. The result fulfils the equation above to 1e-9 m. Allocates nothing, throws nothing; several threads may query one
-  // mesh, each with its own cache.
+  // Contacts of a sphere of radius `r` > 0 [m] centred at the finite `p_BC`: the main one, whatever its gap, and up to two further ones
+  // with phi < `margin` [m], >= 0. While the finger overlaps the surface the contacts that `tracker` follows are kept (the far side of a
+  // thin wall never takes over); in free space the closest one wins (contact_slots.h). The result fulfils the equation above to 1e-8 of
+  // the mesh's size. Allocates nothing, throws nothing; several threads may query one mesh, each with its own cache.
   SurfaceContacts querySphere(const Vec3& p_BC, double r, double margin, SurfaceTracker& tracker, PatchCache& cache) const;
 
   const std::vector<Vec3>& hullVertices() const;  // corners of the mesh's convex hull, each a vertex of the mesh [m]
   double boundingRadius() const;                  // of a sphere about B's origin that holds the surface [m]
-  const TriangleMesh& triangles() const;
+  const TriangleMesh& triangles() const;          // without the file's normals
+  std::size_t memoryBytes() const;                // of all that is kept of it
 
   const std::vector<std::int32_t>& foldedTriangles() const;  // whose patch folds over: contact there may be held (kQueryHeldDirection)
   double tightestConcaveRadius() const;                      // of the surface [m]; infinity where it is convex

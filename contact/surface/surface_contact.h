@@ -50,15 +50,16 @@ struct SurfaceSlot {
 // world's state, copied with snapshots. A default one means "search the whole mesh".
 struct SurfaceTracker {
   std::array<SurfaceSlot, kMaxSurfaceContacts> slots;
-  Vec3 p_BC = Vec3::Zero();  // where the fingertip's centre was [m]
-  bool has_centre = false;   // whether there was a last query
+  Vec3 p_BC = Vec3::Zero();  // where the fingertip's centre was, or would have been had it not been pressed under the surface [m]
+  bool has_centre = false;   // whether it has been outside
   std::uint32_t status = 0;  // bits of QueryStatus of the last query
 };
 
 enum QueryStatus : std::uint32_t {
   kQueryOk = 0,
-  kQueryReseeded = 1u << 0,       // the warm start failed; the answer came from the tree (nothing was lost)
-  kQueryHeldDirection = 1u << 1,  // no solution found: the last contact was kept. Remedy: refine or smooth the mesh there
+  kQueryReseeded = 1u << 0,         // the warm start failed; the answer came from the tree (nothing was lost)
+  kQueryHeldDirection = 1u << 1,    // no solution found: the last contact was kept. Remedy: refine or smooth the mesh there
+  kQueryContactsDropped = 1u << 2,  // more than three places are touched: the shallowest of the new ones were dropped. Fill such hollows
 };
 
 }  // namespace pincer::contact

@@ -1,7 +1,7 @@
 #include "contact/surface/surface_net.h"
 
+#include <algorithm>
 #include <bit>
-#include <limits>
 
 #include "contact/surface/edge_cubic.h"
 
@@ -9,33 +9,28 @@ namespace pincer::contact {
 
 namespace {
 
-Vec3& firstHandle(Patch& p, std::size_t edge) { return edge == 0 ? p.b210 : edge == 1 ? p.b021 : p.b102; }
-Vec3& secondHandle(Patch& p, std::size_t edge) { return edge == 0 ? p.b120 : edge == 1 ? p.b012 : p.b201; }
-
-std::size_t next(std::size_t i) { return (i + 1) % 3; }
+Vec3& firstHandle(Patch& p, int edge) { return edge == 0 ? p.b210 : edge == 1 ? p.b021 : p.b102; }
+Vec3& secondHandle(Patch& p, int edge) { return edge == 0 ? p.b120 : edge == 1 ? p.b012 : p.b201; }
 
 // The ends of edge i of triangle t, as seen along it.
-std::array<EdgeEnd, 2> edgeEnds(const TriangleMesh& mesh, const CornerNormals& corners, std::size_t t, std::size_t i,
-                                const Neighbour& other) {
-  const auto position = [&](std::size_t corner) { return mesh.vertices[static_cast<std::size_t>(mesh.triangles[t][corner])]; };
-  const Vec3 &left0 = corners.normals[t][i], &left1 = corners.normals[t][next(i)];
-  if (other.triangle < 0) return {EdgeEnd{position(i), left0, left0}, EdgeEnd{position(next(i)), left1, left1}};
-  const auto& opposite = corners.normals[static_cast<std::size_t>(other.triangle)];
-  const auto j = static_cast<std::size_t>(other.edge);
-  return {EdgeEnd{position(i), left0, opposite[next(j)]}, EdgeEnd{position(next(i)), left1, opposite[j]}};
+std::array<EdgeEnd, 2> edgeEnds(const SurfaceNet& net, std::int32_t t, int i) {
+  const int next = (i + 1) % 3;
+  const Vec3 &p0 = net.vertex(t, i), &p1 = net.vertex(t, next), &left0 = net.normal(t, i), &left1 = net.normal(t, next);
+  const Neighbour other = net.neighbour(t, i);
+  if (other.triangle < 0) return {EdgeEnd{p0, left0, left0}, EdgeEnd{p1, left1, left1}};
+  const Vec3 &right0 = net.normal(other.triangle, (other.edge + 1) % 3), &right1 = net.normal(other.triangle, other.edge);
+  return {EdgeEnd{p0, left0, right0}, EdgeEnd{p1, left1, right1}};
 }
 
-void setCorners(const TriangleMesh& mesh, const CornerNormals& corners, std::size_t t, Patch& patch) {
-  const auto& v = mesh.triangles[t];
-  patch.b300 = mesh.vertices[static_cast<std::size_t>(v[0])];
-  patch.b030 = mesh.vertices[static_cast<std::size_t>(v[1])];
-  patch.b003 = mesh.vertices[static_cast<std::size_t>(v[2])];
-  patch.n200 = corners.normals[t][0];
-  patch.n020 = corners.normals[t][1];
-  patch.n002 = corners.normals[t][2];
-  patch.n110 = middleNormal(patch.b300, patch.b030, patch.n200, patch.n020);
-  patch.n011 = middleNormal(patch.b030, patch.b003, patch.n020, patch.n002);
-  patch.n101 = middleNormal(patch.b003, patch.b300, patch.n002, patch.n200);
+// Each edge is computed as its first triangle sees it: the two sides share it to the last bit.
+void setEdge(const SurfaceNet& net, std::int32_t triangle, int i, SurfaceCell& cell) {
+  const Neighbour other = cell.neighbours[static_cast<std::size_t>(i)];
+  const bool is_first = other.triangle < 0 || triangle < other.triangle;
+  const auto [from, to] = is_first ? edgeEnds(net, triangle, i) : edgeEnds(net, other.triangle, other.edge);
+  const auto [first, second] = edgeHandles(from, to);
+  firstHandle(cell.patch, i) = is_first ? first : second;
+  secondHandle(cell.patch, i) = is_first ? second : first;
+  cell.sharp[static_cast<std::size_t>(i)] = net.isSharp(triangle, i);
 }
 
 // Vlachos et al.: the centre lies as far beyond the handles' mean as that lies beyond the flat triangle's, halved.
@@ -51,101 +46,135 @@ class Fingerprint {
   void add(const Vec3& v) {
     for (int k = 0; k < 3; ++k) add(std::bit_cast<std::uint64_t>(v[k]));
   }
+  void add(const std::array<std::int32_t, 3>& numbers) {
+    for (const std::int32_t i : numbers) add(static_cast<std::uint64_t>(i));
+  }
   std::uint64_t value() const { return hash_ ^ hash_ >> 32; }
 
  private:
   std::uint64_t hash_ = 0xcbf29ce484222325ull;
 };
 
-std::uint64_t fingerprintOf(const TriangleMesh& mesh, const CornerNormals& corners) {
-  Fingerprint fingerprint;
-  for (const Vec3& v : mesh.vertices) fingerprint.add(v);
-  for (const auto& triangle : mesh.triangles) {
-    for (const std::int32_t v : triangle) fingerprint.add(static_cast<std::uint64_t>(v));
+std::vector<std::array<std::int32_t, 3>> packed(const Neighbours& neighbours) {
+  std::vector<std::array<std::int32_t, 3>> codes(neighbours.size());
+  for (std::size_t t = 0; t < codes.size(); ++t) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto [triangle, edge] = neighbours[t][i];
+      codes[t][i] = triangle < 0 ? -1 : 4 * triangle + edge;
+    }
   }
-  for (const auto& normals : corners.normals) {
-    for (const Vec3& n : normals) fingerprint.add(n);
+  return codes;
+}
+
+double halfDiagonal(const std::vector<Vec3>& points) {
+  Vec3 low = points.front(), high = low;
+  for (const Vec3& p : points) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
   }
-  return fingerprint.value();
+  return 0.5 * (high - low).norm();
+}
+
+// Numbers the corner normals so that equal ones of a vertex or of a triangle have one number.
+class NormalNumbers {
+ public:
+  NormalNumbers(const TriangleMesh& mesh, const CornerNormals& corners) : latest_(mesh.vertices.size(), -1) {
+    numbers.resize(mesh.triangles.size());
+    for (std::size_t t = 0; t < numbers.size(); ++t) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        std::int32_t& latest = latest_[static_cast<std::size_t>(mesh.triangles[t][i])];
+        const Vec3& n = corners.normals[t][i];
+        std::int32_t number = findAtVertex(latest, n);
+        if (number < 0) {
+          for (std::size_t j = 0; j < i; ++j) number = is(numbers[t][j], n) ? numbers[t][j] : number;
+          if (number < 0) {
+            number = static_cast<std::int32_t>(distinct.size());
+            distinct.push_back(n);
+          }
+          seen_.push_back({number, latest});
+          latest = static_cast<std::int32_t>(seen_.size()) - 1;
+        }
+        numbers[t][i] = number;
+      }
+    }
+  }
+
+  std::vector<Vec3> distinct;
+  std::vector<std::array<std::int32_t, 3>> numbers;
+
+ private:
+  struct Seen {
+    std::int32_t number, before;  // in seen_, -1: none
+  };
+
+  bool is(std::int32_t number, const Vec3& n) const { return distinct[static_cast<std::size_t>(number)] == n; }
+  std::int32_t findAtVertex(std::int32_t latest, const Vec3& n) const {
+    for (std::int32_t i = latest; i >= 0; i = seen_[static_cast<std::size_t>(i)].before) {
+      if (is(seen_[static_cast<std::size_t>(i)].number, n)) return seen_[static_cast<std::size_t>(i)].number;
+    }
+    return -1;
+  }
+
+  std::vector<std::int32_t> latest_;  // per vertex, in seen_
+  std::vector<Seen> seen_;
+};
+
+template <class T>
+std::size_t bytesOf(const std::vector<T>& v) {
+  return v.capacity() * sizeof(T);
 }
 
 }  // namespace
 
 SurfaceNet::SurfaceNet(TriangleMesh mesh, double crease_angle, bool use_file_normals)
-    : mesh_(std::move(mesh)),
-      neighbours_(findNeighbours(mesh_)),
-      corner_normals_(findCornerNormals(mesh_, neighbours_, crease_angle, use_file_normals)),
-      fingerprint_(fingerprintOf(mesh_, corner_normals_)) {
-  first_corner_.assign(mesh_.vertices.size() + 1, 0);
-  for (const auto& triangle : mesh_.triangles) {
-    for (const std::int32_t v : triangle) ++first_corner_[static_cast<std::size_t>(v) + 1];
+    : mesh_(std::move(mesh)), length_(halfDiagonal(mesh_.vertices)) {
+  {
+    const Neighbours neighbours = findNeighbours(mesh_);
+    const CornerNormals corners = findCornerNormals(mesh_, neighbours, crease_angle, use_file_normals);
+    neighbours_ = packed(neighbours);
+    NormalNumbers numbers(mesh_, corners);
+    normals_ = std::move(numbers.distinct);
+    corner_normals_ = std::move(numbers.numbers);
   }
-  for (std::size_t v = 1; v < first_corner_.size(); ++v) first_corner_[v] += first_corner_[v - 1];
-  corners_.resize(3 * mesh_.triangles.size());
-  std::vector<std::size_t> end(first_corner_.begin(), first_corner_.end() - 1);
-  for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
-    for (std::int32_t i = 0; i < 3; ++i) {
-      const auto v = static_cast<std::size_t>(mesh_.triangles[t][static_cast<std::size_t>(i)]);
-      corners_[end[v]++] = {static_cast<std::int32_t>(t), i};
-    }
-  }
+  mesh_.normals = {};
+  mesh_.triangle_normals = {};
+  mesh_.vertices.shrink_to_fit();
+  mesh_.triangles.shrink_to_fit();
+  normals_.shrink_to_fit();
+  Fingerprint fingerprint;
+  for (const Vec3& v : mesh_.vertices) fingerprint.add(v);
+  for (const Vec3& n : normals_) fingerprint.add(n);
+  for (const auto& triangle : mesh_.triangles) fingerprint.add(triangle);
+  for (const auto& numbers : corner_normals_) fingerprint.add(numbers);
+  fingerprint_ = fingerprint.value();
 }
 
-// Each edge is computed as its first triangle sees it: the two sides share it to the last bit.
+bool SurfaceNet::isSharp(std::int32_t triangle, int edge) const {
+  const Neighbour other = neighbour(triangle, edge);
+  if (other.triangle < 0) return true;
+  return normal(triangle, edge) != normal(other.triangle, (other.edge + 1) % 3) ||
+         normal(triangle, (edge + 1) % 3) != normal(other.triangle, other.edge);
+}
+
 SurfaceCell SurfaceNet::build(std::int32_t triangle) const {
-  const auto t = static_cast<std::size_t>(triangle);
-  SurfaceCell cell{{}, neighbours_[t], mesh_.triangles[t], {}};
-  setCorners(mesh_, corner_normals_, t, cell.patch);
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Neighbour other = cell.neighbours[i];
-    const bool is_first = other.triangle < 0 || triangle < other.triangle;
-    const auto [from, to] = is_first ? edgeEnds(mesh_, corner_normals_, t, i, other)
-                                     : edgeEnds(mesh_, corner_normals_, static_cast<std::size_t>(other.triangle),
-                                                static_cast<std::size_t>(other.edge), {triangle, static_cast<std::int8_t>(i)});
-    const auto [first, second] = edgeHandles(from, to);
-    firstHandle(cell.patch, i) = is_first ? first : second;
-    secondHandle(cell.patch, i) = is_first ? second : first;
-    cell.sharp[i] = other.triangle < 0 || from.left != from.right || to.left != to.right;
-  }
-  setCentre(cell.patch);
+  SurfaceCell cell{{}, {neighbour(triangle, 0), neighbour(triangle, 1), neighbour(triangle, 2)}, mesh_.triangles[at(triangle)], {}};
+  Patch& p = cell.patch;
+  p.b300 = vertex(triangle, 0);
+  p.b030 = vertex(triangle, 1);
+  p.b003 = vertex(triangle, 2);
+  p.n200 = normal(triangle, 0);
+  p.n020 = normal(triangle, 1);
+  p.n002 = normal(triangle, 2);
+  p.n110 = middleNormal(p.b300, p.b030, p.n200, p.n020);
+  p.n011 = middleNormal(p.b030, p.b003, p.n020, p.n002);
+  p.n101 = middleNormal(p.b003, p.b300, p.n002, p.n200);
+  for (int i = 0; i < 3; ++i) setEdge(*this, triangle, i, cell);
+  setCentre(p);
   return cell;
 }
 
-std::span<const CellCorner> SurfaceNet::cornersAt(std::int32_t vertex) const {
-  const auto v = static_cast<std::size_t>(vertex);
-  return std::span(corners_).subspan(first_corner_[v], first_corner_[v + 1] - first_corner_[v]);
-}
-
-std::vector<std::int32_t> findFoldedTriangles(const SurfaceNet& net) {
-  constexpr int kGrid = 6;
-  const auto folds = [](const Patch& patch) {
-    for (int i = 0; i <= kGrid; ++i) {
-      for (int j = 0; i + j <= kGrid; ++j) {
-        const PatchPoint x = evaluate(patch, static_cast<double>(i) / kGrid, static_cast<double>(j) / kGrid);
-        if (!(x.Su.cross(x.Sv).dot(x.N) > 0)) return true;
-      }
-    }
-    return false;
-  };
-  std::vector<std::int32_t> folded;
-  for (std::int32_t t = 0; t < net.size(); ++t) {
-    if (folds(net.build(t).patch)) folded.push_back(t);
-  }
-  return folded;
-}
-
-double findTightestConcaveRadius(const SurfaceNet& net) {
-  double sharpest = 0;
-  for (std::int32_t t = 0; t < net.size(); ++t) {
-    const Patch patch = net.build(t).patch;
-    for (int i = 0; i < 3; ++i) {
-      const auto p = edgeCurve(patch, i);
-      const auto n = edgeNormals(patch, i);
-      const Vec3 d = p[3] - p[0];
-      sharpest = std::max(sharpest, -(n[2] - n[0]).dot(d) / d.squaredNorm());
-    }
-  }
-  return sharpest > 0 ? 1 / sharpest : std::numeric_limits<double>::infinity();
+std::size_t SurfaceNet::memoryBytes() const {
+  return bytesOf(mesh_.vertices) + bytesOf(mesh_.triangles) + bytesOf(neighbours_) + bytesOf(normals_) + bytesOf(corner_normals_);
 }
 
 }  // namespace pincer::contact

@@ -1,10 +1,10 @@
 // surface_net: the patches of a mesh and how they hang together.
 //
-// What is kept is the mesh, its neighbours and its corner normals; a patch is built from them when it is first touched.
+// What is kept is the mesh, its neighbours and its corner normals, about 60 bytes per triangle; a patch is built from them when it is
+// first touched.
 #pragma once
 #include <array>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "contact/mesh/connectivity.h"
@@ -21,11 +21,13 @@ struct CellCorner {
 
 class SurfaceNet {
  public:
-  // Requires a manifold mesh.
+  // Requires a manifold mesh. The file's normals are dropped from it once the corner normals are known.
   SurfaceNet(TriangleMesh mesh, double crease_angle, bool use_file_normals);
 
   int size() const { return static_cast<int>(mesh_.triangles.size()); }  // triangles
   const TriangleMesh& mesh() const { return mesh_; }
+  double length() const { return length_; }  // half the diagonal of the box around the vertices [m]: what small and large are measured by
+  std::size_t memoryBytes() const;
 
   // Valid until the next call with the same cache: copy what is to be kept.
   const SurfaceCell& cell(std::int32_t triangle, PatchCache& cache) const {
@@ -35,23 +37,64 @@ class SurfaceNet {
   }
   SurfaceCell build(std::int32_t triangle) const;
 
-  // The triangles around a vertex of the mesh, in increasing order.
-  std::span<const CellCorner> cornersAt(std::int32_t vertex) const;
+  const Vec3& vertex(std::int32_t triangle, int corner) const { return mesh_.vertices[at(mesh_.triangles[at(triangle)][at(corner)])]; }
+  const Vec3& normal(std::int32_t triangle, int corner) const { return normals_[at(corner_normals_[at(triangle)][at(corner)])]; }
+  Neighbour neighbour(std::int32_t triangle, int edge) const {
+    const std::int32_t code = neighbours_[at(triangle)][at(edge)];
+    return code < 0 ? Neighbour{} : Neighbour{code / 4, static_cast<std::int8_t>(code % 4)};
+  }
+  bool isSharp(std::int32_t triangle, int edge) const;
+
+  // Calls visit(CellCorner) on all triangles around the vertex at `start`, once each, from `start` on clockwise (at a border then on its
+  // other side). Returns whether the vertex is on a border.
+  template <class Visit>
+  bool visitCorners(const CellCorner& start, Visit&& visit) const;
 
  private:
+  static std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
+
   TriangleMesh mesh_;
-  Neighbours neighbours_;
-  CornerNormals corner_normals_;
-  std::uint64_t fingerprint_;
-  std::vector<CellCorner> corners_;        // grouped by vertex
-  std::vector<std::size_t> first_corner_;  // per vertex, and one behind the last
+  std::vector<std::array<std::int32_t, 3>> neighbours_;      // 4 triangle + edge, -1 at a border
+  std::vector<Vec3> normals_;                                // those that differ; a fan shares one
+  std::vector<std::array<std::int32_t, 3>> corner_normals_;  // places in normals_
+  std::uint64_t fingerprint_ = 0;
+  double length_ = 0;
 };
 
-// Triangles whose patch folds over: (Su x Sv) . N <= 0 somewhere on a grid of 28 points. Contact there may be held or jump.
-std::vector<std::int32_t> findFoldedTriangles(const SurfaceNet& net);
+template <class Visit>
+bool SurfaceNet::visitCorners(const CellCorner& start, Visit&& visit) const {
+  CellCorner at_corner = start;
+  do {
+    visit(at_corner);
+    const Neighbour other = neighbour(at_corner.triangle, (at_corner.corner + 2) % 3);
+    at_corner = {other.triangle, other.edge};
+  } while (at_corner.triangle >= 0 && at_corner.triangle != start.triangle);
+  if (at_corner.triangle >= 0) return false;
+  for (at_corner = start;;) {
+    const Neighbour other = neighbour(at_corner.triangle, at_corner.corner);
+    if (other.triangle < 0) return true;
+    at_corner = {other.triangle, (other.edge + 1) % 3};
+    visit(at_corner);
+  }
+}
 
-// Smallest radius of concave curvature along an edge [m], infinity for a convex surface: a finger of a larger radius doesn't fit there.
-//   kappa = (n1 - n0) . (p1 - p0) / |p1 - p0|^2,  concave where negative
-double findTightestConcaveRadius(const SurfaceNet& net);
+// What one look at every patch tells of a surface.
+struct NetFindings {
+  std::vector<std::int32_t>
+      folded;  // triangles with (Su x Sv) . N <= 0 somewhere on a grid of 28 points: contact there may be held or jump
+  // Smallest radius of concave curvature along an edge [m], infinity for a convex surface: a finger of a larger radius doesn't fit there.
+  //   kappa = (n1 - n0) . (p1 - p0) / |p1 - p0|^2,  concave where negative
+  double concave_radius;
+  double bounding_radius;  // of a sphere about B's origin that holds the surface [m]
+};
+class NetInspector {
+ public:
+  void see(std::int32_t triangle, const Patch& patch);
+  NetFindings findings() const;
+
+ private:
+  std::vector<std::int32_t> folded_;
+  double sharpest_ = 0, radius2_ = 0;
+};
 
 }  // namespace pincer::contact

@@ -2,99 +2,146 @@
 
 #include <limits>
 
+#include "contact/surface/edge_cubic.h"
+
 namespace pincer::contact {
 
 namespace {
 
 constexpr int kMaxVisits = 2000;
 
-struct FlatPoint {
-  std::array<double, 3> b;
-  double distance2;
-};
+float below(double x) { return std::nextafter(static_cast<float>(x), -std::numeric_limits<float>::infinity()); }
+float above(double x) { return std::nextafter(static_cast<float>(x), std::numeric_limits<float>::infinity()); }
 
-// Ericson's regions: three corners, three edges, the inside.
-FlatPoint closestOnTriangle(const std::array<Vec3, 3>& corners, const Vec3& p) {
-  const Vec3 &a = corners[0], &b = corners[1], &c = corners[2];
-  const auto at = [&](double wa, double wb, double wc) -> FlatPoint {
-    return {{wa, wb, wc}, (p - (wa * a + wb * b + wc * c)).squaredNorm()};
-  };
-  const Vec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
-  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
-  if (d1 <= 0 && d2 <= 0) return at(1, 0, 0);
-  const double d3 = ab.dot(bp), d4 = ac.dot(bp);
-  if (d3 >= 0 && d4 <= d3) return at(0, 1, 0);
-  const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return at(1 - d1 / (d1 - d3), d1 / (d1 - d3), 0);
-  const double d5 = ab.dot(cp), d6 = ac.dot(cp);
-  if (d6 >= 0 && d5 <= d6) return at(0, 0, 1);
-  const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return at(1 - d2 / (d2 - d6), 0, d2 / (d2 - d6));
-  const double va = d3 * d6 - d5 * d4;
-  const double w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return at(0, 1 - w, w);
-  const double sum = va + vb + vc;
-  return at(va / sum, vb / sum, vc / sum);
+// Where the segment from `a` to `b` meets the triangle, if it does. Source: T. Moeller, B. Trumbore, J. Graphics Tools 2(1), 1997.
+bool meets(const Vec3& a, const Vec3& b, const Vec3& p0, const Vec3& p1, const Vec3& p2) {
+  const Vec3 e1 = p1 - p0, e2 = p2 - p0, d = b - a, x = d.cross(e2), from = a - p0;
+  const double det = e1.dot(x);
+  if (det == 0) return false;
+  const double u = from.dot(x) / det, v = d.dot(from.cross(e1)) / det, s = e2.dot(from.cross(e1)) / det;
+  return u >= 0 && v >= 0 && u + v <= 1 && s >= 0 && s <= 1;
 }
 
-std::vector<Aabb> netBoxes(const SurfaceNet& net) {
-  std::vector<Aabb> boxes;
-  boxes.reserve(static_cast<std::size_t>(net.size()));
-  for (std::int32_t t = 0; t < net.size(); ++t) {
-    const SurfaceCell cell = net.build(t);
-    Aabb box{cell.patch.b300, cell.patch.b300};
-    for (const Vec3& p : controlPoints(cell.patch)) box = {box.low.cwiseMin(p), box.high.cwiseMax(p)};
-    boxes.push_back(box);
+// The normals that contact on a triangle may have.
+class ConeFinder {
+ public:
+  explicit ConeFinder(const SurfaceNet& net) : net_(net), kind_(net.mesh().vertices.size(), kSmooth) {
+    for (std::int32_t t = 0; t < net.size(); ++t) {
+      for (int i = 0; i < 3; ++i) {
+        if (!net.isSharp(t, i)) continue;
+        const char kind = net.neighbour(t, i).triangle < 0 ? kBorder : kSharp;
+        for (const int corner : {i, (i + 1) % 3}) kindAt(t, corner) = std::max(kindAt(t, corner), kind);
+      }
+    }
   }
-  return boxes;
+
+  NormalCone find(std::int32_t t, const SurfaceCell& cell) {
+    const Patch& p = cell.patch;
+    const Vec3 facet = (p.b030 - p.b300).cross(p.b003 - p.b300);
+    normals_ = {p.n200, p.n020, p.n002, p.n110, p.n011, p.n101, facet.normalized()};
+    for (int i = 0; i < 3; ++i) {
+      if (kindAt(t, i) == kBorder) return {};
+      if (kindAt(t, i) == kSharp) net_.visitCorners({t, i}, [&](const CellCorner& c) { addNormal(net_.normal(c.triangle, c.corner)); });
+      if (cell.sharp[static_cast<std::size_t>(i)]) addOtherSide(t, i);
+    }
+    return coneOf(normals_);
+  }
+
+ private:
+  static constexpr char kSmooth = 0, kSharp = 1, kBorder = 2;
+
+  char& kindAt(std::int32_t t, int corner) {
+    return kind_[static_cast<std::size_t>(net_.mesh().triangles[static_cast<std::size_t>(t)][static_cast<std::size_t>(corner)])];
+  }
+  void addNormal(const Vec3& n) { normals_.push_back(n); }
+  void addOtherSide(std::int32_t t, int edge) {
+    const Neighbour other = net_.neighbour(t, edge);
+    const Vec3 &n0 = net_.normal(other.triangle, other.edge), &n1 = net_.normal(other.triangle, (other.edge + 1) % 3);
+    addNormal(middleNormal(net_.vertex(other.triangle, other.edge), net_.vertex(other.triangle, (other.edge + 1) % 3), n0, n1));
+  }
+
+  const SurfaceNet& net_;
+  std::vector<char> kind_;  // per vertex
+  std::vector<Vec3> normals_;
+};
+
+FacingBox boxAround(const Patch& patch, const NormalCone& cone) {
+  Vec3 low = patch.b300, high = low;
+  for (const Vec3& p : controlPoints(patch)) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  return {{below(low[0]), below(low[1]), below(low[2])}, {above(high[0]), above(high[1]), above(high[2])}, cone};
 }
 
 // The patch lies in the hull of its control points, and distance from a convex set is a convex function.
-double bulgeOf(const Patch& patch, const std::array<Vec3, 3>& corners) {
+double bulgeOf(const Patch& patch) {
   double bulge2 = 0;
-  for (const Vec3& p : controlPoints(patch)) bulge2 = std::max(bulge2, closestOnTriangle(corners, p).distance2);
+  for (const Vec3& p : controlPoints(patch)) {
+    bulge2 = std::max(bulge2, closestOnTriangle(patch.b300, patch.b030, patch.b003, p).distance2);
+  }
   return std::sqrt(bulge2);
 }
 
 }  // namespace
 
-SurfaceSearch::FlatTriangle::FlatTriangle(const Patch& patch, std::int32_t t) : corners{patch.b300, patch.b030, patch.b003}, triangle(t) {
-  centre = (corners[0] + corners[1] + corners[2]) / 3;
-  n = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
-  radius = 0;
-  for (const Vec3& corner : corners) radius = std::max(radius, (corner - centre).norm());
-  bulge = bulgeOf(patch, corners);
+SurfaceSearch::SurfaceSearch(const SurfaceNet& net, NetInspector& inspector, const std::function<void(double)>& progress) {
+  constexpr double kPatches = 0.6;  // of the time
+  constexpr std::int32_t kReported = 1 << 14;
+  ConeFinder cones(net);
+  std::vector<FacingBox> boxes;
+  std::vector<Leaf> unordered;
+  boxes.reserve(static_cast<std::size_t>(net.size()));
+  unordered.reserve(static_cast<std::size_t>(net.size()));
+  for (std::int32_t t = 0; t < net.size(); ++t) {
+    const SurfaceCell cell = net.build(t);
+    inspector.see(t, cell.patch);
+    const NormalCone cone = cones.find(t, cell);
+    boxes.push_back(boxAround(cell.patch, cone));
+    const Vec3 centre = (cell.patch.b300 + cell.patch.b030 + cell.patch.b003) / 3;
+    Leaf leaf{{static_cast<float>(centre[0]), static_cast<float>(centre[1]), static_cast<float>(centre[2])}, 0, 0, FacingTest(cone)};
+    double radius2 = 0;
+    for (const Vec3& p : controlPoints(cell.patch)) radius2 = std::max(radius2, (p - leaf.middle()).squaredNorm());
+    leaf.radius = above(std::sqrt(radius2));
+    leaf.bulge = above(bulgeOf(cell.patch));
+    unordered.push_back(leaf);
+    if (progress && t % kReported == 0) progress(kPatches * t / net.size());
+  }
+  const auto tree_progress = [&](double share) { progress(kPatches + (1 - kPatches) * share); };
+  tree_ = FacingTree(boxes, progress ? std::function<void(double)>(tree_progress) : nullptr);
+  leaves_.reserve(unordered.size());
+  for (const std::int32_t t : tree_.order()) leaves_.push_back(unordered[static_cast<std::size_t>(t)]);
 }
 
-bool SurfaceSearch::FlatTriangle::discIsWithin(const Vec3& p, double distance) const {
-  const Vec3 R = p - centre;
-  const double above = R.dot(n);
-  const double reach2 = distance * distance - above * above;  // squared, in the disc's plane
-  if (reach2 <= 0) return false;
-  const double reach = radius + std::sqrt(reach2);
-  return R.squaredNorm() - above * above <= reach * reach;
-}
-
-SurfaceSearch::SurfaceSearch(const SurfaceNet& net) : tree_(netBoxes(net)) {
-  leaves_.reserve(static_cast<std::size_t>(net.size()));
-  for (const std::int32_t t : tree_.order()) leaves_.emplace_back(net.build(t).patch, t);
-}
-
-SurfaceSeed SurfaceSearch::nearest(const SurfaceNet& net, PatchCache& cache, const Vec3& p, double bound) const {
+SurfaceSeed SurfaceSearch::nearest(const SurfaceNet& net, PatchCache& cache, const Vec3& p, double bound, Facing facing) const {
   SurfaceSeed seed{{}, bound, false};
   double bound2 = bound * bound;
-  tree_.visitNear(p, bound2, kMaxVisits, [&](std::int32_t place_in_order) {
-    const FlatTriangle& leaf = leaves_[static_cast<std::size_t>(place_in_order)];
-    const double reach = seed.distance + leaf.bulge;
-    if (!leaf.discIsWithin(p, reach)) return;
-    const FlatPoint flat = closestOnTriangle(leaf.corners, p);
-    if (flat.distance2 >= reach * reach) return;
-    const double distance2 = (p - place(net.cell(leaf.triangle, cache).patch, flat.b[1], flat.b[2])).squaredNorm();
-    if (distance2 >= bound2) return;
-    bound2 = distance2;
-    seed = {{leaf.triangle, flat.b}, std::sqrt(distance2), true};
+  int visits = 0;
+  tree_.visitFacing(p, bound2, facing, [&](std::int32_t place_in_order) {
+    const Leaf& at = leaf(place_in_order);
+    if (!at.mayHold(p, seed.distance, facing)) return true;
+    const std::int32_t triangle = triangleAt(place_in_order);
+    const FlatPoint flat = closestOnFacet(net, triangle, p);
+    const double reach = seed.distance + at.bulge;
+    if (flat.distance2 >= reach * reach) return ++visits < kMaxVisits;
+    const double distance2 = (p - place(net.cell(triangle, cache).patch, flat.b[1], flat.b[2])).squaredNorm();
+    if (distance2 < bound2) {
+      bound2 = distance2;
+      seed = {{triangle, flat.b}, std::sqrt(distance2), true};
+    }
+    return ++visits < kMaxVisits;
   });
   return seed;
+}
+
+bool SurfaceSearch::isHidden(const SurfaceNet& net, const Vec3& a, const Vec3& b) const {
+  bool is_hidden = false;
+  tree_.visitInBox(a.cwiseMin(b), a.cwiseMax(b), [&](std::int32_t place) {
+    const std::int32_t t = triangleAt(place);
+    is_hidden = meets(a, b, net.vertex(t, 0), net.vertex(t, 1), net.vertex(t, 2));
+    return !is_hidden;
+  });
+  return is_hidden;
 }
 
 }  // namespace pincer::contact

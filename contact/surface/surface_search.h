@@ -1,14 +1,19 @@
-// surface_search: the nearest place of a whole surface, for starting (and guarding) the shell solver.
+// surface_search: places of a whole surface that a point may be in contact with, for starting (and guarding) the shell solver.
 //
-// The tree's boxes hold the patches' control nets, so a patch that bulges out of its triangle isn't missed. Within a leaf a patch is skipped
-// where a disc around the flat triangle, and then the triangle itself, less the patch's bulge can't beat the best so far; otherwise the
-// patch is evaluated over the triangle's closest point (C. Ericson, "Real-Time Collision Detection", 2005, section 5.1.5).
-// Measured at 81,920 triangles: 3.7 us with a good bound, 4 to 6 us without. The disc test and leaves of 12 instead of 4 saved 45 %.
+// The tree's boxes hold the patches' control nets, so a patch that bulges out of its triangle isn't missed, and each has a normal cone
+// (normal_cone.h), so that only parts that may face the point are looked at: few, wherever a surface isn't a bowl about that point, and
+// no more of a fine mesh than of a coarse one. A cone holds the patch's shading normals and its facet's; along sharp edges and at their
+// ends also the other sides', for there the contact's normal may be any between them; at borders it may be any at all.
+// Within a leaf a patch is skipped by its own ball and cone, then by its flat triangle less the patch's bulge (C. Ericson, "Real-Time
+// Collision Detection", 2005, section 5.1.5); what is left is evaluated over the triangle's closest point. Where all local minima of the
+// distance are wanted, a triangle counts only if its closest point is one of the flat mesh: no neighbour leads nearer.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <vector>
 
-#include "contact/surface/aabb_tree.h"
+#include "contact/surface/facing_tree.h"
+#include "contact/surface/flat_minimum.h"
 #include "contact/surface/shell_solver.h"
 #include "contact/surface/surface_net.h"
 
@@ -22,25 +27,65 @@ struct SurfaceSeed {
 
 class SurfaceSearch {
  public:
-  explicit SurfaceSearch(const SurfaceNet& net);
+  // Looks at every patch once, and shows it to `inspector`. `progress` is told the share of the work done.
+  SurfaceSearch(const SurfaceNet& net, NetInspector& inspector, const std::function<void(double)>& progress);
 
   // The best place nearer than `bound` [m]. Looks at 2000 patches at most, which a finger can only exceed near the centre of a spherical
   // bowl, where all places are equally near. Allocates nothing.
-  SurfaceSeed nearest(const SurfaceNet& net, PatchCache& cache, const Vec3& p, double bound) const;
+  SurfaceSeed nearest(const SurfaceNet& net, PatchCache& cache, const Vec3& p, double bound, Facing facing) const;
+
+  // Calls visit(foot, radius) on the places nearer to `p` than `bound` [m] where the flat triangles' distance from it is least among their
+  // neighbours', with `p` in front; `radius` is that of the patch. Nearer leaves first, until it returns false. Allocates nothing.
+  template <class Visit>
+  void visitMinima(const SurfaceNet& net, const Vec3& p, double bound, Visit&& visit) const;
+
+  // Whether the flat triangles hide `a` from `b`. Allocates nothing.
+  bool isHidden(const SurfaceNet& net, const Vec3& a, const Vec3& b) const;
+
+  std::size_t memoryBytes() const { return tree_.memoryBytes() + leaves_.capacity() * sizeof(Leaf); }
 
  private:
-  struct FlatTriangle {
-    Vec3 centre, n;               // of a disc that holds the triangle [m], and its unit normal
-    double radius;                // of the disc [m]
-    double bulge;                 // no point of the patch is further from the flat triangle [m]
-    std::array<Vec3, 3> corners;  // [m]
-    std::int32_t triangle;
+  // A patch in single precision, rounded outwards.
+  struct Leaf {
+    std::array<float, 3> centre;
+    float radius;  // of a ball that holds the patch [m]
+    float bulge;   // no point of the patch is further from the flat triangle [m]
+    FacingTest cone;
 
-    FlatTriangle(const Patch& patch, std::int32_t t);
-    bool discIsWithin(const Vec3& p, double distance) const;
+    Vec3 middle() const { return {centre[0], centre[1], centre[2]}; }
+    bool mayHold(const Vec3& p, double bound, Facing facing) const;
   };
-  AabbTree tree_;
-  std::vector<FlatTriangle> leaves_;  // in the tree's order
+  const Leaf& leaf(std::int32_t place) const { return leaves_[static_cast<std::size_t>(place)]; }
+  std::int32_t triangleAt(std::int32_t place) const { return tree_.order()[static_cast<std::size_t>(place)]; }
+
+  FacingTree tree_;
+  std::vector<Leaf> leaves_;  // in the tree's order
 };
+
+inline bool SurfaceSearch::Leaf::mayHold(const Vec3& p, double bound, Facing facing) const {
+  double centre2 = 0, along = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double D = p[static_cast<int>(k)] - centre[k];
+    centre2 += D * D;
+    along += cone.axis[k] * D;
+  }
+  const double reach = bound + radius, R2 = static_cast<double>(radius) * radius;
+  if (centre2 >= reach * reach) return false;
+  return cone.mayFace(along, centre2, R2) || (facing == Facing::both && cone.mayFace(-along, centre2, R2));
+}
+
+template <class Visit>
+void SurfaceSearch::visitMinima(const SurfaceNet& net, const Vec3& p, double bound, Visit&& visit) const {
+  const double bound2 = bound * bound;
+  tree_.visitFacing(p, bound2, Facing::front, [&](std::int32_t place) {
+    const Leaf& at = leaf(place);
+    if (!at.mayHold(p, bound, Facing::front)) return true;
+    const std::int32_t triangle = triangleAt(place);
+    const FlatPoint flat = closestOnFacet(net, triangle, p);
+    const double reach = bound + at.bulge;
+    if (flat.distance2 >= reach * reach || !isFlatMinimum(net, triangle, flat, p)) return true;
+    return visit(Foot{triangle, flat.b}, static_cast<double>(at.radius));
+  });
+}
 
 }  // namespace pincer::contact

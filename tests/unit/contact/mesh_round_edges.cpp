@@ -5,6 +5,7 @@
 
 #include "contact/mesh/mesh_report.h"
 #include "contact/mesh/round_edges.h"
+#include "contact/surface/smooth_mesh.h"
 #include "contact/surface/surface_net.h"
 #include "tests/support/mesh_generators.h"
 
@@ -136,7 +137,7 @@ void expectSound(const RoundedMesh& rounded) {
   EXPECT_EQ(report.crease_edges, 0) << "its normals make it smooth";
   EXPECT_EQ(report.zero_area_triangles + report.duplicate_vertices + report.unused_vertices, 0);
   EXPECT_NO_THROW(requireClosed(rounded.mesh));
-  EXPECT_TRUE(findFoldedTriangles(SurfaceNet(rounded.mesh, 0.7, true)).empty());
+  EXPECT_TRUE(SmoothMesh::build(rounded.mesh)->foldedTriangles().empty());
 }
 
 // Vertices are exact. Between them the patches over a corner's 16 triangles leave the ball by a thousandth of its radius.

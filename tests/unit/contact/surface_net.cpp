@@ -2,7 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <set>
+
+#include "contact/mesh/mesh_report.h"
 #include "contact/surface/edge_cubic.h"
+#include "contact/surface/smooth_mesh.h"
 #include "tests/support/mesh_generators.h"
 
 namespace pincer::contact {
@@ -131,18 +136,63 @@ TEST(EdgeCubic, MiddleNormalIsTheSameFromBothEnds) {
   EXPECT_EQ(middleNormal(p0, p1, n0, n1), middleNormal(p1, p0, n1, n0));
 }
 
+// What is kept of a triangle that nothing has touched: its share of vertices, numbers, neighbours, normals, tree and hull.
+TEST(SurfaceNet, KeepsAtMost160BytesPerUntouchedTriangle) {
+  for (const TriangleMesh& mesh : {icosphere(0.02, 5), torus(0.03, 0.012, 100, 50), roundedCube(0.02, 0.004, 20),
+                                   gridBox({0.02, 0.02, 0.02}, 20), noisy(icosphere(0.02, 4), 1e-3, 1)}) {
+    const auto object = SmoothMesh::build(mesh);
+    EXPECT_LE(object->memoryBytes(), 160 * mesh.triangles.size()) << mesh.source;
+  }
+}
+
+TEST(SurfaceNet, ACacheOfOnePatchGivesTheSamePatches) {
+  const SurfaceNet net(torus(0.03, 0.012, 12, 8), kCreaseAngle, true), other(icosphere(0.02, 2), kCreaseAngle, true);
+  PatchCache small(1), large(1024);
+  for (std::int32_t t = 0; t < net.size(); ++t) {
+    other.cell(t, small);  // several meshes may share one
+    const SurfaceCell a = net.cell(t, small), b = net.cell(t, large), c = net.cell(t, large);
+    for (std::size_t i = 0; i < 10; ++i) {
+      ASSERT_EQ(controlPoints(a.patch)[i], controlPoints(b.patch)[i]);
+      ASSERT_EQ(controlPoints(b.patch)[i], controlPoints(c.patch)[i]);
+    }
+    ASSERT_EQ(a.vertices, b.vertices);
+  }
+}
+
+TEST(SurfaceNet, VisitsEachCornerOfAVertexOnce) {
+  TriangleMesh open = icosphere(0.02, 1);
+  open.triangles.resize(60);  // some vertices are on a border now; those that would touch themselves are left to the mesh report
+  for (const TriangleMesh& mesh : {icosphere(0.02, 1), torus(0.03, 0.012, 12, 8), open}) {
+    if (inspect(mesh).nonmanifold_vertices > 0) continue;
+    const SurfaceNet net(mesh, kCreaseAngle, true);
+    for (std::int32_t t = 0; t < net.size(); ++t) {
+      for (int i = 0; i < 3; ++i) {
+        const std::int32_t vertex = mesh.triangles[static_cast<std::size_t>(t)][static_cast<std::size_t>(i)];
+        std::size_t expected = 0;
+        for (const auto& v : mesh.triangles) expected += static_cast<std::size_t>(std::count(v.begin(), v.end(), vertex));
+        std::set<std::int32_t> seen;
+        net.visitCorners({t, i}, [&](const CellCorner& c) {
+          EXPECT_EQ(mesh.triangles[static_cast<std::size_t>(c.triangle)][static_cast<std::size_t>(c.corner)], vertex);
+          EXPECT_TRUE(seen.insert(c.triangle).second);
+        });
+        EXPECT_EQ(seen.size(), expected);
+      }
+    }
+  }
+}
+
 TEST(SurfaceNet, ReportsFolds) {
-  EXPECT_TRUE(findFoldedTriangles(SurfaceNet(icosphere(0.02, 1), kCreaseAngle, true)).empty());
+  EXPECT_TRUE(SmoothMesh::build(icosphere(0.02, 1))->foldedTriangles().empty());
   TriangleMesh mesh = icosphere(0.02, 1);
   for (const Vec3& v : mesh.vertices) mesh.normals.push_back(-v.normalized());  // normals that contradict the triangles
   mesh.triangle_normals = mesh.triangles;
-  EXPECT_EQ(findFoldedTriangles(SurfaceNet(mesh, kCreaseAngle, true)).size(), 80u);
+  EXPECT_EQ(SmoothMesh::build(mesh)->foldedTriangles().size(), 80u);
 }
 
 TEST(SurfaceNet, FindsTheTightestHollow) {
-  EXPECT_GT(findTightestConcaveRadius(SurfaceNet(icosphere(0.02, 2), kCreaseAngle, true)), 1e3) << "convex";
+  EXPECT_GT(SmoothMesh::build(icosphere(0.02, 2))->tightestConcaveRadius(), 1e3) << "convex";
   const double inner = 0.03 - 0.012;  // a torus is hollow along its inner equator only
-  EXPECT_NEAR(findTightestConcaveRadius(SurfaceNet(torus(0.03, 0.012, 48, 24), kCreaseAngle, true)), inner, 0.01 * inner);  // 48 segments
+  EXPECT_NEAR(SmoothMesh::build(torus(0.03, 0.012, 48, 24))->tightestConcaveRadius(), inner, 0.01 * inner);  // 48 segments
 }
 
 }  // namespace
