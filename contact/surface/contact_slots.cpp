@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "contact/surface/flat_contact.h"
 #include "contact/surface/shell_face.h"
 #include "contact/surface/surface_variant.h"
 
@@ -75,7 +76,7 @@ class Touch {
     return h;
   }
   Vec3 placeOf(const ShellContact& c) const { return C_ - c.h * c.n; }
-  ShellContact follow(const Foot& foot) const { return followContact(s_.variant, s_.net, cache_, C_, foot); }
+  ShellContact follow(const Foot& foot) const { return followContact(s_.variant, s_.net, cache_, C_, r_, foot); }
   Foot footOf(int slot) const {
     const SurfaceSlot& kept = tracker_.slots[at(slot)];
     return {kept.triangle, {std::max(0.0, 1 - kept.u - kept.v), kept.u, kept.v}};
@@ -293,7 +294,9 @@ SurfaceContacts Touch::write() {
 
 SurfaceContacts touchSurface(const TouchedSurface& surface, const Vec3& p_BC, double r, double margin, SurfaceTracker& tracker,
                              PatchCache& cache) {
-  return Touch(surface, p_BC, r, margin, tracker, cache).run();
+  SurfaceContacts found = Touch(surface, p_BC, r, margin, tracker, cache).run();
+  if (surface.variant == SurfaceVariant::force) shadeForce(surface.net, tracker, found);
+  return found;
 }
 
 }  // namespace pincer::contact

@@ -7,7 +7,6 @@
 #include "contact/surface/convex_hull.h"
 #include "contact/surface/surface_net.h"
 #include "contact/surface/surface_search.h"
-#include "contact/surface/surface_variant.h"
 
 namespace pincer::contact {
 
@@ -44,7 +43,7 @@ Progress part(const Progress& progress, double from, double to) {
 struct SmoothMesh::Data {
   Data(TriangleMesh mesh, const SurfaceOptions& options) : Data(std::move(mesh), options, NetInspector()) {}
   Data(TriangleMesh mesh, const SurfaceOptions& options, NetInspector&& inspector)
-      : net(std::move(mesh), options.crease_angle, options.use_file_normals),
+      : net(std::move(mesh), options.crease_angle, options.use_file_normals, options.variant),
         search(net, inspector, part(options.progress, kNetBuilt, kSearchBuilt)),
         variant(options.variant),
         hull(hullOf(net.mesh())),
@@ -65,7 +64,6 @@ std::shared_ptr<const SmoothMesh> SmoothMesh::build(TriangleMesh mesh, const Sur
     throw InputError(
         fmt::format("{}: crease angle {} rad is out of range (0, 3.1416]; typical: 0.7 (40 degrees).", mesh.source, options.crease_angle));
   }
-  requireVariant(options.variant, mesh.source);
   requireManifold(mesh);
   if (options.progress) options.progress(kManifoldKnown);
   std::shared_ptr<const SmoothMesh> built(new SmoothMesh(std::make_unique<const Data>(std::move(mesh), options)));

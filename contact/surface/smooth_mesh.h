@@ -25,10 +25,10 @@
 namespace pincer::contact {
 
 struct SurfaceOptions {
-  double crease_angle = 0.6981317007977318;  // [rad], 40 degrees; in (0, pi]: edges with a sharper angle between facets stay sharp
-  bool use_file_normals = true;              // where the file has normals they decide what is sharp; false: the crease angle decides
-  SurfaceVariant variant = SurfaceVariant::smooth;
-  std::function<void(double)> progress = {};  // told the share of the work that is done, 0 to 1, now and then
+  double crease_angle = 0.6981317007977318;         // [rad], 40 degrees; in (0, pi]: edges with a sharper angle between facets stay sharp
+  bool use_file_normals = true;                     // where the file has normals they decide what is sharp; false: the crease angle decides
+  SurfaceVariant variant = SurfaceVariant::smooth;  // flat_contact.h, published_iteration.h
+  std::function<void(double)> progress = {};        // told the share of the work that is done, 0 to 1, now and then
 };
 
 class SmoothMesh {

@@ -15,10 +15,10 @@ Vec3& secondHandle(Patch& p, int edge) { return edge == 0 ? p.b120 : edge == 1 ?
 // The ends of edge i of triangle t, as seen along it.
 std::array<EdgeEnd, 2> edgeEnds(const SurfaceNet& net, std::int32_t t, int i) {
   const int next = (i + 1) % 3;
-  const Vec3 &p0 = net.vertex(t, i), &p1 = net.vertex(t, next), &left0 = net.normal(t, i), &left1 = net.normal(t, next);
+  const Vec3 &p0 = net.vertex(t, i), &p1 = net.vertex(t, next), left0 = net.normal(t, i), left1 = net.normal(t, next);
   const Neighbour other = net.neighbour(t, i);
   if (other.triangle < 0) return {EdgeEnd{p0, left0, left0}, EdgeEnd{p1, left1, left1}};
-  const Vec3 &right0 = net.normal(other.triangle, (other.edge + 1) % 3), &right1 = net.normal(other.triangle, other.edge);
+  const Vec3 right0 = net.normal(other.triangle, (other.edge + 1) % 3), right1 = net.normal(other.triangle, other.edge);
   return {EdgeEnd{p0, left0, right0}, EdgeEnd{p1, left1, right1}};
 }
 
@@ -31,6 +31,25 @@ void setEdge(const SurfaceNet& net, std::int32_t triangle, int i, SurfaceCell& c
   firstHandle(cell.patch, i) = is_first ? first : second;
   secondHandle(cell.patch, i) = is_first ? second : first;
   cell.sharp[static_cast<std::size_t>(i)] = net.isSharp(triangle, i);
+}
+
+// A handle lies in its end's tangent plane, whatever the other side of the edge has there.
+void setPublishedEdges(Patch& p) {
+  for (int i = 0; i < 3; ++i) {
+    const auto curve = edgeCurve(p, i);
+    const auto normals = edgeNormals(p, i);
+    const Vec3 d = curve[3] - curve[0];
+    firstHandle(p, i) = curve[0] + (d - d.dot(normals[0]) * normals[0]) / 3;
+    secondHandle(p, i) = curve[3] - (d - d.dot(normals[2]) * normals[2]) / 3;
+  }
+}
+
+void setStraightEdges(Patch& p) {
+  for (int i = 0; i < 3; ++i) {
+    const auto curve = edgeCurve(p, i);
+    firstHandle(p, i) = curve[0] + (curve[3] - curve[0]) / 3;
+    secondHandle(p, i) = curve[3] - (curve[3] - curve[0]) / 3;
+  }
 }
 
 // Vlachos et al.: the centre lies as far beyond the handles' mean as that lies beyond the flat triangle's, halved.
@@ -126,12 +145,15 @@ std::size_t bytesOf(const std::vector<T>& v) {
 
 }  // namespace
 
-SurfaceNet::SurfaceNet(TriangleMesh mesh, double crease_angle, bool use_file_normals)
-    : mesh_(std::move(mesh)), length_(halfDiagonal(mesh_.vertices)) {
-  {
-    const Neighbours neighbours = findNeighbours(mesh_);
+SurfaceNet::SurfaceNet(TriangleMesh mesh, double crease_angle, bool use_file_normals, SurfaceVariant variant)
+    : variant_(variant),
+      is_flat_(variant == SurfaceVariant::facet || variant == SurfaceVariant::force),
+      mesh_(std::move(mesh)),
+      length_(halfDiagonal(mesh_.vertices)) {
+  const Neighbours neighbours = findNeighbours(mesh_);
+  neighbours_ = packed(neighbours);
+  if (variant != SurfaceVariant::facet) {
     const CornerNormals corners = findCornerNormals(mesh_, neighbours, crease_angle, use_file_normals);
-    neighbours_ = packed(neighbours);
     NormalNumbers numbers(mesh_, corners);
     normals_ = std::move(numbers.distinct);
     corner_normals_ = std::move(numbers.numbers);
@@ -142,11 +164,17 @@ SurfaceNet::SurfaceNet(TriangleMesh mesh, double crease_angle, bool use_file_nor
   mesh_.triangles.shrink_to_fit();
   normals_.shrink_to_fit();
   Fingerprint fingerprint;
+  fingerprint.add(static_cast<std::uint64_t>(variant));
   for (const Vec3& v : mesh_.vertices) fingerprint.add(v);
   for (const Vec3& n : normals_) fingerprint.add(n);
   for (const auto& triangle : mesh_.triangles) fingerprint.add(triangle);
   for (const auto& numbers : corner_normals_) fingerprint.add(numbers);
   fingerprint_ = fingerprint.value();
+}
+
+Vec3 SurfaceNet::facetNormal(std::int32_t triangle) const {
+  const Vec3& p = vertex(triangle, 0);
+  return (vertex(triangle, 1) - p).cross(vertex(triangle, 2) - p).normalized();
 }
 
 bool SurfaceNet::isSharp(std::int32_t triangle, int edge) const {
@@ -168,7 +196,13 @@ SurfaceCell SurfaceNet::build(std::int32_t triangle) const {
   p.n110 = middleNormal(p.b300, p.b030, p.n200, p.n020);
   p.n011 = middleNormal(p.b030, p.b003, p.n020, p.n002);
   p.n101 = middleNormal(p.b003, p.b300, p.n002, p.n200);
-  for (int i = 0; i < 3; ++i) setEdge(*this, triangle, i, cell);
+  if (is_flat_) {
+    cell.sharp = {true, true, true};
+    setStraightEdges(p);
+  } else {
+    for (int i = 0; i < 3; ++i) setEdge(*this, triangle, i, cell);
+    if (variant_ == SurfaceVariant::smooth_published) setPublishedEdges(p);
+  }
   setCentre(p);
   return cell;
 }

@@ -1,7 +1,10 @@
 // surface_net: the patches of a mesh and how they hang together.
 //
 // What is kept is the mesh, its neighbours and its corner normals, about 60 bytes per triangle; a patch is built from them when it is
-// first touched.
+// first touched. Of the shading variants
+//   smooth            has cubic edges that both sides share (edge_cubic.h),
+//   smooth_published  each side's own, V = P + (d - (d.N) N) / 3, d to the other end (Vlachos et al., eq. 3),
+//   facet and force   have flat triangles with their own normals, which aren't kept; `force` keeps the corner normals beside.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -11,6 +14,7 @@
 #include "contact/mesh/triangle_mesh.h"
 #include "contact/surface/patch_cache.h"
 #include "contact/surface/surface_cell.h"
+#include "contact/surface/surface_contact.h"
 
 namespace pincer::contact {
 
@@ -22,7 +26,7 @@ struct CellCorner {
 class SurfaceNet {
  public:
   // Requires a manifold mesh. The file's normals are dropped from it once the corner normals are known.
-  SurfaceNet(TriangleMesh mesh, double crease_angle, bool use_file_normals);
+  SurfaceNet(TriangleMesh mesh, double crease_angle, bool use_file_normals, SurfaceVariant variant = SurfaceVariant::smooth);
 
   int size() const { return static_cast<int>(mesh_.triangles.size()); }  // triangles
   const TriangleMesh& mesh() const { return mesh_; }
@@ -38,7 +42,11 @@ class SurfaceNet {
   SurfaceCell build(std::int32_t triangle) const;
 
   const Vec3& vertex(std::int32_t triangle, int corner) const { return mesh_.vertices[at(mesh_.triangles[at(triangle)][at(corner)])]; }
-  const Vec3& normal(std::int32_t triangle, int corner) const { return normals_[at(corner_normals_[at(triangle)][at(corner)])]; }
+  // The patch's.
+  Vec3 normal(std::int32_t triangle, int corner) const { return is_flat_ ? facetNormal(triangle) : shadingNormal(triangle, corner); }
+  Vec3 facetNormal(std::int32_t triangle) const;  // unit; zero for a triangle without area
+  // Not of a `facet`.
+  const Vec3& shadingNormal(std::int32_t triangle, int corner) const { return normals_[at(corner_normals_[at(triangle)][at(corner)])]; }
   Neighbour neighbour(std::int32_t triangle, int edge) const {
     const std::int32_t code = neighbours_[at(triangle)][at(edge)];
     return code < 0 ? Neighbour{} : Neighbour{code / 4, static_cast<std::int8_t>(code % 4)};
@@ -53,6 +61,8 @@ class SurfaceNet {
  private:
   static std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 
+  SurfaceVariant variant_;
+  bool is_flat_;  // facet or force
   TriangleMesh mesh_;
   std::vector<std::array<std::int32_t, 3>> neighbours_;      // 4 triangle + edge, -1 at a border
   std::vector<Vec3> normals_;                                // those that differ; a fan shares one

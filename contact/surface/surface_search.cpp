@@ -56,7 +56,7 @@ class ConeFinder {
   void addNormal(const Vec3& n) { normals_.push_back(n); }
   void addOtherSide(std::int32_t t, int edge) {
     const Neighbour other = net_.neighbour(t, edge);
-    const Vec3 &n0 = net_.normal(other.triangle, other.edge), &n1 = net_.normal(other.triangle, (other.edge + 1) % 3);
+    const Vec3 n0 = net_.normal(other.triangle, other.edge), n1 = net_.normal(other.triangle, (other.edge + 1) % 3);
     addNormal(middleNormal(net_.vertex(other.triangle, other.edge), net_.vertex(other.triangle, (other.edge + 1) % 3), n0, n1));
   }
 

@@ -1,23 +1,21 @@
 #include "contact/surface/surface_variant.h"
 
-#include "contact/error.h"
+#include "contact/surface/flat_contact.h"
+#include "contact/surface/published_iteration.h"
 
 namespace pincer::contact {
 
-ShellContact followContact(SurfaceVariant variant, const SurfaceNet& net, PatchCache& cache, const Vec3& C, const Foot& start) {
+ShellContact followContact(SurfaceVariant variant, const SurfaceNet& net, PatchCache& cache, const Vec3& C, double r, const Foot& start) {
   switch (variant) {
     case SurfaceVariant::smooth:
+      return solveShell(net, cache, C, start);
     case SurfaceVariant::facet:
     case SurfaceVariant::force:
+      return followFlat(net, C, start);
     case SurfaceVariant::smooth_published:
-      return solveShell(net, cache, C, start);
+      return followPublished(net, cache, C, r, start);
   }
   return {};
-}
-
-void requireVariant(SurfaceVariant variant, const std::string& source) {
-  if (variant == SurfaceVariant::smooth) return;
-  throw InputError(source + ": of the shading variants only \"smooth\" is built. Use \"smooth\".");
 }
 
 }  // namespace pincer::contact
