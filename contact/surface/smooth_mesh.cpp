@@ -81,6 +81,7 @@ std::size_t SmoothMesh::memoryBytes() const {
   return data_->net.memoryBytes() + data_->search.memoryBytes() + data_->hull.capacity() * sizeof(Vec3);
 }
 const TriangleMesh& SmoothMesh::triangles() const { return data_->net.mesh(); }
+SurfaceVariant SmoothMesh::variant() const { return data_->variant; }
 const std::vector<std::int32_t>& SmoothMesh::foldedTriangles() const { return data_->findings.folded; }
 double SmoothMesh::tightestConcaveRadius() const { return data_->findings.concave_radius; }
 

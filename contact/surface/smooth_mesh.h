@@ -51,6 +51,8 @@ class SmoothMesh {
   const TriangleMesh& triangles() const;          // without the file's normals
   std::size_t memoryBytes() const;                // of all that is kept of it
 
+  SurfaceVariant variant() const;
+
   const std::vector<std::int32_t>& foldedTriangles() const;  // whose patch folds over: contact there may be held (kQueryHeldDirection)
   double tightestConcaveRadius() const;                      // of the surface [m]; infinity where it is convex
   // What a finger of radius `r` [m] will not feel well, one sentence each with remedy; complements inspect() (mesh_report.h).

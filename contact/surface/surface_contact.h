@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <string_view>
 
 #include "contact/math.h"
 
@@ -14,6 +15,9 @@ enum class SurfaceVariant : std::uint8_t {
   force,             // the flat triangles' place, an interpolated normal (Morganbesser & Srinivasan 1996)
   smooth_published,  // as `smooth`, with the iteration and the edges as they were printed; for comparison only
 };
+
+// As scenes and the command line name them, in the order of the enumeration.
+inline constexpr std::array<std::string_view, 4> kSurfaceVariantNames = {"smooth", "facet", "force", "smooth_published"};
 
 constexpr int kMaxSurfaceContacts = 3;
 

@@ -29,6 +29,7 @@ class SessionSink final : public RecordSink {
 void writeObject(const SpherePickupOptions& o, JsonWriter& json) {
   if (o.object) {
     json.key("file").value(o.object->path);
+    json.key("shading").value(std::string(contact::kSurfaceVariantNames[static_cast<std::size_t>(o.object->shading)]));
     o.object->size ? json.key("size").value(*o.object->size) : json.key("units").value(o.object->units);
   } else {
     json.key("radius").value(o.radius);

@@ -74,9 +74,16 @@ std::string couplingForm(const engine::DrivenPointModel& coupling, const std::ar
   return fmt::format("proxy {:g} g; coupling {}", 1e3 * coupling.mass, fmt::join(axes, ", "));
 }
 
+std::string surfaceForm(const contact::Shape& shape) {
+  const auto* mesh = std::get_if<contact::Mesh>(&shape);
+  if (!mesh) return "closed form";
+  const contact::SurfaceVariant variant = mesh->surface->variant();
+  if (variant == contact::SurfaceVariant::smooth) return "smooth surface, warm-started search";
+  return fmt::format("mesh with shading {}, warm-started search", contact::kSurfaceVariantNames[static_cast<std::size_t>(variant)]);
+}
+
 std::string touchForm(const engine::BodyModel& body) {
-  const char* form = isMesh(body) ? "smooth surface, warm-started search" : "closed form";
-  return fmt::format("{}; {}, mu_s {:g}, mu_d {:g}", form, torsionText(body.material.torsion_radius), body.material.mu_s,
+  return fmt::format("{}; {}, mu_s {:g}, mu_d {:g}", surfaceForm(body.shape), torsionText(body.material.torsion_radius), body.material.mu_s,
                      body.material.mu_d);
 }
 

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <ctime>
 #include <memory>
@@ -28,7 +29,7 @@ Example:
   pincer run sphere-pickup --repetitions 2 --seed 7 --out out/first)";
 
 struct RunArguments {
-  std::string task, out, condition = "both", object, units;
+  std::string task, out, condition = "both", object, units, shading;
   std::optional<double> size;
   PickupSessionOptions session;
   bool json = false, report = true;
@@ -39,11 +40,17 @@ std::string freshDirectory(const std::string& task) {
   return fmt::format("out/{}-{:%Y%m%d-%H%M%S}", task, fmt::localtime(now));
 }
 
+contact::SurfaceVariant variantOf(const std::string& name) {
+  const auto& names = contact::kSurfaceVariantNames;
+  const auto found = std::find(names.begin(), names.end(), name);
+  return found == names.end() ? contact::SurfaceVariant::smooth : static_cast<contact::SurfaceVariant>(found - names.begin());
+}
+
 ObjectFile objectOf(const RunArguments& arguments) {
   if (arguments.size && !arguments.units.empty()) {
     throw InputError("run: --size and --units contradict each other: --size scales the mesh whatever its unit. Give one of them.");
   }
-  return {arguments.object, arguments.units.empty() ? "mm" : arguments.units, arguments.size};
+  return {arguments.object, arguments.units.empty() ? "mm" : arguments.units, arguments.size, variantOf(arguments.shading)};
 }
 
 PickupSessionOptions optionsOf(const RunArguments& arguments) {
@@ -52,6 +59,9 @@ PickupSessionOptions optionsOf(const RunArguments& arguments) {
   if (!arguments.object.empty()) options.study.object = objectOf(arguments);
   if (arguments.object.empty() && arguments.size) {
     throw InputError("run: --size is that of a mesh, and none is given. Give --object FILE, or --radius for the sphere.");
+  }
+  if (arguments.object.empty() && !arguments.shading.empty()) {
+    throw InputError("run: --shading is that of a mesh, and none is given. Give --object FILE; the sphere is one exactly.");
   }
   return options;
 }
@@ -111,6 +121,8 @@ void addStudyOptions(CLI::App& command, RunArguments& arguments) {
   command.add_option("--object", arguments.object, "Closed mesh (OBJ, STL, PLY or OFF) to pick up in place of the sphere");
   command.add_option("--units", arguments.units, "Length unit of the mesh (default: mm)")->check(CLI::IsMember({"m", "cm", "mm", "in"}));
   command.add_option("--size", arguments.size, "Scales the mesh to this largest dimension, in place of --units [m]");
+  command.add_option("--shading", arguments.shading, "How the fingers feel the mesh (default: smooth)")
+      ->check(CLI::IsMember({"smooth", "facet", "force", "smooth_published"}));
   command.add_option("--seed", study.seed, "Of all that varies; the same seed gives the same session")->capture_default_str();
 }
 

@@ -148,7 +148,9 @@ void requireGrip(const PickupObject& object, const std::string& source) {
 PickupObject objectFromFile(const SpherePickupOptions& options) {
   const contact::TriangleMesh mesh = readCentred(options);
   PickupObject object;
-  object.shape = contact::Mesh{contact::SmoothMesh::build(mesh)};
+  contact::SurfaceOptions surface;
+  surface.variant = options.object->shading;
+  object.shape = contact::Mesh{contact::SmoothMesh::build(mesh, surface)};
   const double start_gap = 1e-3;
   object.rest_X_WB = settle(options, object.shape, heightAboveDish(mesh, options.dish_radius) + start_gap);
   object.place_W = object.rest_X_WB.p;

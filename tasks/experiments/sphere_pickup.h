@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "contact/error.h"
+#include "contact/surface/surface_contact.h"
 
 namespace pincer::tasks {
 
@@ -22,6 +23,7 @@ struct ObjectFile {
   std::string path;                 // of a closed mesh: OBJ, STL, PLY or OFF
   std::string units = "mm";         // m, cm, mm, in
   std::optional<double> size = {};  // its largest dimension is made this [m], 0.005 .. 0.2, whatever the units
+  contact::SurfaceVariant shading = contact::SurfaceVariant::smooth;  // how fingers feel it
 };
 
 struct SpherePickupOptions {

@@ -40,12 +40,21 @@ contact::TriangleMesh readTriangles(const JsonValue& json, const std::string& sc
   return contact::readMesh(path, {.metres_per_unit = contact::metresPerUnit(units) * (scale ? scale->number(kScale) : 1)});
 }
 
-contact::Shape readMesh(const JsonValue& json, const std::string& scene_file) {
+contact::SurfaceOptions readSurfaceOptions(const JsonValue& json) {
   contact::SurfaceOptions options;
   if (const JsonValue* angle = json.find("crease_angle")) {
     options.crease_angle = angle->number(kCreaseAngle);
     options.use_file_normals = false;
   }
+  if (const JsonValue* normals = json.find("file_normals")) options.use_file_normals = normals->boolean();
+  if (const JsonValue* shading = json.find("shading")) {
+    options.variant = static_cast<contact::SurfaceVariant>(shading->oneOf(contact::kSurfaceVariantNames));
+  }
+  return options;
+}
+
+contact::Shape readMesh(const JsonValue& json, const std::string& scene_file) {
+  const contact::SurfaceOptions options = readSurfaceOptions(json);
   try {
     contact::TriangleMesh triangles = readTriangles(json, scene_file);
     contact::requireClosed(triangles);

@@ -160,6 +160,7 @@ TEST(RunCommand, RefusesBadOptionsBeforeItWritesAnything) {
   EXPECT_EQ(both.exit_code, kExitBadInput);
   EXPECT_TRUE(contains(both.error, "Give one of them")) << both.error;
   EXPECT_EQ(run({"run", "sphere-pickup", "--size", "0.06", "--out", out}).exit_code, kExitBadInput);
+  EXPECT_EQ(run({"run", "sphere-pickup", "--shading", "facet", "--out", out}).exit_code, kExitBadInput);
   EXPECT_FALSE(std::filesystem::exists(out));
 }
 

@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "contact/shape/finger_query.h"
+#include "contact/surface/patch_cache.h"
 #include "tasks/scene/scene.h"
 #include "tasks/scene/scene_keys.h"
 #include "tasks/scene/strict_json.h"
@@ -108,6 +110,28 @@ TEST(SceneReader, ReadsAMeshAndATrajectoryBesideTheScene) {
   EXPECT_EQ(scene.fingers[0].trajectory.at(1).p_W, Vec3(2, 0, 0));
 }
 
+// Over an edge of a cube, at equal height over both faces: a facet's normal is one face's, the smooth surface's lies between.
+TEST(SceneReader, SelectsHowAMeshIsFelt) {
+  const tests::TemporaryDirectory directory;
+  std::ofstream(directory / "cube.obj") << "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+                                           "f 1 4 3 2\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\nf 5 6 7 8\n";
+  const auto normalWith = [&](const std::string& options) {
+    std::ofstream(directory / "s.json") << R"({"version": 1, "duration": 1, "bodies": [{"mass": 1, "shape": {"type": "mesh",
+      "file": "cube.obj", "units": "cm")"
+                                        << options << "}}]}";
+    const Scene scene = readScene(directory / "s.json");
+    contact::SurfaceTracker tracker;
+    contact::PatchCache cache(64);
+    return contact::querySphere(scene.bodies[0].shape, {0.005, 0.014, 0.0139}, 0.008, 0, tracker, cache).main().n_B;
+  };
+  const Vec3 across = Vec3(0, 4, 3.9).normalized();
+  EXPECT_LT((normalWith("") - across).norm(), 1e-6);
+  EXPECT_LT((normalWith(", \"shading\": \"smooth\"") - across).norm(), 1e-6);
+  EXPECT_LT((normalWith(", \"shading\": \"facet\"") - Vec3::UnitY()).norm(), 1e-12);
+  EXPECT_LT((normalWith(", \"shading\": \"force\", \"crease_angle\": 3") - across).norm(), 0.5) << "interpolated between the corners'";
+  EXPECT_GT((normalWith(", \"shading\": \"force\", \"crease_angle\": 3") - Vec3::UnitY()).norm(), 0.1);
+}
+
 struct Complaint {
   const char* name;
   std::string json;
@@ -174,6 +198,9 @@ TEST(SceneReader, SaysWhereTheSceneNamesABadMesh) {
   EXPECT_EQ(missing.substr(0, missing.find("none.obj")), "s.json:2: bodies[0].shape can't be used: ");
   const std::string unit = messageFor(sceneWithShape("{\"type\": \"mesh\", \"file\": \"none.obj\", \"units\": \"furlong\"}"));
   EXPECT_NE(unit.find("furlong"), std::string::npos) << unit;
+  const std::string shading =
+      messageFor(sceneWithShape("{\"type\": \"mesh\", \"file\": \"none.obj\", \"units\": \"mm\", \"shading\": \"facets\"}"));
+  EXPECT_NE(shading.find("Did you mean \"facet\"?"), std::string::npos) << shading;
 }
 
 // The schema that editors use and the reader know the same keys.
