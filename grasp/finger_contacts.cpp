@@ -7,16 +7,17 @@ namespace {
 
 using engine::SideKind;
 
-// The two touch midway between the body's surface and the fingertip's, on the normal n_W.
+// The two touch midway between the body's surface and the fingertip's, on the normal n_W but for meshes with force shading.
 void addFingerContact(const GraspModel& model, GraspScratch& scratch, int finger, int body, const contact::SurfaceContact& found) {
-  const Vec3 n_W = scratch.world.bodies[body].R_WB_mid * found.n_B;
+  const engine::BodyScratch& mid = scratch.world.bodies[body];
+  const Vec3 n_W = mid.R_WB_mid * found.n_B;
   engine::Contact* const c = engine::addContact(scratch.world, found.phi);
   if (!c) return;
   c->id = engine::contactId(1, finger, body, found.feature);
   c->a = {SideKind::kPoint, finger};
   c->b = {SideKind::kBody, body};
   c->R_WC.col(2) = n_W;
-  c->p_W = scratch.world.points[finger].p_mid_W - (model.fingers[finger].radius + 0.5 * found.phi) * n_W;
+  c->p_W = mid.X_WB_mid.p + mid.R_WB_mid * found.p_BS + 0.5 * found.phi * n_W;
   c->material = model.world.bodies[body].material;
 }
 
@@ -45,7 +46,7 @@ void queryBody(const GraspModel& model, GraspState& state, GraspScratch& scratch
   // Static supports don't pre-position the tactor: what the hand looks for is an object.
   if (b.dynamic && found.main().phi < report.gap) {
     report.gap = found.main().phi;
-    scratch.nearest_n_W[finger] = mid.R_WB_mid * found.main().n_B;
+    scratch.nearest_n_W[finger] = mid.R_WB_mid * (p_BC - found.main().p_BS).normalized();
   }
   for (int i = 0; i < found.count; ++i) {
     if (found.points[i].phi < margin) addFingerContact(model, scratch, finger, body, found.points[i]);

@@ -12,7 +12,7 @@ void setInputs(std::span<const FingerInput> inputs, GraspScratch& scratch) {
   for (std::size_t i = 0; i < inputs.size(); ++i) scratch.inputs[i] = {inputs[i].p_WF, inputs[i].v_WF, inputs[i].f_W};
 }
 
-// Sums the contacts of one finger into its report; returns the force-weighted direction from its centre to them.
+// Sums the contacts of one finger into its report; returns the direction from its centre to their force-weighted mean place.
 Vec3 sumContacts(const GraspScratch& scratch, int finger, double h, FingerReport& report) {
   Vec3 p_sum = Vec3::Zero(), n_sum = Vec3::Zero(), tangential = Vec3::Zero();
   double largest = 0;
@@ -33,7 +33,8 @@ Vec3 sumContacts(const GraspScratch& scratch, int finger, double h, FingerReport
   report.tangential_force = tangential.norm();
   report.p_WC = p_sum / report.normal_force;
   if (n_sum.squaredNorm() > 0) report.n_W = n_sum.normalized();
-  return -report.n_W;
+  const Vec3 to_mean = report.p_WC - scratch.world.points[finger].p_mid_W;
+  return to_mean.squaredNorm() > 0 ? Vec3(to_mean.normalized()) : Vec3(-report.n_W);
 }
 
 void reportFinger(const GraspModel& model, const GraspState& state, const FingerInput& input, int finger, GraspScratch& scratch) {

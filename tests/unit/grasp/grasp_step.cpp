@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "contact/mesh/generated_meshes.h"
+#include "contact/surface/smooth_mesh.h"
 #include "grasp/step.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/worlds.h"
@@ -166,6 +168,35 @@ TEST(GraspStep, FarFingerReportsALowerBoundOfItsGap) {
   EXPECT_FALSE(scratch.fingers[0].touching);
   EXPECT_LE(scratch.fingers[0].gap, 0.3 - 0.028 + 1e-12);
   EXPECT_GT(scratch.fingers[0].gap, 0.03);
+}
+
+// Force shading turns the force to the interpolated normal, but leaves the contact on the pad where the flat facet has it.
+TEST(GraspStep, ForceShadingShowsTheFacetsPlaceOnThePad) {
+  const Vec3 over_facet = Vec3(0.1, -0.15, 1).normalized() * 0.027;
+  for (const contact::SurfaceVariant variant : {contact::SurfaceVariant::force, contact::SurfaceVariant::facet}) {
+    contact::SurfaceOptions options;
+    options.variant = variant;
+    const auto ball = contact::SmoothMesh::build(contact::icosphere(0.02, 1), options);
+    engine::WorldBuilder builder{engine::WorldOptions{}};
+    builder.addBody({"ball", contact::Mesh{ball}, false, 0, {0.5, 0.5, 0, 0}});
+    GraspModel model = buildGrasp(builder, {testing::softFinger("probe")});
+    GraspState state = makeState(model, {testing::startAt(Vec3::Zero())}, {over_facet});
+    GraspScratch scratch(model);
+    std::vector<FingerInput> inputs(1);
+    inputs[0].p_WF = over_facet;
+    step(model, state, scratch, inputs);
+    ASSERT_TRUE(scratch.fingers[0].touching);
+    const Vec3 C = scratch.world.points[0].p_mid_W;
+    contact::SurfaceTracker tracker;
+    contact::PatchCache cache(64);
+    const contact::SurfaceContact c = ball->querySphere(C, model.fingers[0].radius, 0, tracker, cache).main();
+    EXPECT_LT((scratch.fingers[0].n_W - c.n_B).norm(), 1e-12);
+    const Vec2 of_facet = placeOnPad(model.fingers[0], (c.p_BS - C).normalized());
+    const double half_gap = 0.5 * std::abs(c.phi);  // they touch midway along the force, which leans by up to 15 degrees: 0.26 r / h
+    EXPECT_LT((scratch.fingers[0].place_L - of_facet).norm(), variant == contact::SurfaceVariant::facet ? 1e-12 : 0.3 * half_gap);
+    const double of_force = (placeOnPad(model.fingers[0], -c.n_B) - of_facet).norm();
+    EXPECT_EQ(of_force > half_gap, variant == contact::SurfaceVariant::force) << of_force;
+  }
 }
 
 TEST(PadPlace, IsArcLengthFromThePadsCentre) {
