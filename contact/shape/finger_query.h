@@ -3,7 +3,8 @@
 //   p_BS  the surface point, n_B the outward normal of the body there, both in the body's frame B
 //   phi   signed gap between fingertip and surface [m]: phi = (p_BC - p_BS) . n_B - r, negative when they overlap
 //
-// For every shape the finger's centre lies on the normal over the surface point: p_BC = p_BS + (phi + r) n_B.
+// The finger's centre lies on the normal over the surface point: p_BC = p_BS + (phi + r) n_B, for every shape but meshes with force shading,
+// whose n_B is that of the force, not of the facet touched (flat_contact.h).
 #pragma once
 #include "contact/math.h"
 #include "contact/shape/shape.h"
