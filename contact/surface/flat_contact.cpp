@@ -1,6 +1,5 @@
 #include "contact/surface/flat_contact.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "contact/surface/flat_minimum.h"
@@ -87,7 +86,9 @@ bool FlatWalk::descend() {
 
 ShellContact FlatWalk::on(std::int32_t triangle, const Vec3& n) const {
   const FlatPoint foot = triangle == triangle_ ? nearest_ : closestOnFacet(net_, triangle, C_);
-  return {{triangle, foot.b}, n, (C_ - net_.vertex(triangle, 0)).dot(n), true, {1, crossings_}};
+  const double h = (C_ - net_.vertex(triangle, 0)).dot(n);
+  const bool has_answer = std::isfinite(h) && !n.isZero(0);  // not on a triangle without area
+  return {{triangle, foot.b}, n, h, has_answer, {1, crossings_}};
 }
 
 ShellContact FlatWalk::rolledOver(const Vec3& outward) const {

@@ -204,6 +204,20 @@ TEST(SurfaceVariants, AnswerEverywhereWithoutAllocating) {
   }
 }
 
+TEST(SurfaceVariants, HoldTheContactWhereThereIsNoAnswer) {
+  for (const SurfaceVariant variant : kVariants) {
+    const auto object = asVariant(icosphere(0.02, 2), variant);
+    SurfaceTracker tracker;
+    touch(*object, {0, 0, 0.027}, kFinger, tracker);
+    const SurfaceSlot before = tracker.slots[0];
+    touch(*object, {std::nan(""), 0, 0}, kFinger, tracker);
+    EXPECT_EQ(tracker.status, kQueryHeldDirection);
+    EXPECT_EQ(tracker.slots[0].triangle, before.triangle);
+    touch(*object, {0, 0.0001, 0.027}, kFinger, tracker);
+    EXPECT_EQ(tracker.status, kQueryOk);
+  }
+}
+
 // Flat triangles need no shading normals: 24 bytes per vertex and 12 per triangle less.
 TEST(SurfaceVariants, FacetsKeepNoShadingNormals) {
   const TriangleMesh mesh = icosphere(0.02, 3);
