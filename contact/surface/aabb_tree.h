@@ -29,6 +29,11 @@ class AabbTree {
   template <class Visit>
   void visitNear(const Vec3& p, const double& bound2, int max_visits, Visit&& visit) const;
 
+  // Calls visit(i), for places i of `order`, on every item of the leaves whose box meets [low, high], in increasing order. Stops after
+  // `max_visits` items. Allocates nothing.
+  template <class Visit>
+  void visitBox(const Vec3& low, const Vec3& high, int max_visits, Visit&& visit) const;
+
  private:
   struct Node {
     std::array<float, 3> low, high;
@@ -44,6 +49,32 @@ class AabbTree {
   std::vector<Node> nodes_;
   std::vector<std::int32_t> order_;
 };
+
+template <class Visit>
+void AabbTree::visitBox(const Vec3& low, const Vec3& high, int max_visits, Visit&& visit) const {
+  const auto meets = [&](const Node& node) {
+    for (int k = 0; k < 3; ++k) {
+      const auto i = static_cast<std::size_t>(k);
+      if (node.high[i] < low[k] || node.low[i] > high[k]) return false;
+    }
+    return true;
+  };
+  std::array<std::int32_t, kMaxDepth> stack;
+  std::size_t size = 0;
+  stack[size++] = 0;
+  while (size > 0) {
+    const Node& node = nodes_[static_cast<std::size_t>(stack[--size])];
+    if (!meets(node)) continue;
+    if (node.left >= 0) {
+      stack[size++] = node.left + 1;
+      stack[size++] = node.left;
+      continue;
+    }
+    for (std::int32_t i = 0; i < node.count; ++i) visit(-1 - node.left + i);
+    max_visits -= node.count;
+    if (max_visits <= 0) return;
+  }
+}
 
 inline double AabbTree::squaredDistance(const Node& node, const Vec3& p) {
   double sum = 0;

@@ -63,6 +63,7 @@ struct SmoothMesh::Data {
       : net(std::move(m), options.crease_angle, options.use_file_normals),
         variant(options.variant),
         search(net),
+        features(net.mesh(), net.neighbours()),
         hull(hullOf(net.mesh())),
         bounding_radius(boundingRadiusOf(net)),
         folded(findFoldedTriangles(net)),
@@ -71,6 +72,7 @@ struct SmoothMesh::Data {
   SurfaceNet net;
   SurfaceVariant variant;
   SurfaceSearch search;
+  MeshFeatures features;
   std::vector<Vec3> hull;
   double bounding_radius;
   std::vector<std::int32_t> folded;
@@ -138,6 +140,7 @@ SurfaceContacts SmoothMesh::querySphere(const Vec3& p_BC, double r, double margi
 }
 
 const std::vector<Vec3>& SmoothMesh::hullVertices() const { return data_->hull; }
+const MeshFeatures& SmoothMesh::features() const { return data_->features; }
 double SmoothMesh::boundingRadius() const { return data_->bounding_radius; }
 const TriangleMesh& SmoothMesh::triangles() const { return data_->net.mesh(); }
 const std::vector<std::int32_t>& SmoothMesh::foldedTriangles() const { return data_->folded; }

@@ -18,6 +18,7 @@
 
 #include "contact/math.h"
 #include "contact/mesh/triangle_mesh.h"
+#include "contact/surface/mesh_features.h"
 #include "contact/surface/patch_cache.h"
 #include "contact/surface/surface_contact.h"
 
@@ -47,6 +48,7 @@ class SmoothMesh {
   const std::vector<Vec3>& hullVertices() const;  // corners of the mesh's convex hull, each a vertex of the mesh [m]
   double boundingRadius() const;                  // of a sphere about B's origin that holds the surface [m]
   const TriangleMesh& triangles() const;
+  const MeshFeatures& features() const;  // of the flat triangles
 
   const std::vector<std::int32_t>& foldedTriangles() const;  // whose patch folds over: contact there may be held (kQueryHeldDirection)
   double tightestConcaveRadius() const;                      // of the surface [m]; infinity where it is convex

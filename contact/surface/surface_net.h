@@ -26,6 +26,7 @@ class SurfaceNet {
 
   int size() const { return static_cast<int>(mesh_.triangles.size()); }  // triangles
   const TriangleMesh& mesh() const { return mesh_; }
+  const Neighbours& neighbours() const { return neighbours_; }
 
   // Valid until the next call with the same cache: copy what is to be kept.
   const SurfaceCell& cell(std::int32_t triangle, PatchCache& cache) const {
