@@ -30,5 +30,6 @@ NearestPoint nearestPoint(const Dish& dish, const Vec3& p_BC);
 NearestPoint nearestPoint(const Box& box, const Vec3& p_BC);
 NearestPoint nearestPoint(const Cylinder& cylinder, const Vec3& p_BC);
 NearestPoint nearestPoint(const CylinderWithFlat& cylinder, const Vec3& p_BC);
+NearestPoint nearestPoint(const Convex& convex, const Vec3& p_BC);  // looks at every face; a hull prefers its first faces
 
 }  // namespace pincer::contact

@@ -1,5 +1,6 @@
 #include "contact/shape/extreme_points.h"
 
+#include "contact/shape/polytope.h"
 #include "contact/surface/smooth_mesh.h"
 
 namespace pincer::contact {
@@ -68,6 +69,8 @@ ExtremePoints pointsOf(const CylinderWithFlat& cylinder, const Vec2& steepest, E
 ExtremePoints pointsOf(const HalfSpace&, const Vec2&, ExtremePointStore&) { return {}; }
 ExtremePoints pointsOf(const Dish&, const Vec2&, ExtremePointStore&) { return {}; }
 ExtremePoints pointsOf(const Mesh& mesh, const Vec2&, ExtremePointStore&) { return {mesh.surface->hullVertices(), {}, 0}; }
+
+ExtremePoints pointsOf(const Convex& convex, const Vec2&, ExtremePointStore&) { return {convex.hull->vertices(), {}, 0}; }
 
 }  // namespace
 

@@ -5,6 +5,7 @@
 //   sphere              its centre, rounded by its radius; feature 0
 //   cylinder            four points of each rim, 90 degrees apart; feature 4 e + k, e = 0 at +z, 1 at -z, k quarter turns from the first
 //   cylinder with flat  the same, but none that the flat has cut off, and the flat's corners: feature 8 + 2 e + (1 where y < 0)
+//   convex hull         its corners; feature: the index
 //   mesh                the vertices of its convex hull; feature: the index
 //
 // The first point of a rim is its deepest: it moves along the rim as the cylinder rolls, and is exact for rolling, tipping and lying on

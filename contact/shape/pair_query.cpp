@@ -2,9 +2,13 @@
 
 #include <limits>
 
+#include "contact/shape/convex_features.h"
+#include "contact/shape/convex_pairs.h"
 #include "contact/shape/extreme_points.h"
 #include "contact/shape/finger_query.h"
+#include "contact/shape/mesh_pairs.h"
 #include "contact/shape/point_choice.h"
+#include "contact/shape/polytope.h"
 #include "contact/shape/support.h"
 #include "contact/surface/smooth_mesh.h"
 
@@ -21,6 +25,7 @@ double radiusOf(const CylinderWithFlat& c) { return radiusOf(Cylinder{c.radius, 
 double radiusOf(const HalfSpace&) { return kUnbounded; }
 double radiusOf(const Dish&) { return kUnbounded; }
 double radiusOf(const Mesh& m) { return m.surface->boundingRadius(); }
+double radiusOf(const Convex& c) { return c.hull->boundingRadius(); }
 
 bool isSphere(const Shape& shape) { return std::holds_alternative<Sphere>(shape); }
 bool isMesh(const Shape& shape) { return std::holds_alternative<Mesh>(shape); }
@@ -68,12 +73,15 @@ double boundingRadius(const Shape& shape) {
   return std::visit([](const auto& s) { return radiusOf(s); }, shape);
 }
 
-bool pairIsSupported(const Shape& a, const Shape& b) { return isSphere(a) || isSphere(b) || isSupport(a) != isSupport(b); }
+bool pairIsSupported(const Shape& a, const Shape& b) { return !isSupport(a) || !isSupport(b); }
 
 void collideShapes(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin, PatchCache& cache, PairPoints& out) {
   out.count = 0;
   if (!pairIsSupported(a, b)) return;
   if (isSphere(a)) return collideSphere(std::get<Sphere>(a), X_WA, b, X_WB, margin, cache, out);
+  if (isConvex(a) && isConvex(b) && !isSphere(b) && a.index() <= b.index()) return collideConvex(a, X_WA, b, X_WB, margin, out);
+  if (isMesh(a) && isMesh(b)) return collideMeshes(std::get<Mesh>(a), X_WA, std::get<Mesh>(b), X_WB, margin, out);
+  if (isMesh(a) && isConvex(b) && !isSphere(b)) return collideMeshWithConvex(std::get<Mesh>(a), X_WA, b, X_WB, margin, out);
   if (isSupport(b)) return collideWithSupport(a, X_WA, b, X_WB, margin, out);
   collideShapes(b, X_WB, a, X_WA, margin, cache, out);
   flip(out);

@@ -2,10 +2,15 @@
 //
 //   p_W  halfway between the two surfaces, n_W the unit normal out of shape b towards a, phi the gap there [m] (negative: overlap)
 //
-// A solid meets a half-space or a dish at its extreme points (extreme_points.h): exact for primitives. A mesh meets them with the corners
-// of its convex hull, so it stands and rocks on flat facets: the bulge of its smooth surface between the corners, about e^2 k / 8 for edge
-// length e [m] and curvature k [1/m], is not seen. (A sphere of 20 mm radius with edges of 5 mm sinks up to 0.16 mm deeper than its smooth
-// surface.) A sphere meets a mesh like a fingertip does, on the smooth surface, with a search of the whole mesh.
+// | pair | method | where |
+// |---|---|---|
+// | sphere and anything | nearest point; on a mesh, the smooth surface | closed_forms.h, smooth_mesh.h |
+// | solid and half-space or dish | extreme points; of a mesh, the corners of its hull | extreme_points.h |
+// | box, capsule, cylinder, convex hull with each other | least overlap, then facets laid over each other | separation.h, facet_overlap.h |
+// | mesh and these, mesh and mesh | closest features of its flat triangles | mesh_pairs.h |
+// But for spheres, a mesh is felt by other bodies as its flat triangles: the bulge of its smooth surface between the corners, about e^2 k / 8
+// for edge length e [m] and curvature k [1/m], is not seen. (A sphere of 20 mm radius with edges of 5 mm sinks up to 0.16 mm deeper than its
+// smooth surface.)
 #pragma once
 #include <array>
 #include <cstdint>
@@ -29,12 +34,12 @@ struct PairPoints {
   int count = 0;
 };
 
-// Whether collideShapes answers for this pair, in this order or the other: any solid against a half-space or a dish, a sphere against
-// anything. Two supports (half-space, dish) are both static and never a pair.
+// Whether collideShapes answers for this pair: any but two supports (half-space, dish), which are both static and never a pair.
 bool pairIsSupported(const Shape& a, const Shape& b);
 
 // The points of a and b that are closer than `margin` >= 0 [m], written to `out` (sorted by feature). Of more than four
-// candidates up to four are kept: the deepest, then those on which the solid would land first if it rocked (point_choice.h). Unsupported pairs give no point.
+// candidates up to four are kept: the deepest, then those on which the solid would land first if it rocked (point_choice.h). Unsupported pairs give no
+// point. Convex pairs of one kind of shape, and two meshes, are symmetric in a and b to round-off; all others exactly.
 // Allocates nothing; `cache` is memory only.
 void collideShapes(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin, PatchCache& cache, PairPoints& out);
 

@@ -7,6 +7,7 @@
 
 namespace pincer::contact {
 
+class Polytope;    // contact/shape/polytope.h
 class SmoothMesh;  // contact/surface/smooth_mesh.h
 
 struct Sphere {
@@ -41,6 +42,11 @@ struct Mesh {
   std::shared_ptr<const SmoothMesh> surface;  // never null
 };
 
-using Shape = std::variant<Sphere, Box, Capsule, Cylinder, CylinderWithFlat, HalfSpace, Dish, Mesh>;
+// The convex hull of points.
+struct Convex {
+  std::shared_ptr<const Polytope> hull;  // never null
+};
+
+using Shape = std::variant<Sphere, Box, Capsule, Cylinder, CylinderWithFlat, HalfSpace, Dish, Mesh, Convex>;
 
 }  // namespace pincer::contact

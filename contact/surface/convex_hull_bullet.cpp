@@ -5,15 +5,35 @@
 #include "contact/surface/convex_hull.h"
 
 namespace pincer::contact {
+namespace {
+
+static_assert(sizeof(btScalar) == sizeof(double));
+
+double computeHull(const std::vector<Vec3>& points, double shrink, double clamp, btConvexHullComputer& hull) {
+  if (points.empty()) return 0;
+  return hull.compute(points.front().data(), sizeof(Vec3), static_cast<int>(points.size()), shrink, clamp);
+}
+
+}  // namespace
 
 std::vector<std::int32_t> hullCorners(const std::vector<Vec3>& points) {
-  static_assert(sizeof(btScalar) == sizeof(double));
   btConvexHullComputer hull;
-  if (!points.empty()) hull.compute(points.front().data(), sizeof(Vec3), static_cast<int>(points.size()), 0, 0);
+  computeHull(points, 0, 0, hull);
   std::vector<std::int32_t> corners;
   for (int i = 0; i < hull.original_vertex_index.size(); ++i) corners.push_back(hull.original_vertex_index[i]);
   std::sort(corners.begin(), corners.end());
   return corners;
+}
+
+InsetHull insetHull(const std::vector<Vec3>& points, double distance) {
+  btConvexHullComputer hull;
+  const double inset = computeHull(points, distance, 0.5, hull);
+  InsetHull inner{{}, inset};
+  for (int i = 0; i < hull.vertices.size(); ++i) {
+    const btVector3& v = hull.vertices[i];
+    inner.corners.emplace_back(v.x(), v.y(), v.z());
+  }
+  return inner;
 }
 
 }  // namespace pincer::contact

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "contact/error.h"
+#include "contact/shape/polytope.h"
 #include "contact/surface/smooth_mesh.h"
 
 namespace pincer::engine {
@@ -92,6 +93,17 @@ Moments momentsOf(const contact::TriangleMesh& mesh) {
 }
 
 Moments momentsOf(const contact::Mesh& mesh) { return momentsOf(mesh.surface->triangles()); }
+
+// The hull's faces as triangles.
+Moments momentsOf(const contact::Convex& convex) {
+  contact::TriangleMesh mesh;
+  mesh.vertices = convex.hull->vertices();
+  for (const contact::Polytope::Face& face : convex.hull->faces()) {
+    const std::span<const int> loop = convex.hull->cornersOf(face);
+    for (std::size_t k = 1; k + 1 < loop.size(); ++k) mesh.triangles.push_back({loop[0], loop[k], loop[k + 1]});
+  }
+  return momentsOf(mesh);
+}
 
 Moments momentsOf(const contact::Shape& shape) {
   return std::visit([](const auto& s) { return momentsOf(s); }, shape);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "contact/shape/polytope.h"
 #include "contact/surface/smooth_mesh.h"
 
 namespace pincer::tasks {
@@ -28,6 +29,9 @@ struct ShapeName {
   std::string operator()(const contact::Dish& d) const { return fmt::format("dish r {:g} mm", 1e3 * d.radius); }
   std::string operator()(const contact::Mesh& m) const {
     return fmt::format("mesh of {} triangles", m.surface->triangles().triangles.size());
+  }
+  std::string operator()(const contact::Convex& c) const {
+    return fmt::format("convex, {} corners, {} faces", c.hull->vertices().size(), c.hull->faces().size());
   }
 };
 

@@ -20,8 +20,8 @@ inline constexpr std::array<Word, 2> kKeyframe = {"time", "position"};
 inline constexpr std::array<Word, 2> kRecord = {"interval", "quantities"};
 inline constexpr std::array<Word, 6> kExpectation = {"quantity", "time", "relation", "value", "tolerance", "because"};
 
-inline constexpr std::array<Word, 8> kShapeTypes = {"sphere",     "box",  "capsule", "cylinder", "cylinder_with_flat",
-                                                    "half_space", "dish", "mesh"};
+inline constexpr std::array<Word, 9> kShapeTypes = {"sphere",     "box",  "capsule", "cylinder", "cylinder_with_flat",
+                                                    "half_space", "dish", "mesh",    "convex"};
 inline constexpr std::array<Word, 2> kSphere = {"type", "radius"};
 inline constexpr std::array<Word, 2> kBox = {"type", "size"};
 inline constexpr std::array<Word, 3> kCapsule = {"type", "radius", "length"};
@@ -30,5 +30,6 @@ inline constexpr std::array<Word, 4> kCylinderWithFlat = {"type", "radius", "len
 inline constexpr std::array<Word, 3> kHalfSpace = {"type", "normal", "point"};
 inline constexpr std::array<Word, 2> kDish = {"type", "radius"};
 inline constexpr std::array<Word, 7> kMesh = {"type", "file", "units", "scale", "crease_angle", "file_normals", "shading"};
+inline constexpr std::array<Word, 5> kConvex = {"type", "points", "file", "units", "scale"};
 
 }  // namespace pincer::tasks::keys

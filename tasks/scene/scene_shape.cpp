@@ -5,6 +5,7 @@
 
 #include "contact/mesh/mesh_reader.h"
 #include "contact/mesh/mesh_report.h"
+#include "contact/shape/polytope.h"
 #include "contact/surface/smooth_mesh.h"
 #include "tasks/scene/scene_keys.h"
 #include "tasks/scene/scene_parts.h"
@@ -64,9 +65,31 @@ contact::Shape readMesh(const JsonValue& json, const std::string& scene_file) {
   }
 }
 
+std::vector<Vec3> readPoints(const JsonValue& json, const std::string& scene_file) {
+  const JsonValue* points = json.find("points");
+  if ((points != nullptr) == (json.find("file") != nullptr))
+    json.reject("needs either \"points\" or \"file\": the corners of the solid, in metres, or a file that holds them.");
+  if (!points) return readTriangles(json, scene_file).vertices;
+  for (const std::string_view key : {"units", "scale"}) {
+    if (const JsonValue* other = json.find(key)) other->reject("goes with \"file\" only: \"points\" are in metres.");
+  }
+  std::vector<Vec3> corners;
+  for (const JsonValue& point : points->array()) corners.push_back(point.vector(kCoordinate));
+  return corners;
+}
+
+contact::Shape readConvex(const JsonValue& json, const std::string& scene_file) {
+  try {
+    return contact::Convex{contact::Polytope::hullOf(readPoints(json, scene_file), "convex")};
+  } catch (const InputError& error) {
+    json.reject(fmt::format("can't be used: {}", error.what()));
+  }
+}
+
 std::span<const std::string_view> keysOf(std::size_t type) {
   constexpr std::array<std::span<const std::string_view>, keys::kShapeTypes.size()> all = {
-      keys::kSphere, keys::kBox, keys::kCapsule, keys::kCylinder, keys::kCylinderWithFlat, keys::kHalfSpace, keys::kDish, keys::kMesh};
+      keys::kSphere,    keys::kBox,  keys::kCapsule, keys::kCylinder, keys::kCylinderWithFlat,
+      keys::kHalfSpace, keys::kDish, keys::kMesh,    keys::kConvex};
   return all[type];
 }
 
@@ -83,6 +106,7 @@ contact::Shape readShape(const JsonValue& json, const std::string& file) {
   if (name == "cylinder_with_flat") return readCylinderWithFlat(json);
   if (name == "dish") return contact::Dish{length(json, "radius")};
   if (name == "mesh") return readMesh(json, file);
+  if (name == "convex") return readConvex(json, file);
   return contact::HalfSpace{};
 }
 

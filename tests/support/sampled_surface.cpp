@@ -10,6 +10,7 @@ namespace {
 
 using contact::Box;
 using contact::Capsule;
+using contact::Convex;
 using contact::Cylinder;
 using contact::CylinderWithFlat;
 using contact::Dish;
@@ -129,6 +130,21 @@ std::vector<Patch> patchesOf(const HalfSpace&) {
   return patches;
 }
 
+// Each face as a fan of quadrilaterals with one side of no length.
+std::vector<Patch> patchesOf(const Convex& c) {
+  std::vector<Patch> patches;
+  const std::vector<Vec3>& corners = c.hull->vertices();
+  for (const contact::Polytope::Face& face : c.hull->faces()) {
+    const std::span<const int> loop = c.hull->cornersOf(face);
+    const Vec3 p0 = corners[static_cast<std::size_t>(loop[0])];
+    for (std::size_t k = 1; k + 1 < loop.size(); ++k) {
+      const Vec3 p1 = corners[static_cast<std::size_t>(loop[k])], p2 = corners[static_cast<std::size_t>(loop[k + 1])];
+      patches.push_back({[=](double u, double v) { return Vec3(p0 + u * (p1 + v * (p2 - p1) - p0)); }});
+    }
+  }
+  return patches;
+}
+
 std::vector<Patch> patchesOf(const Mesh&) { throw std::invalid_argument("a mesh has no exact patches"); }
 
 bool holds(const Sphere& s, const Vec3& q) { return q.squaredNorm() <= s.radius * s.radius; }
@@ -145,6 +161,9 @@ bool holds(const Capsule& c, const Vec3& q) {
   const Sphere end{c.radius};
   return holds(Cylinder{c.radius, c.half_length}, q) || holds(end, q - c.half_length * Vec3::UnitZ()) ||
          holds(end, q + c.half_length * Vec3::UnitZ());
+}
+bool holds(const Convex& c, const Vec3& q) {
+  return std::all_of(c.hull->faces().begin(), c.hull->faces().end(), [&](const auto& face) { return face.n.dot(q) <= face.d; });
 }
 bool holds(const Mesh&, const Vec3&) { throw std::invalid_argument("a mesh has no exact inside"); }
 
@@ -195,6 +214,12 @@ double SampledSurface::signedDistance(const Vec3& q) const {
   return contains(q) ? -distance : distance;
 }
 
+std::shared_ptr<const contact::Polytope> voussoir() {
+  const std::vector<Vec3> points = {{-0.02, -0.015, -0.018}, {0.02, -0.015, -0.018}, {0.026, -0.015, 0.016}, {-0.026, -0.015, 0.016},
+                                    {-0.02, 0.015, -0.018},  {0.02, 0.015, -0.018},  {0.026, 0.015, 0.016},  {-0.026, 0.015, 0.016}};
+  return contact::Polytope::hullOf(points, "voussoir");
+}
+
 const std::vector<NamedShape>& sampleConvexSolids() {
   static const std::vector<NamedShape> shapes = {{"sphere", Sphere{0.021}},
                                                  {"box", Box{{0.031, 0.017, 0.023}}},
@@ -202,7 +227,8 @@ const std::vector<NamedShape>& sampleConvexSolids() {
                                                  {"cylinder", Cylinder{0.024, 0.019}},
                                                  {"slim cylinder", Cylinder{0.011, 0.037}},
                                                  {"cylinder with a flat", CylinderWithFlat{0.025, 0.027, 0.014}},
-                                                 {"cylinder with a wide flat", CylinderWithFlat{0.025, 0.012, 0.004}}};
+                                                 {"cylinder with a wide flat", CylinderWithFlat{0.025, 0.012, 0.004}},
+                                                 {"convex hull", Convex{voussoir()}}};
   return shapes;
 }
 

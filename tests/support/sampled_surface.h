@@ -7,10 +7,12 @@
 // A half-space is a square of side 1 m: keep test points within 0.2 m of B's origin.
 #pragma once
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "contact/math.h"
+#include "contact/shape/polytope.h"
 #include "contact/shape/shape.h"
 
 namespace pincer::tests {
@@ -40,6 +42,7 @@ struct NamedShape {
   std::string name;
   contact::Shape shape;
 };
+std::shared_ptr<const contact::Polytope> voussoir();  // a stone of an arch
 const std::vector<NamedShape>& samplePrimitives();    // all that contact/shape has closed forms for
 const std::vector<NamedShape>& sampleConvexSolids();  // those of them that are bounded: no half-space, no dish
 

@@ -39,6 +39,7 @@ std::vector<double> borders(const CylinderWithFlat& c) {
 }
 std::vector<double> borders(const HalfSpace&) { return {0}; }
 std::vector<double> borders(const Dish& d) { return {d.radius}; }
+std::vector<double> borders(const Convex&) { return {}; }
 std::vector<double> borders(const Mesh&) { return {}; }
 
 // Points in and around a shape, half of their coordinates exactly on a border between regions, some a hair beside it.

@@ -6,6 +6,7 @@
 #include <random>
 #include <vector>
 
+#include "contact/shape/convex_features.h"
 #include "contact/shape/finger_query.h"
 #include "contact/shape/pair_query.h"
 #include "tests/support/sampled_surface.h"
@@ -109,6 +110,8 @@ TEST(PairQuery, PointsLieBetweenTheTwoSurfaces) {
   }
 }
 
+bool isSphere(const Shape& shape) { return std::holds_alternative<Sphere>(shape); }
+
 std::vector<Shape> allShapes() {
   std::vector<Shape> all;
   for (const NamedShape& s : samplePrimitives()) all.push_back(s.shape);
@@ -153,7 +156,7 @@ TEST(PairQuery, OrderOnlyTurnsTheNormal) {
   for (const Shape& a : allShapes()) {
     for (const Shape& b : allShapes()) {
       ASSERT_EQ(pairIsSupported(a, b), pairIsSupported(b, a));
-      if (std::holds_alternative<Sphere>(a) && std::holds_alternative<Sphere>(b)) continue;  // each asks the other: equal to round-off only
+      if (a.index() == b.index()) continue;  // each asks the other: equal to round-off only
       const Pose X_WA = nearSupport(random);
       const PairPoints ab = collide(a, X_WA, b, Pose{});
       const PairPoints ba = collide(b, Pose{}, a, X_WA);
@@ -172,6 +175,7 @@ TEST(PairQuery, MovesWithTheWorld) {
   Random random;
   for (const Shape& a : allShapes()) {
     for (const Shape& b : allShapes()) {
+      if (isConvex(a) && isConvex(b) && !isSphere(a) && !isSphere(b)) continue;  // see shape_convex_pairs.cpp
       const Pose X_WA = nearSupport(random);
       const Pose X_VW = random.pose();
       const PairPoints here = collide(a, X_WA, b, Pose{});
@@ -191,11 +195,11 @@ TEST(PairQuery, KnowsItsPairs) {
   for (const Shape& any : allShapes()) EXPECT_TRUE(pairIsSupported(any, Sphere{0.01}));
   for (const NamedShape& solid : sampleConvexSolids()) EXPECT_TRUE(pairIsSupported(HalfSpace{}, solid.shape)) << solid.name;
   for (const NamedShape& solid : sampleConvexSolids()) EXPECT_TRUE(pairIsSupported(solid.shape, Dish{0.1})) << solid.name;
-  const Box box{{0.01, 0.01, 0.01}};
-  EXPECT_FALSE(pairIsSupported(box, Cylinder{0.01, 0.01}));
+  for (const NamedShape& a : sampleConvexSolids()) {
+    for (const NamedShape& b : sampleConvexSolids()) EXPECT_TRUE(pairIsSupported(a.shape, b.shape)) << a.name << " " << b.name;
+  }
   EXPECT_FALSE(pairIsSupported(HalfSpace{}, Dish{0.1}));
   EXPECT_FALSE(pairIsSupported(HalfSpace{}, HalfSpace{}));
-  EXPECT_EQ(collide(box, Pose{}, Cylinder{0.01, 0.01}, Pose{}).count, 0);
   EXPECT_EQ(collide(HalfSpace{}, Pose{}, Dish{0.1}, Pose{}).count, 0);
 }
 

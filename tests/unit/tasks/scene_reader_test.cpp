@@ -222,7 +222,8 @@ TEST(SceneSchema, NamesExactlyTheKeysThatTheReaderKnows) {
                                                                                         {"cylinder_with_flat", keys::kCylinderWithFlat},
                                                                                         {"half_space", keys::kHalfSpace},
                                                                                         {"dish", keys::kDish},
-                                                                                        {"mesh", keys::kMesh}};
+                                                                                        {"mesh", keys::kMesh},
+                                                                                        {"convex", keys::kConvex}};
   for (const auto& [name, words] : parts) {
     const std::vector<std::string>& found = schema.at("$defs").at(name).at("properties").keys();
     EXPECT_EQ(std::vector<std::string>(words.begin(), words.end()), found) << name;

@@ -1,0 +1,318 @@
+#include "contact/shape/convex_features.h"
+
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+
+#include "contact/shape/polytope.h"
+
+namespace pincer::contact {
+namespace {
+
+constexpr double kUpright = 1e-6;                                         // [rad], see the header
+constexpr double kInset = 0.05;                                           // of the least half width: how far insetOf moves the faces
+constexpr double kCos = 0.92387953251128674, kSin = 0.38268343236508977;  // of 2 pi / kRimCorners
+
+double signOf(double a) { return a < 0 ? -1 : 1; }  // not copysign: -0.0 must choose like 0.0
+
+Vec2 unitOr(const Vec2& v, const Vec2& otherwise) {
+  const double length = v.norm();
+  return length > kUpright ? Vec2(v / length) : otherwise;
+}
+
+// Furthest point of the disc of radius r along d; its centre where d has no direction.
+Vec2 onDisc(double r, const Vec2& d) {
+  const double length = d.norm();
+  return length > 0 ? Vec2(r / length * d) : Vec2(Vec2::Zero());
+}
+
+Vec2 nextOnRim(const Vec2& p) { return {kCos * p.x() - kSin * p.y(), kSin * p.x() + kCos * p.y()}; }
+
+Vec3 boxSupport(const Vec3& half, const Vec3& d) { return {signOf(d.x()) * half.x(), signOf(d.y()) * half.y(), signOf(d.z()) * half.z()}; }
+
+// Cores without a rim have corners only.
+template <class Solid>
+Mat3 bend(const Solid&, const Vec3&) {
+  return Mat3::Zero();
+}
+
+// Second derivative of R |d_xy| at the unit vector d.
+Mat3 rimBend(double radius, const Vec3& d) {
+  const double length = d.head<2>().norm();
+  Mat3 H = Mat3::Zero();
+  if (!(length > kUpright)) return H;
+  const Vec2 across(-d.y() / length, d.x() / length);
+  H.topLeftCorner<2, 2>() = radius / length * across * across.transpose();
+  return H;
+}
+
+// --- sphere and capsule: a point and a segment, rounded
+
+double rounding(const Sphere& s) { return s.radius; }
+double rounding(const Capsule& c) { return c.radius; }
+template <class Solid>
+double rounding(const Solid&) {
+  return 0;
+}
+
+Vec3 support(const Sphere&, const Vec3&) { return Vec3::Zero(); }
+Vec3 inset(const Sphere&, const Vec3&) { return Vec3::Zero(); }
+void facet(const Sphere&, const Vec3&, Facet& f) { f.add(Vec3::Zero(), 0, 0); }
+void strata(const Sphere&, const Vec3&, Strata&) {}
+
+Vec3 support(const Capsule& c, const Vec3& d) { return {0, 0, signOf(d.z()) * c.half_length}; }
+Vec3 inset(const Capsule& c, const Vec3& d) { return support(c, d); }
+void facet(const Capsule& c, const Vec3& d, Facet& f) {
+  constexpr double kUpended = 0.9999;  // cosine: seen along d the segment is a point
+  const double z = signOf(d.z()) * c.half_length;
+  f.add({0, 0, z}, z < 0, 0);
+  if (c.half_length > 0 && std::abs(d.z()) < kUpended * d.norm()) f.add({0, 0, -z}, z >= 0, 0);
+}
+void strata(const Capsule& c, const Vec3&, Strata& s) {
+  if (c.half_length > 0) s.addEdge(Vec3::UnitZ());
+}
+
+// --- box: corners by the bits of their signs; edges 4 along each axis
+
+Vec3 support(const Box& b, const Vec3& d) { return boxSupport(b.half, d); }
+Vec3 inset(const Box& b, const Vec3& d) { return boxSupport(b.half.array() - kInset * b.half.minCoeff(), d); }
+void facet(const Box& b, const Vec3& d, Facet& f) {
+  const Vec3 size = d.cwiseAbs();
+  const int i = size.z() >= size.x() && size.z() >= size.y() ? 2 : size.y() >= size.x() ? 1 : 0;
+  const double sign = signOf(d[i]);
+  const int j = sign > 0 ? (i + 1) % 3 : (i + 2) % 3, k = 3 - i - j;  // i, j, k right-handed about the outward normal
+  f.n = sign * Vec3::Unit(i);
+  constexpr std::array<std::array<int, 2>, 4> loop = {{{1, 1}, {-1, 1}, {-1, -1}, {1, -1}}};
+  for (const auto& [sj, sk] : loop) {
+    Vec3 p;
+    p[i] = sign * b.half[i];
+    p[j] = sj * b.half[j];
+    p[k] = sk * b.half[k];
+    const int vertex = (sign > 0) << i | (sj > 0) << j | (sk > 0) << k;
+    const int along = sj == sk ? j : k;        // the edge to the next corner
+    const int fixed = vertex & ~(1 << along);  // and the two signs that it keeps
+    f.add(p, vertex, 8 * along + fixed);
+  }
+}
+void strata(const Box&, const Vec3& d, Strata& s) {
+  for (int i = 0; i < 3; ++i) {
+    s.addNormal(signOf(d[i]) * Vec3::Unit(i));
+    s.addEdge(Vec3::Unit(i));
+  }
+}
+
+// --- cylinders: corners of an end 32 e + k, e = 0 at +z, those of the flat k = 16 (y > 0) and 17; lines of the wall from 64 on
+
+Vec3 cylinderSupport(double radius, double half_length, const Vec3& d) {
+  const Vec2 p = onDisc(radius, d.head<2>());
+  return {p.x(), p.y(), signOf(d.z()) * half_length};
+}
+bool facesEnd(const Vec3& d) { return std::abs(d.z()) > d.head<2>().norm(); }
+
+// A straight line of the wall, its end in the direction of d first.
+void addLine(const Vec2& p, double half_length, const Vec3& d, int name, Facet& f) {
+  const double z = signOf(d.z()) * half_length;
+  f.add({p.x(), p.y(), z}, name + (z < 0), name);
+  f.add({p.x(), p.y(), -z}, name + (z >= 0), name);
+}
+
+struct OutlinePoint {
+  Vec2 p;
+  int name;  // of the point; of the edge to the next as well
+};
+
+// An end's outline, given counter-clockwise seen from +z.
+template <std::size_t N>
+void addEnd(const std::array<OutlinePoint, N>& outline, int count, double half_length, bool up, Facet& f) {
+  const int base = up ? 0 : 32;
+  f.n = up ? Vec3::UnitZ() : Vec3(-Vec3::UnitZ());
+  for (int i = 0; i < count; ++i) {
+    const auto at = static_cast<std::size_t>(up ? i : count - 1 - i);
+    const std::size_t edge = up ? at : at == 0 ? static_cast<std::size_t>(count) - 1 : at - 1;  // to the next in this order
+    const OutlinePoint& o = outline[at];
+    f.add({o.p.x(), o.p.y(), up ? half_length : -half_length}, base + o.name, base + outline[edge].name);
+  }
+}
+
+Vec3 support(const Cylinder& c, const Vec3& d) { return cylinderSupport(c.radius, c.half_length, d); }
+Vec3 inset(const Cylinder& c, const Vec3& d) {
+  const double in = kInset * std::min(c.radius, c.half_length);
+  return cylinderSupport(c.radius - in, c.half_length - in, d);
+}
+void facet(const Cylinder& c, const Vec3& d, Facet& f) {
+  Vec2 p = c.radius * unitOr(d.head<2>(), Vec2::UnitX());
+  if (!facesEnd(d)) return addLine(p, c.half_length, d, 64, f);
+  std::array<OutlinePoint, kRimCorners> outline;
+  for (int k = 0; k < kRimCorners; ++k, p = nextOnRim(p)) outline[static_cast<std::size_t>(k)] = {p, k};
+  addEnd(outline, kRimCorners, c.half_length, d.z() > 0, f);
+}
+void strata(const Cylinder&, const Vec3& d, Strata& s) {
+  s.addNormal(signOf(d.z()) * Vec3::UnitZ());
+  s.addEdge(Vec3::UnitZ());
+}
+Mat3 bend(const Cylinder& c, const Vec3& d) { return rimBend(c.radius, d); }
+
+double halfChord(double radius, double flat_distance) { return std::sqrt((radius - flat_distance) * (radius + flat_distance)); }
+
+Vec3 cutSupport(double radius, double half_length, double flat_distance, const Vec3& d) {
+  Vec3 p = cylinderSupport(radius, half_length, d);
+  if (p.x() > flat_distance) p.x() = flat_distance, p.y() = signOf(d.y()) * halfChord(radius, flat_distance);
+  return p;
+}
+
+Vec3 support(const CylinderWithFlat& c, const Vec3& d) { return cutSupport(c.radius, c.half_length, c.flat_distance, d); }
+Vec3 inset(const CylinderWithFlat& c, const Vec3& d) {
+  const double in = kInset * std::min({c.radius, c.half_length, c.flat_distance});
+  return cutSupport(c.radius - in, c.half_length - in, c.flat_distance - in, d);
+}
+
+// The arc's points in their order from the flat's upper corner round to its lower one.
+void cutEnd(const CylinderWithFlat& c, const Vec3& d, Facet& f) {
+  std::array<OutlinePoint, kRimCorners + 2> outline;
+  int count = 0;
+  const double w = halfChord(c.radius, c.flat_distance);
+  outline[static_cast<std::size_t>(count++)] = {{c.flat_distance, w}, 16};
+  std::array<Vec2, kRimCorners> rim;
+  rim[0] = c.radius * unitOr(d.head<2>(), Vec2::UnitX());
+  for (std::size_t k = 1; k < rim.size(); ++k) rim[k] = nextOnRim(rim[k - 1]);
+  std::size_t start = 0;  // the first at or after +x
+  for (std::size_t k = 0; k < rim.size(); ++k) {
+    if (rim[k].x() > 0 && rim[k].y() >= 0 && rim[(k + rim.size() - 1) % rim.size()].y() < 0) start = k;
+  }
+  for (std::size_t i = 0; i < rim.size(); ++i) {
+    const std::size_t k = (start + i) % rim.size();
+    if (rim[k].x() < c.flat_distance) outline[static_cast<std::size_t>(count++)] = {rim[k], static_cast<int>(k)};
+  }
+  outline[static_cast<std::size_t>(count++)] = {{c.flat_distance, -w}, 17};
+  addEnd(outline, count, c.half_length, d.z() > 0, f);
+}
+
+void cutWall(const CylinderWithFlat& c, const Vec3& d, Facet& f) {
+  const double w = halfChord(c.radius, c.flat_distance);
+  const double cosine = c.flat_distance / c.radius;  // of the flat's half angle
+  const Vec2 u = unitOr(d.head<2>(), Vec2::UnitX());
+  if (u.x() <= cosine) return addLine(c.radius * u, c.half_length, d, 64, f);
+  if (u.x() < std::sqrt(0.5 * (1 + cosine))) return addLine({c.flat_distance, signOf(u.y()) * w}, c.half_length, d, u.y() < 0 ? 66 : 68, f);
+  f.n = Vec3::UnitX();
+  constexpr std::array<std::array<int, 2>, 4> loop = {{{1, 1}, {-1, 1}, {-1, -1}, {1, -1}}};
+  int name = 70;
+  for (const auto& [y, z] : loop) f.add({c.flat_distance, y * w, z * c.half_length}, name, name), ++name;
+}
+
+void facet(const CylinderWithFlat& c, const Vec3& d, Facet& f) { facesEnd(d) ? cutEnd(c, d, f) : cutWall(c, d, f); }
+void strata(const CylinderWithFlat&, const Vec3& d, Strata& s) {
+  s.addNormal(signOf(d.z()) * Vec3::UnitZ());
+  if (d.x() > 0) s.addNormal(Vec3::UnitX());
+  s.addEdge(Vec3::UnitZ());
+  s.addEdge(Vec3::UnitY());
+}
+Mat3 bend(const CylinderWithFlat& c, const Vec3& d) {
+  return c.radius * d.x() > c.flat_distance * d.head<2>().norm() ? Mat3(Mat3::Zero()) : rimBend(c.radius, d);
+}
+
+// --- convex hull
+
+const Vec3& vertexOf(const Convex& c, int i) { return c.hull->vertices()[static_cast<std::size_t>(i)]; }
+
+Vec3 support(const Convex& c, const Vec3& d) { return vertexOf(c, c.hull->extremeVertex(d)); }
+Vec3 inset(const Convex& c, const Vec3& d) {
+  const std::vector<Vec3>& corners = c.hull->insetVertices();
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < corners.size(); ++i) {
+    if (d.dot(corners[i]) > d.dot(corners[best])) best = i;
+  }
+  return corners[best];
+}
+
+// The face around the extreme vertex that faces d most; but where d is across an edge, one of the two that the edge joins.
+// Of a face with very many corners every n-th is taken.
+void facet(const Convex& c, const Vec3& d, Facet& f) {
+  constexpr double kAcross = 1e-6;  // cosine
+  const Polytope& hull = *c.hull;
+  const int vertex = hull.extremeVertex(d);
+  const double length = d.norm();
+  const std::span<const int> edges_here = hull.edgesAt(vertex);
+  const auto score = [&](int face) {
+    double sum = d.dot(hull.faces()[static_cast<std::size_t>(face)].n) / length;
+    for (const int e : edges_here) {
+      const Polytope::Edge& edge = hull.edges()[static_cast<std::size_t>(e)];
+      if (edge.left != face && edge.right != face) continue;
+      const Vec3 along = vertexOf(c, edge.to) - vertexOf(c, edge.from);
+      if (std::abs(d.dot(along)) < kAcross * length * along.norm()) sum += 2;
+    }
+    return sum;
+  };
+  const Polytope::Face* best = nullptr;
+  double most = 0;
+  for (const int e : edges_here) {
+    const Polytope::Edge& edge = hull.edges()[static_cast<std::size_t>(e)];
+    for (const int i : {edge.left, edge.right}) {
+      const double s = score(i);
+      if (!best || s > most) most = s, best = &hull.faces()[static_cast<std::size_t>(i)];
+    }
+  }
+  f.n = best->n;
+  const std::span<const int> corners = hull.cornersOf(*best), edges = hull.edgesOf(*best);
+  const std::size_t stride = (corners.size() + Facet::kMost - 1) / Facet::kMost;
+  for (std::size_t k = 0; k < corners.size(); k += stride) f.add(vertexOf(c, corners[k]), corners[k], edges[k]);
+}
+
+// Faces and edges around the extreme vertex.
+void strata(const Convex& c, const Vec3& d, Strata& s) {
+  const Polytope& hull = *c.hull;
+  const int vertex = hull.extremeVertex(d);
+  for (const int e : hull.edgesAt(vertex)) {
+    const Polytope::Edge& edge = hull.edges()[static_cast<std::size_t>(e)];
+    s.addEdge((vertexOf(c, edge.to) - vertexOf(c, edge.from)).normalized());
+    const bool leaves = edge.from == vertex;  // each face around the vertex once: the left one of the edges that leave it
+    s.addNormal(hull.faces()[static_cast<std::size_t>(leaves ? edge.left : edge.right)].n);
+  }
+}
+
+template <class Solid>
+constexpr bool kConvex = !std::is_same_v<Solid, HalfSpace> && !std::is_same_v<Solid, Dish> && !std::is_same_v<Solid, Mesh>;
+
+// Calls f on the solid that `shape` is; a default result where that isn't convex.
+template <class F>
+auto onConvex(const Shape& shape, F f) {
+  using Result = decltype(f(std::declval<const Box&>()));
+  return std::visit(
+      [&](const auto& solid) -> Result {
+        if constexpr (kConvex<std::decay_t<decltype(solid)>>)
+          return f(solid);
+        else if constexpr (std::is_void_v<Result>)
+          return;
+        else
+          return Result();
+      },
+      shape);
+}
+
+}  // namespace
+
+bool isConvex(const Shape& shape) {
+  return std::visit([](const auto& solid) { return kConvex<std::decay_t<decltype(solid)>>; }, shape);
+}
+double roundingOf(const Shape& shape) {
+  return onConvex(shape, [](const auto& s) -> double { return rounding(s); });
+}
+Vec3 supportOf(const Shape& shape, const Vec3& d) {
+  return onConvex(shape, [&](const auto& s) -> Vec3 { return support(s, d); });
+}
+Vec3 insetOf(const Shape& shape, const Vec3& d) {
+  return onConvex(shape, [&](const auto& s) -> Vec3 { return inset(s, d); });
+}
+void facetOf(const Shape& shape, const Vec3& d, Facet& f) {
+  f.count = 0;
+  onConvex(shape, [&](const auto& s) -> void { facet(s, d, f); });
+}
+void strataOf(const Shape& shape, const Vec3& d, Strata& found) {
+  found.normal_count = found.edge_count = 0;
+  onConvex(shape, [&](const auto& s) -> void { strata(s, d, found); });
+}
+Mat3 bendOf(const Shape& shape, const Vec3& d) {
+  return onConvex(shape, [&](const auto& s) -> Mat3 { return bend(s, d); });
+}
+bool isRound(const Shape& shape) { return std::holds_alternative<Cylinder>(shape) || std::holds_alternative<CylinderWithFlat>(shape); }
+
+}  // namespace pincer::contact

@@ -1,0 +1,68 @@
+// convex_features: what the pair routines ask of a convex solid, whatever it is made of.
+//
+//   solid = core + ball of radius rounding(solid);  h(d) = max over the core of d . p, the core's support function [m for a unit d]
+//
+//   supportOf  the core's point that is furthest along d; of equally far ones always the same
+//   facetOf    the flat, straight or single part of the core's surface that faces along d and holds that point (or lies within the turn of
+//              one facet of it): a polygon, a segment (2 corners) or a point (1)
+//   strataOf   the kinks of h near d: the normals of flat faces, and the directions of straight edges (h has a kink all along the circle of
+//              directions across an edge)
+//   bendOf     the second derivative of h at the unit vector d, where h is smooth but not linear: the rims of cylinders
+//   insetOf    the same as supportOf, for a solid whose faces lie further in
+//
+// All in the solid's own frame. A round rim enters facets as kRimCorners points, the first in the direction of d: exact for tilting and
+// rolling; between them the outline runs up to 2 % of the radius inside of the circle. A rim whose disc faces along d to within 1e-6 rad has
+// no first direction but noise: there the corners are fixed in the body, the first at +x.
+// Shapes that aren't convex (half-space, dish, mesh) have no features: isConvex is false, and the functions must not be called.
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "contact/math.h"
+#include "contact/shape/shape.h"
+
+namespace pincer::contact {
+
+constexpr int kRimCorners = 16;
+
+struct FacetCorner {
+  Vec3 p;                // [m]
+  std::uint16_t vertex;  // names that stay the same while the solid turns
+  std::uint16_t edge;    // from this corner to the next
+};
+
+struct Facet {
+  static constexpr int kMost = 40;
+  std::array<FacetCorner, kMost> corners;  // counter-clockwise seen from outside
+  int count = 0;
+  Vec3 n = Vec3::UnitZ();  // of the plane of a polygon, out of the solid; otherwise unused
+
+  void add(const Vec3& p, int vertex, int edge) {
+    if (count < kMost)
+      corners[static_cast<std::size_t>(count++)] = {p, static_cast<std::uint16_t>(vertex), static_cast<std::uint16_t>(edge)};
+  }
+};
+
+struct Strata {
+  static constexpr int kMost = 8;
+  std::array<Vec3, kMost> normals, edges;  // unit
+  int normal_count = 0, edge_count = 0;
+
+  void addNormal(const Vec3& n) {
+    if (normal_count < kMost) normals[static_cast<std::size_t>(normal_count++)] = n;
+  }
+  void addEdge(const Vec3& e) {
+    if (edge_count < kMost) edges[static_cast<std::size_t>(edge_count++)] = e;
+  }
+};
+
+bool isConvex(const Shape& shape);
+double roundingOf(const Shape& shape);
+Vec3 supportOf(const Shape& shape, const Vec3& d);
+Vec3 insetOf(const Shape& shape, const Vec3& d);
+void facetOf(const Shape& shape, const Vec3& d, Facet& facet);
+void strataOf(const Shape& shape, const Vec3& d, Strata& strata);
+Mat3 bendOf(const Shape& shape, const Vec3& d);
+bool isRound(const Shape& shape);  // bendOf isn't always zero
+
+}  // namespace pincer::contact

@@ -1,0 +1,79 @@
+#include "contact/shape/convex_pairs.h"
+
+#include "contact/shape/direction.h"
+#include "contact/shape/facet_overlap.h"
+#include "contact/shape/separation.h"
+
+namespace pincer::contact {
+namespace {
+
+struct Segment {
+  Vec3 centre, half;  // [m]; half the vector from end to end
+};
+
+Segment axisOf(const Capsule& c, const PosedSolid& s) { return {s.p, c.half_length * s.R.col(2)}; }
+
+// Parameters in [-1, 1] of the nearest points of two segments. Source: C. Ericson, Real-Time Collision Detection (2005), sec. 5.1.9; parallel
+// ones: the middle of what they share, so that round-off doesn't choose an end.
+Vec2 nearestOnSegments(const Segment& a, const Segment& b) {
+  constexpr double kParallel = 1e-14;  // squared sine
+  const Vec3 d = b.centre - a.centre;
+  const double aa = a.half.squaredNorm(), bb = b.half.squaredNorm(), ab = a.half.dot(b.half);
+  const double ad = a.half.dot(d), bd = b.half.dot(d);
+  const auto clamp = [](double x) { return std::min(std::max(x, -1.0), 1.0); };
+  const double det = aa * bb - ab * ab;
+  if (!(aa > 0)) return {0, bb > 0 ? clamp(-bd / bb) : 0};
+  if (!(bb > 0)) return {clamp(ad / aa), 0};
+  double s;
+  if (det > kParallel * aa * bb) {
+    s = clamp((ad * bb - ab * bd) / det);
+  } else {
+    const double reach = std::abs(ab) / aa;
+    s = 0.5 * (std::max(-1.0, ad / aa - reach) + std::min(1.0, ad / aa + reach));
+    s = clamp(s);
+  }
+  const double t = clamp((s * ab - bd) / bb);
+  return {clamp((t * ab + ad) / aa), t};
+}
+
+Separation separateCapsules(const PosedSolid& a, const PosedSolid& b) {
+  const Segment sa = axisOf(std::get<Capsule>(a.shape), a), sb = axisOf(std::get<Capsule>(b.shape), b);
+  const Vec2 at = nearestOnSegments(sa, sb);
+  const auto [n, gap] = directionOf<Vec3>(sa.centre + at.x() * sa.half - sb.centre - at.y() * sb.half, Vec3::Zero());
+  if (gap > 0) return {n, gap};
+  return {directionOf<Vec3>(sa.half.cross(sb.half), Vec3(a.R.col(0))).n, 0};  // the axes meet
+}
+
+// The centre's direction is a lower bound: far apart no more need be known.
+bool areApart(const PosedSolid& a, const PosedSolid& b, double reach) {
+  const auto [n, length] = directionOf<Vec3>(a.p - b.p, Vec3::UnitZ());
+  return length > 0 && !(gapAlong(a, b, n) < reach);
+}
+
+}  // namespace
+
+void collideConvex(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin, PairPoints& out) {
+  out.count = 0;
+  const double radius_a = boundingRadius(a), radius_b = boundingRadius(b);
+  const double furthest = radius_a + radius_b + margin;
+  const Vec3 p_BA = X_WA.p - X_WB.p;
+  if (!(p_BA.squaredNorm() < furthest * furthest)) return;
+  const PosedSolid A{a, X_WA.q.toRotationMatrix(), 0.5 * p_BA}, B{b, X_WB.q.toRotationMatrix(), -0.5 * p_BA};
+  const double size = std::min(radius_a, radius_b), reach = margin + roundingOf(a) + roundingOf(b);
+  const auto finish = [&](const Separation& s) {
+    const bool found = s.gap < reach && overlapFacets(A, B, s, size, margin, out);
+    for (int i = 0; i < out.count; ++i) out.points[static_cast<std::size_t>(i)].p_W += 0.5 * (X_WA.p + X_WB.p);
+    return found;
+  };
+  if (std::holds_alternative<Capsule>(a) && std::holds_alternative<Capsule>(b)) return static_cast<void>(finish(separateCapsules(A, B)));
+  if (std::holds_alternative<Box>(a) && std::holds_alternative<Box>(b)) {
+    const Separation s = separateBoxes(A, B);
+    // Apart, the nearest may be two corners, or a corner and an edge: none of the 15 directions.
+    if (!(s.gap < reach) || finish(s) || s.gap < 0) return;
+  } else if (areApart(A, B, reach)) {
+    return;
+  }
+  finish(separate(A, B, size));
+}
+
+}  // namespace pincer::contact

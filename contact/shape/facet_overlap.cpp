@@ -1,0 +1,288 @@
+#include "contact/shape/facet_overlap.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "contact/shape/point_choice.h"
+
+namespace pincer::contact {
+namespace {
+
+constexpr double kSame = 1e-6;  // of the size, see the header
+
+enum : std::uint32_t { kCornerOfA = 0, kCornerOfB = 1, kCrossing = 2, kSupports = 3 };
+std::uint32_t featureOf(std::uint32_t kind, std::uint32_t a, std::uint32_t b) { return kind << 28 | a << 14 | b; }
+
+// A facet seen along n: places across n, and its height as an affine function of them.
+struct FlatCorner {
+  Vec2 x;
+  std::uint32_t feature;
+  std::uint32_t edge;  // to the next corner, in the facet's own names
+};
+struct FlatFacet {
+  std::array<FlatCorner, Facet::kMost> corners;  // counter-clockwise seen against n
+  int count = 0;
+  Vec2 x0 = Vec2::Zero(), slope = Vec2::Zero();
+  double z0 = 0;
+  double line_radius = 0;  // of a segment: how far its solid is rounded about it
+
+  const FlatCorner& corner(int i) const { return corners[static_cast<std::size_t>(i)]; }
+  double height(const Vec2& x) const { return z0 + slope.dot(x - x0); }
+};
+
+double crossOf(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+double lineRadius(const Shape& shape) {
+  if (const auto* cylinder = std::get_if<Cylinder>(&shape)) return cylinder->radius;
+  if (const auto* cut = std::get_if<CylinderWithFlat>(&shape)) return cut->radius;
+  return roundingOf(shape);
+}
+
+struct View {
+  Mat3 R;  // columns t1, t2, n
+
+  Vec2 across(const Vec3& p) const { return {R.col(0).dot(p), R.col(1).dot(p)}; }
+  double along(const Vec3& p) const { return R.col(2).dot(p); }
+};
+
+void makePoint(const Vec3& p, const View& view, FlatCorner named, FlatFacet& out) {
+  out.count = 1;
+  named.x = view.across(p);
+  out.corners[0] = named;
+  out.x0 = named.x;
+  out.z0 = view.along(p);
+}
+
+// `sign` is the side of n that the facet faces: -1 for a's. Facets too steep to have a height over each place are reduced to their corner or
+// edge that reaches furthest.
+void flatten(const PosedSolid& solid, double sign, const View& view, std::uint32_t kind, double size, FlatFacet& out) {
+  constexpr double kSteepest = 0.05;  // cosine between n and the facet's
+  Facet facet;
+  const Vec3 d = solid.inwards(sign * view.R.col(2));
+  facetOf(solid.shape, d, facet);
+  const auto corner = [&](int i) -> const FacetCorner& { return facet.corners[static_cast<std::size_t>(i)]; };
+  const auto named = [&](int i, int edge) -> FlatCorner {
+    const std::uint32_t name = corner(i).vertex;
+    return {Vec2::Zero(), kind == kCornerOfA ? featureOf(kind, name, 0) : featureOf(kind, 0, name), corner(edge).edge};
+  };
+  const auto placeOf = [&](int i) { return solid.place(corner(i).p); };
+  if (facet.count > 2) {
+    const Vec3 m = solid.outwards(facet.n);
+    const double rise = view.along(m);
+    if (sign * rise < kSteepest) return makePoint(solid.support(sign * view.R.col(2)), view, named(0, 0), out);
+    out.slope = -view.across(m) / rise;
+    out.count = facet.count;
+    for (int i = 0; i < facet.count; ++i) {
+      const int from = sign > 0 ? i : facet.count - 1 - i, edge = sign > 0 ? from : (from + facet.count - 1) % facet.count;
+      FlatCorner& c = out.corners[static_cast<std::size_t>(i)] = named(from, edge);
+      c.x = view.across(placeOf(from));
+    }
+    const int first = sign > 0 ? 0 : facet.count - 1;
+    out.x0 = out.corners[0].x;
+    out.z0 = view.along(placeOf(first));
+    return;
+  }
+  makePoint(placeOf(0), view, named(0, 0), out);
+  out.line_radius = lineRadius(solid.shape);
+  if (facet.count < 2) return;
+  FlatCorner end = named(1, 0);
+  end.x = view.across(placeOf(1));
+  const Vec2 chord = end.x - out.x0;
+  if (!(chord.norm() > kSame * size)) return;
+  out.slope = (view.along(placeOf(1)) - out.z0) / chord.squaredNorm() * chord;
+  out.corners[1] = end;
+  out.count = 2;
+}
+
+struct Corner {
+  Vec2 x;
+  std::uint32_t feature;
+  double extra;  // gap beyond that of the facets' heights [m]
+};
+
+// At most: the corners of one facet, and two for each edge of the other.
+constexpr int kMostShared = 3 * Facet::kMost;
+struct Shared {
+  std::array<Corner, kMostShared> corners;
+  int count = 0;
+
+  void add(const Vec2& x, std::uint32_t feature, double extra = 0) {
+    if (count < kMostShared) corners[static_cast<std::size_t>(count++)] = {x, feature, extra};
+  }
+};
+
+// Without roundings.
+double leastGap(const Shared& shared, const FlatFacet& fa, const FlatFacet& fb) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < shared.count; ++i) {
+    const Corner& c = shared.corners[static_cast<std::size_t>(i)];
+    least = std::min(least, fa.height(c.x) - fb.height(c.x) + c.extra);
+  }
+  return least;
+}
+
+// How far `x` is to the left of the edge that begins at corner j of `f` [m].
+double leftOf(const FlatFacet& f, int j, const Vec2& x) {
+  const Vec2& from = f.corner(j).x;
+  const Vec2 edge = f.corner((j + 1) % f.count).x - from;
+  const double length = edge.norm();
+  return length > 0 ? crossOf(edge, x - from) / length : 0;
+}
+
+// A polygon being clipped: each edge belongs to the facet that is clipped, or lies on an edge of the clipping one.
+struct ClipCorner {
+  Vec2 x;
+  std::uint32_t feature;
+  std::uint32_t edge;
+  int clip;  // place of the clipping edge that the edge to the next corner lies on; -1 for the facet's own
+};
+struct ClipPolygon {
+  std::array<ClipCorner, kMostShared> corners;
+  int count = 0;
+
+  void add(const ClipCorner& c) {
+    if (count < kMostShared) corners[static_cast<std::size_t>(count++)] = c;
+  }
+};
+
+// The name of the point where the clipping edge j meets the edge that `c` begins: a crossing, or a corner of the clipping facet.
+std::uint32_t nameOfCut(const ClipCorner& c, const FlatFacet& clipper, int j, bool clipper_is_a) {
+  if (c.clip < 0) {
+    const std::uint32_t other = clipper.corner(j).edge;
+    return clipper_is_a ? featureOf(kCrossing, other, c.edge) : featureOf(kCrossing, c.edge, other);
+  }
+  return clipper.corner((c.clip + 1) % clipper.count == j ? j : c.clip).feature;
+}
+
+void clipBy(const FlatFacet& clipper, int j, bool clipper_is_a, double tolerance, const ClipPolygon& in, ClipPolygon& out) {
+  out.count = 0;
+  for (int i = 0; i < in.count; ++i) {
+    const ClipCorner& c = in.corners[static_cast<std::size_t>(i)];
+    const ClipCorner& next = in.corners[static_cast<std::size_t>((i + 1) % in.count)];
+    const double here = leftOf(clipper, j, c.x), there = leftOf(clipper, j, next.x);
+    const bool is_in = here >= -tolerance, next_in = there >= -tolerance;
+    if (is_in) out.add(c);
+    if (is_in == next_in) continue;
+    const double t = std::clamp(here / (here - there), 0.0, 1.0);
+    // Leaving, the outline goes on along the clipping edge; entering, along its own.
+    ClipCorner cut{c.x + t * (next.x - c.x), nameOfCut(c, clipper, j, clipper_is_a), c.edge, c.clip};
+    if (is_in) cut.clip = j;
+    out.add(cut);
+  }
+}
+
+// Of polygon and polygon, or of segment and polygon (a segment is clipped as a polygon there and back).
+void clipFacet(const FlatFacet& facet, const FlatFacet& clipper, bool clipper_is_a, double tolerance, Shared& out) {
+  std::array<ClipPolygon, 2> polygons;
+  ClipPolygon *from = &polygons[0], *to = &polygons[1];
+  for (int i = 0; i < facet.count; ++i) from->add({facet.corner(i).x, facet.corner(i).feature, facet.corner(i).edge, -1});
+  for (int j = 0; j < clipper.count && from->count > 0; ++j) {
+    clipBy(clipper, j, clipper_is_a, tolerance, *from, *to);
+    std::swap(from, to);
+  }
+  for (int i = 0; i < from->count; ++i) {
+    const ClipCorner& c = from->corners[static_cast<std::size_t>(i)];
+    const auto isSame = [&](const Corner& other) { return (other.x - c.x).norm() <= tolerance || other.feature == c.feature; };
+    if (std::none_of(out.corners.begin(), out.corners.begin() + out.count, isSame)) out.add(c.x, c.feature);
+  }
+}
+
+// The part of segment f that lies over the segment g, measured along f: the ends of f or the feet of g's ends.
+void overlapSegments(const FlatFacet& fa, const FlatFacet& fb, double tolerance, Shared& out) {
+  constexpr double kParallel = 1e-6, kNearlyParallel = 0.3;  // sine
+  const Vec2 a0 = fa.corner(0).x, b0 = fb.corner(0).x;
+  const Vec2 a = fa.corner(1).x - a0, b = fb.corner(1).x - b0;
+  const double cross = crossOf(a, b), lengths = a.norm() * b.norm();
+  if (std::abs(cross) > kParallel * lengths) {
+    const double s = crossOf(b0 - a0, b) / cross, t = crossOf(b0 - a0, a) / cross;
+    const double slack_a = tolerance / a.norm(), slack_b = tolerance / b.norm();
+    if (s >= -slack_a && s <= 1 + slack_a && t >= -slack_b && t <= 1 + slack_b)
+      out.add(a0 + std::clamp(s, 0.0, 1.0) * a, featureOf(kCrossing, fa.corner(0).edge, fb.corner(0).edge));
+  }
+  if (std::abs(cross) > kNearlyParallel * lengths) return;
+  const double curve = 2 * (fa.line_radius + fb.line_radius);
+  const auto addEnd = [&](const FlatCorner& end, const Vec2& from, const Vec2& line) {
+    const double at = (end.x - from).dot(line) / line.squaredNorm();
+    const double slack = tolerance / line.norm();
+    if (at < -slack || at > 1 + slack) return;
+    const double beside = (end.x - from - at * line).norm();
+    const auto isSame = [&](const Corner& other) { return (other.x - end.x).norm() <= tolerance; };
+    if (beside > tolerance && !(curve > 0)) return;
+    if (std::none_of(out.corners.begin(), out.corners.begin() + out.count, isSame))
+      out.add(end.x, end.feature, curve > 0 ? beside * beside / curve : 0);
+  };
+  for (int i = 0; i < 2; ++i) addEnd(fa.corner(i), b0, b);
+  for (int i = 0; i < 2; ++i) addEnd(fb.corner(i), a0, a);
+}
+
+void share(const FlatFacet& fa, const FlatFacet& fb, double tolerance, Shared& out) {
+  if (fa.count == 1) return out.add(fa.corner(0).x, fa.corner(0).feature);
+  if (fb.count == 1) return out.add(fb.corner(0).x, fb.corner(0).feature);
+  if (fa.count == 2 && fb.count == 2) return overlapSegments(fa, fb, tolerance, out);
+  if (fb.count > 2) return clipFacet(fa, fb, false, tolerance, out);
+  clipFacet(fb, fa, true, tolerance, out);
+}
+
+// The points as the choice sees them: a flat support whose gap at each is known.
+class KnownGaps {
+ public:
+  KnownGaps(const Vec3* points, const double* gaps, const Vec3& n) : points_(points), gaps_(gaps), n_(n) {}
+  double gap(const Vec3& p) const { return gaps_[&p - points_]; }  // `p` is one of the points
+  Vec3 normal(const Vec3&) const { return n_; }
+
+ private:
+  const Vec3* points_;
+  const double* gaps_;
+  Vec3 n_;
+};
+
+}  // namespace
+
+bool overlapFacets(const PosedSolid& a, const PosedSolid& b, const Separation& along, double size, double margin, PairPoints& out) {
+  const Vec3& n = along.n;
+  const View view{frameFromNormal(n)};
+  FlatFacet fa, fb;
+  flatten(a, -1, view, kCornerOfA, size, fa);
+  flatten(b, 1, view, kCornerOfB, size, fb);
+  Shared shared;
+  bool found = false, exactly = false;
+  for (double slack = kSame; slack < 2e-4 && !found; slack *= 10) {  // the direction may be right to round-off only
+    shared.count = 0;
+    share(fa, fb, slack * size, shared);
+    found = leastGap(shared, fa, fb) < along.gap + slack * size;
+    exactly = exactly || (found && slack == kSame);
+  }
+  if (!found) {
+    const Vec2 xa = view.across(a.support(-n)), xb = view.across(b.support(n));
+    shared.count = 0;
+    shared.add(0.5 * (xa + xb), featureOf(kSupports, 0, 0), along.gap - fa.height(0.5 * (xa + xb)) + fb.height(0.5 * (xa + xb)));
+  }
+
+  const double rounding_a = roundingOf(a.shape), rounding_b = roundingOf(b.shape);
+  std::array<Vec3, kMostShared> points;
+  std::array<double, kMostShared> gaps;
+  std::array<std::uint32_t, kMostShared> features;
+  for (int i = 0; i < shared.count; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    const Corner& c = shared.corners[at];
+    const double top = fa.height(c.x) - rounding_a, bottom = fb.height(c.x) + rounding_b;
+    gaps[at] = std::max(top - bottom + c.extra, along.gap - rounding_a - rounding_b);  // less is an effect of the slack
+    points[at] = c.x.x() * view.R.col(0) + c.x.y() * view.R.col(1) + 0.5 * (top + bottom) * n;
+    features[at] = c.feature;
+  }
+  const auto count = static_cast<std::size_t>(shared.count);
+  const KnownGaps support(points.data(), gaps.data(), n);
+  const ExtremePoints candidates{{points.data(), count}, {features.data(), count}, 0};
+  const PointChoice choice(candidates, support, margin);
+  out.count = 0;
+  for (int k = 0; k < choice.count(); ++k) {
+    const auto [i, phi] = choice[k];
+    const auto at = static_cast<std::size_t>(i);
+    out.points[static_cast<std::size_t>(out.count++)] = {points[at], n, phi, features[at]};
+  }
+  std::sort(out.points.begin(), out.points.begin() + out.count,
+            [](const PairPoint& x, const PairPoint& y) { return x.feature < y.feature; });
+  return exactly;
+}
+
+}  // namespace pincer::contact

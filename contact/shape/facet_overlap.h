@@ -1,0 +1,25 @@
+// facet_overlap: where two convex solids touch, once the direction is known in which they are furthest apart.
+//
+// The facet of A that faces along -n and that of B that faces along n, each a polygon, a segment or a point, are laid over each other along
+// n. What they share is a polygon again, whose corners are corners of A's facet, corners of B's, and crossings of their edges:
+//
+//   gap(x) = z_A(x) - z_B(x) - rounding_A - rounding_B     z  height along n of the facets' planes over the point x across n [m]
+//
+// This holds face on face, edge on face, edge on edge and corner on face alike; nothing is remembered from tick to tick. Two segments that
+// cross at a small angle, as cylinders side by side do, touch at the crossing, and at the ends of what they share when these are near:
+//   gap(end) = gap + l^2 / 2 (R_A + R_B)                   l  distance of the two lines across n [m], R radius of curvature [m]
+// Of more than four points up to four are kept (point_choice.h). A point's feature is made of the names of corners and edges
+// (convex_features.h), so it stays while these touch. A corner of A counts as within B's facet up to kSame of the size outside of it: so
+// the corners of equal boxes on each other keep their names.
+#pragma once
+#include "contact/shape/pair_query.h"
+#include "contact/shape/separation.h"
+
+namespace pincer::contact {
+
+// Points with gap below `margin`, sorted by feature, written to `out` as in pair_query.h, from the origin that a and b are posed about.
+// `along`: what separate() found. `size` [m] is the order of magnitude of both. Allocates nothing. False where the facets share no place
+// whose gap is along.gap, so that the direction isn't one of least overlap; `out` has the nearest points of the two along it all the same.
+bool overlapFacets(const PosedSolid& a, const PosedSolid& b, const Separation& along, double size, double margin, PairPoints& out);
+
+}  // namespace pincer::contact

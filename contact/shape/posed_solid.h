@@ -1,0 +1,19 @@
+// posed_solid: a convex solid where it is, seen in the axes of the world from an origin near by.
+#pragma once
+#include "contact/shape/convex_features.h"
+
+namespace pincer::contact {
+
+struct PosedSolid {
+  const Shape& shape;
+  Mat3 R;  // solid's frame in the world's axes
+  Vec3 p;  // of the solid's origin [m]
+
+  // Written out by columns: Eigen's 3x3 product is a call of its own here.
+  Vec3 outwards(const Vec3& v) const { return v.x() * R.col(0) + v.y() * R.col(1) + v.z() * R.col(2); }
+  Vec3 inwards(const Vec3& v) const { return {R.col(0).dot(v), R.col(1).dot(v), R.col(2).dot(v)}; }
+  Vec3 place(const Vec3& p_B) const { return p + outwards(p_B); }
+  Vec3 support(const Vec3& d) const { return place(supportOf(shape, inwards(d))); }
+};
+
+}  // namespace pincer::contact
