@@ -10,6 +10,7 @@ namespace {
 
 constexpr int kB = BlockLu::kBlock;
 constexpr int kBB = kB * kB;
+constexpr int kMostProducts = 2000;  // of blocks in a factorisation, some 0.1 ms: sweeps over the contacts cost less
 
 // C = A B and C -= A B, row-major.
 void multiply(const double* A, const double* B, double* C) {
@@ -134,11 +135,15 @@ bool BlockLu::order() {
   used_ = 0;
   std::array<bool, kMaxNodes> done{};
   first_later_[0] = 0;  // while ordering: how many are listed
+  int products = 0;
   for (int k = 0; k < nodes_; ++k) {
     order_[k] = nextNode(done);
     if (!eliminate(order_[k])) return false;
     done[order_[k]] = true;
     first_later_[k + 1] = first_later_[0];
+    const int degree = first_later_[0] - (k == 0 ? 0 : first_later_[k]);
+    products += degree * degree;
+    if (products > kMostProducts) return false;
   }
   first_later_[0] = 0;
   return true;

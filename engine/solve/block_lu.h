@@ -20,7 +20,7 @@ class BlockLu {
   // Memory for `max_nodes` (at most kMaxNodes are treated) and for `max_blocks` blocks.
   BlockLu(int max_nodes, int max_blocks);
 
-  // Structure: begin, connect every pair, order. False if nodes or fill exceed the memory.
+  // Structure: begin, connect every pair, order. False if nodes or fill exceed the memory, or the factorisation would take too long.
   void begin(int nodes);
   void connect(int a, int b);
   bool order();

@@ -28,7 +28,9 @@ class CsvRecorder {
     for (const Quantity& quantity : record_.quantities) table_.add(quantity.measure(moment));
     table_.endRow();
     constexpr std::size_t kBlock = 1 << 16;
-    if (table_.text().size() > kBlock) file_->write(table_.take());
+    if (table_.text().size() <= kBlock) return;
+    file_->write(table_.text());
+    table_ = {};
   }
 
   void finish() {

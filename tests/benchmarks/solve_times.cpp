@@ -1,7 +1,7 @@
 // solve_times: what the contact solver, heaps and pushed meshes cost, as tables.
 //
 //   build/solve_times solver   warm-started solves: times, iterations, share of each method
-//   build/solve_times heap     1, 10, 100, 1000 spheres in a walled box for 2 s (scene S8 of the work-precision benchmark)
+//   build/solve_times heap [TICKS]  1, 10, 100, 1000 spheres in a walled box for 2 s (scene S8 of the work-precision benchmark)
 //   build/solve_times pushed   meshes pushed about in a dish and on a plane: how often each method is needed, how many solves fail
 // Times are medians and quantiles on this machine, now; what else runs on it shows in the tail.
 #include <fmt/format.h>
@@ -130,7 +130,7 @@ void measureSolver() {
     measureFamily(family);
 }
 
-void measureHeap(int balls) {
+void measureHeap(int balls, int ticks) {
   const int side = balls == 1 ? 1 : balls == 10 ? 2 : balls == 100 ? 5 : 10;
   const double spacing = 0.0215, half_width = 0.5 * (side * spacing + 0.002);
   const Material glass{0.5, 0.5, 0, 0};
@@ -157,10 +157,10 @@ void measureHeap(int balls) {
   Times settled;
   Methods methods;
   double deepest = 0;
-  for (int tick = 0; tick < 2000; ++tick) {
+  for (int tick = 0; tick < ticks; ++tick) {
     StepReport report;
     const auto tickOnce = [&] { report = step(model, state, scratch); };
-    tick < 1000 ? tickOnce() : settled.time(tickOnce);
+    tick < ticks / 2 ? tickOnce() : settled.time(tickOnce);
     methods.add(report.solve);
     for (const Contact& c : scratch.contacts) deepest = std::min(deepest, c.phi);
   }
@@ -173,16 +173,16 @@ void measurePushed(const char* name, const contact::TriangleMesh& mesh, bool dis
   builder.addBody(
       {"support", dish ? contact::Shape(contact::Dish{0.15}) : contact::Shape(contact::HalfSpace{}), false, 0, {0.5, 0.5, 0, 0}});
   builder.addBody({"object", contact::Mesh{contact::SmoothMesh::build(mesh)}, true, 0.075, {0.6, 0.51, 0, 0}});
-  const WorldModel model = builder.build();
+  WorldModel model = builder.build();
   WorldState state = makeState(model, {{}, {{Quat::Identity(), Vec3(0, 0, 0.05)}, Vec3::Zero(), Vec3::Zero()}}, {});
   WorldScratch scratch(model);
   std::mt19937 generator(5);
   const auto kick = [&](double size) { return Vec3(size * (generator() / 2147483648.0 - 1), size * (generator() / 2147483648.0 - 1), 0); };
   Methods methods;
   for (int tick = 0; tick < 20000; ++tick) {
-    BodyState& body = state.bodies[1];
-    if (tick % 200 == 0 && tick > 1000) body.v_W += kick(0.25);
-    body.v_W += 4e-3 * Vec3(std::sin(2e-3 * tick), std::cos(3.1e-3 * tick), 0);  // a push of 4 m/s^2 that turns slowly
+    if (tick % 200 == 0 && tick > 1000) state.bodies[1].v_W += kick(0.25);
+    // a push of 4 m/s^2 that turns slowly
+    model.options.gravity_W = Vec3(4 * std::sin(2e-3 * tick), 4 * std::cos(3.1e-3 * tick), -9.81);
     methods.add(step(model, state, scratch).solve);
   }
   fmt::print("{:<28} {}\n", fmt::format("{} {}", name, dish ? "in a dish" : "on a plane"), methods.row());
@@ -194,8 +194,9 @@ int main(int argc, char** argv) {
   const std::string what = argc > 1 ? argv[1] : "";
   if (what == "solver") measureSolver();
   if (what == "heap") {
+    const int ticks = argc > 2 ? std::stoi(argv[2]) : 2000;
     fmt::print("{:>6} {:>9} {:>9} {:>8} {:>9} {:>6}   {}\n", "balls", "median us", "p99 us", "pen. um", "E end J", "cont.", kMethodsHead);
-    for (const int balls : {1, 10, 100, 1000}) measureHeap(balls);
+    for (const int balls : {1, 10, 100, 1000}) measureHeap(balls, ticks);
   }
   if (what == "pushed") {
     fmt::print("{:<28} {}\n", "20 s of pushing", kMethodsHead);

@@ -72,7 +72,7 @@ TEST(BlockLu, SolvesRandomGraphs) {
   std::mt19937 generator(3);
   for (int n = 0; n < 20; ++n) {
     Edges edges;
-    const int nodes = 2 + static_cast<int>(generator() % 40);
+    const int nodes = 2 + static_cast<int>(generator() % 15);
     for (int e = 0; e < 2 * nodes; ++e) {
       const int a = static_cast<int>(generator() % static_cast<unsigned>(nodes)),
                 b = static_cast<int>(generator() % static_cast<unsigned>(nodes));
@@ -90,6 +90,15 @@ TEST(BlockLu, SaysSoWhenTheMemoryDoesNotSuffice) {
   BlockLu few(BlockLu::kMaxNodes + 1, 1);
   few.begin(BlockLu::kMaxNodes + 1);
   EXPECT_FALSE(few.order());
+}
+
+TEST(BlockLu, SaysSoWhenAllAreConnectedToAll) {
+  BlockLu lu(40, 1600);
+  lu.begin(40);
+  for (int a = 0; a < 40; ++a) {
+    for (int b = 0; b < a; ++b) lu.connect(a, b);
+  }
+  EXPECT_FALSE(lu.order());
 }
 
 TEST(BlockLu, SaysSoWhenABlockIsSingular) {
