@@ -1,5 +1,5 @@
 #include "contact/shape/pair_query.h"
-#include "engine/world/step.h"
+#include "engine/world/impact.h"
 
 namespace pincer::engine {
 namespace {
@@ -16,6 +16,7 @@ void collidePair(const WorldModel& model, const BodyPair& pair, const Material* 
   // What closes within the tick must be seen at its middle.
   const double margin = model.options.contact_margin + h * (sa.start.v_W - sb.start.v_W).norm();
   if (!boundsTouch(a, b, sa, sb, margin)) return;
+  noteFastPair(model, pair, scratch);
   contact::PairPoints found;
   contact::collideShapes(a.shape, sa.X_WB_mid, b.shape, sb.X_WB_mid, margin, scratch.patches, found);
   if (found.count == 0) return;

@@ -42,6 +42,20 @@ void setInertia(const BodySpec& spec, BodyModel& body) {
   body.rotation = FreeRotation(inertia.moments);
 }
 
+// Of a homogeneous solid: a slab's half thickness is the root of three times the mean square distance from its middle plane.
+double innerRadius(const contact::Shape& shape) {
+  if (isSupportOnly(shape)) return std::numeric_limits<double>::infinity();
+  const Vec3 moments = principalInertia(massPropertiesOf(shape, 1)).moments;
+  return std::sqrt(std::max(3 * (0.5 * moments.sum() - moments.maxCoeff()), 0.0));
+}
+
+void setExtent(const BodySpec& spec, BodyModel& body) {
+  body.bounding_radius = contact::boundingRadius(spec.shape) + body.X_BI.p.norm();
+  body.inner_radius = innerRadius(spec.shape);
+  const bool is_round = isSupportOnly(spec.shape) || std::holds_alternative<contact::Sphere>(spec.shape);
+  body.corner_reach = is_round ? 0 : std::max(body.bounding_radius - body.inner_radius, 0.0);
+}
+
 // Fox-Goodwin is stable up to omega h = sqrt(6); half of the first axis' own limit leaves room for what the contact adds.
 AxisForm formOf(const DrivenPointModel& point, int axis, double h) {
   if (point.locked[axis]) return AxisForm::kLocked;
@@ -81,7 +95,11 @@ int WorldBuilder::addBody(const BodySpec& spec) {
     throw InputError(fmt::format("body \"{}\": half-spaces and dishes have no mass and can't move. Make it static.", spec.name));
   }
   if (spec.dynamic) setInertia(spec, body);
-  body.bounding_radius = contact::boundingRadius(spec.shape) + body.X_BI.p.norm();
+  if (spec.driven && spec.dynamic)
+    throw InputError(fmt::format("body \"{}\": it can't be both dynamic and driven. Choose one.", spec.name));
+  body.driven = spec.driven;
+  if (spec.driven) body.motion = model_.driven_count++;
+  setExtent(spec, body);
   model_.bodies.push_back(std::move(body));
   return static_cast<int>(model_.bodies.size()) - 1;
 }
@@ -125,6 +143,7 @@ WorldModel WorldBuilder::build() const {
       }
       if (!model.has_broad_phase) model.pairs.push_back({a, b, combine(A.material, B.material)});
       A.may_touch = B.may_touch = true;
+      model.bounces = model.bounces || model.pairs.back().material.restitution > 0;
     }
   }
   if (model.has_broad_phase) model.excluded_pairs = std::move(excluded);

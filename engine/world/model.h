@@ -28,15 +28,19 @@ struct Material {
 struct BodyModel {
   std::string name;
   contact::Shape shape;
-  bool dynamic = true;          // false: never moves
-  double mass = 0;              // [kg]; 0 for static bodies
+  bool dynamic = true;          // false: never moves, or is driven
+  bool driven = false;          // follows the motion that the caller gives, whatever touches it
+  int motion = -1;              // of driven bodies: which of the inputs
+  double mass = 0;              // [kg]; 0 for static and driven bodies
   double inverse_mass = 0;      // [1/kg]
   Vec3 moments = Vec3::Zero();  // principal moments of inertia [kg m^2]
-  Pose X_BI;                    // inertial frame in B; identity for static bodies
+  Pose X_BI;                    // inertial frame in B; identity for static and driven bodies
   Pose X_IB;
   FreeRotation rotation;
   Material material;
   double bounding_radius = 0;  // about the centre of mass [m]; infinite for half-spaces
+  double inner_radius = 0;     // about half its least thickness [m]; infinite for half-spaces and dishes
+  double corner_reach = 0;     // how much further than that it reaches; 0 where turning doesn't change its outline [m]
   bool may_touch = false;      // some pair or point can touch it; the others move in closed form alone
 };
 
@@ -84,6 +88,8 @@ struct WorldModel {
   std::vector<PairModel> pairs;  // only those that can touch: at least one dynamic, shapes supported; none with a broad phase
   bool has_broad_phase = false;  // of more than kAllPairsBodies bodies: pairs are found tick by tick (broad_phase.h)
   std::vector<std::pair<int, int>> excluded_pairs;  // sorted; only with a broad phase
+  bool bounces = false;          // some pair has restitution
+  int driven_count = 0;          // of bodies
 };
 
 // What the builder is told about a body; B's pose and velocity at the start live in BodyStart.
@@ -93,6 +99,7 @@ struct BodySpec {
   bool dynamic = true;
   double mass = 0;  // [kg], > 0 for dynamic bodies
   Material material;
+  bool driven = false;  // not dynamic, but moves as the caller says
 };
 
 // Collects bodies and points, checks them, and builds the model. Every error names the body, the value, its range and a remedy (InputError).

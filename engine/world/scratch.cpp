@@ -4,12 +4,17 @@
 
 namespace pincer::engine {
 
-WorldScratch::WorldScratch(const WorldModel& model) : islands(model) {
+WorldScratch::WorldScratch(const WorldModel& model) : h(model.options.h), islands(model) {
   const auto contact_count = static_cast<std::size_t>(model.options.max_contacts);
   const std::size_t row_count = contact_count * kMaxContactRows;
   bodies.resize(model.bodies.size());
   points.resize(model.points.size());
   contacts.reserve(contact_count);
+  fast_pairs.reserve(contact_count);
+  impact_pairs.reserve(2 * contact_count);
+  struck.resize(model.bodies.size());
+  point_inputs.resize(model.points.size());
+  motion_inputs.resize(static_cast<std::size_t>(model.driven_count));
   first_row.resize(contact_count + 1);
   mu.resize(contact_count);
   q.resize(row_count);
