@@ -1,5 +1,6 @@
 // From impulses to momenta, from momenta to poses, and what each contact remembers of it.
 #include "engine/world/contact_rows.h"
+#include "engine/world/joints.h"
 #include "engine/world/step.h"
 
 namespace pincer::engine {
@@ -26,7 +27,7 @@ void advanceDriven(const BodyScratch& scratch, BodyState& s) { s = {scratch.X_WB
 
 }  // namespace
 
-void gatherImpulses(const WorldModel&, WorldScratch& scratch) {
+void gatherImpulses(const WorldModel& model, WorldScratch& scratch) {
   for (BodyScratch& body : scratch.bodies) {
     rest(body);
     body.angular_impulse_W.setZero();
@@ -38,6 +39,7 @@ void gatherImpulses(const WorldModel&, WorldScratch& scratch) {
     applyImpulse(scratch, c.a, c.arm_a_W, c.impulse_W, moment_W, c.closing);
     applyImpulse(scratch, c.b, c.arm_b_W, -c.impulse_W, -moment_W, c.closing);
   }
+  if (!model.joints.empty()) gatherJointImpulses(model, scratch);
 }
 
 namespace {
@@ -143,6 +145,7 @@ void advance(const WorldModel& model, WorldState& state, WorldScratch& scratch) 
     advancePoint(model.point_forms[i], h, scratch.points[i], state.points[i]);
     scratch.points[i].tick_impulse_W += scratch.points[i].impulse_W;
   }
+  if (!model.joints.empty()) settleJoints(model, state, scratch);
   rememberContacts(scratch, h, state);
   state.h_last = h;
 }

@@ -94,7 +94,7 @@ Moment momentOf(const WorldModel& model, const WorldState& state, const WorldScr
 // The search for when one pair closes.
 class ClosingPair {
  public:
-  ClosingPair(const WorldModel& model, const WorldState& state, const WorldScratch& scratch, ImpactPair pair)
+  ClosingPair(const WorldModel& model, const WorldState& state, WorldScratch& scratch, ImpactPair pair)
       : model_(model), state_(state), scratch_(scratch), pair_(pair) {
     const double speed = (scratch.bodies[pair.a].start.v_W - scratch.bodies[pair.b].start.v_W).norm();
     margin_ = 2 * (model.options.contact_margin + scratch.h * speed);
@@ -124,7 +124,7 @@ class ClosingPair {
     const BodyModel &A = model_.bodies[pair_.a], &B = model_.bodies[pair_.b];
     const Moment a = momentOf(model_, state_, scratch_, pair_.a, t), b = momentOf(model_, state_, scratch_, pair_.b, t);
     contact::PairPoints found;
-    contact::collideShapes(A.shape, a.X_WI * A.X_IB, B.shape, b.X_WI * B.X_IB, margin_, found);
+    contact::collideShapes(A.shape, a.X_WI * A.X_IB, B.shape, b.X_WI * B.X_IB, margin_, scratch_.patches, found);
     const Vec3 acceleration_W = acceleration(pair_.a) - acceleration(pair_.b);
     Next next;
     double nearest = margin_;
@@ -157,7 +157,7 @@ class ClosingPair {
 
   const WorldModel& model_;
   const WorldState& state_;
-  const WorldScratch& scratch_;
+  WorldScratch& scratch_;
   ImpactPair pair_;
   double margin_;
 };
@@ -172,7 +172,15 @@ bool givesWay(const WorldModel& model, const Side& side) {
 // Keeps the contacts that touch and hang together with a hit.
 void keepStruck(const WorldModel& model, WorldScratch& scratch) {
   std::fill(scratch.struck.begin(), scratch.struck.end(), false);
-  for (const ImpactPair& pair : scratch.impact_pairs) scratch.struck[pair.a] = scratch.struck[pair.b] = true;
+  const auto strike = [&](int body) {
+    scratch.struck[body] = true;
+    if (model.bodies[body].joint_group < 0) return;
+    for (const int other : model.joint_groups[model.bodies[body].joint_group].bodies) scratch.struck[other] = true;
+  };
+  for (const ImpactPair& pair : scratch.impact_pairs) {
+    strike(pair.a);
+    strike(pair.b);
+  }
   std::erase_if(scratch.contacts, [&](const Contact& c) { return c.phi > kTouching || givesWay(model, c.a) || givesWay(model, c.b); });
   const auto isStruck = [&](const Side& side) { return isDynamic(model, side) && scratch.struck[side.index]; };
   for (bool spreads = true; spreads;) {
@@ -181,7 +189,8 @@ void keepStruck(const WorldModel& model, WorldScratch& scratch) {
       if (isStruck(c.a) == isStruck(c.b)) continue;
       for (const Side& side : {c.a, c.b}) {
         if (!isDynamic(model, side) || scratch.struck[side.index]) continue;
-        scratch.struck[side.index] = spreads = true;
+        strike(side.index);
+        spreads = true;
       }
     }
   }
@@ -240,11 +249,11 @@ double bounceRestitution(double restitution, double u, double acceleration, doub
   return flight >= shortest * -acceleration ? restitution : 0;
 }
 
-void noteFastPair(const WorldModel& model, const PairModel& pair, WorldScratch& scratch) {
-  const double thickness = std::min(model.bodies[pair.a].inner_radius, model.bodies[pair.b].inner_radius);
-  const Vec3 way = model.options.h * (scratch.bodies[pair.a].start.v_W - scratch.bodies[pair.b].start.v_W);
+void noteFastPair(const WorldModel& model, int a, int b, WorldScratch& scratch) {
+  const double thickness = std::min(model.bodies[a].inner_radius, model.bodies[b].inner_radius);
+  const Vec3 way = model.options.h * (scratch.bodies[a].start.v_W - scratch.bodies[b].start.v_W);
   if (way.squaredNorm() <= kSlowWay * kSlowWay * thickness * thickness) return;
-  if (scratch.fast_pairs.size() < scratch.fast_pairs.capacity()) scratch.fast_pairs.push_back({pair.a, pair.b});
+  if (scratch.fast_pairs.size() < scratch.fast_pairs.capacity()) scratch.fast_pairs.push_back({a, b});
 }
 
 void holdBackImpacts(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
@@ -262,7 +271,7 @@ void holdBackImpacts(const WorldModel& model, const WorldState& state, WorldScra
   });
 }
 
-double timeOfImpact(const WorldModel& model, const WorldState& state, const WorldScratch& scratch) {
+double timeOfImpact(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
   double first = std::numeric_limits<double>::infinity();
   for (const ImpactPair& pair : scratch.impact_pairs) first = std::min(first, ClosingPair(model, state, scratch, pair).time());
   return first;

@@ -32,14 +32,14 @@ double bounceRestitution(double restitution, double u, double acceleration, doub
 double gapAcceleration(const WorldModel& model, const Contact& c);
 
 // Notes the pair in scratch.fast_pairs if it needs to be swept.
-void noteFastPair(const WorldModel& model, const PairModel& pair, WorldScratch& scratch);
+void noteFastPair(const WorldModel& model, int a, int b, WorldScratch& scratch);
 
 // Takes the contacts of pairs that may hit each other in this tick out of scratch.contacts, and notes the pairs.
 void holdBackImpacts(const WorldModel& model, const WorldState& state, WorldScratch& scratch);
 
 // When the first of the noted pairs closes [s] after the start of this part of the tick, on the path that the solved contacts give;
 // infinity if none does. Call gatherImpulses before.
-double timeOfImpact(const WorldModel& model, const WorldState& state, const WorldScratch& scratch);
+double timeOfImpact(const WorldModel& model, const WorldState& state, WorldScratch& scratch);
 
 // Makes the velocities of `state` those just after the hits at its present poses.
 void applyImpacts(const WorldModel& model, WorldState& state, WorldScratch& scratch, ContactSource* source);

@@ -63,7 +63,64 @@ AxisForm formOf(const DrivenPointModel& point, int axis, double h) {
   return point.mass > 0 && soft ? AxisForm::kFourthOrder : AxisForm::kImplicit;
 }
 
+// Sorts the joints by the group that they belong to: the lowest body that moving bodies and joints connect them with.
+void groupJoints(WorldModel& model) {
+  std::vector<int> root(model.bodies.size());
+  for (std::size_t i = 0; i < root.size(); ++i) root[i] = static_cast<int>(i);
+  const auto moves = [&](int body) { return body >= 0 && model.bodies[body].dynamic; };
+  for (std::size_t pass = 0; pass < model.joints.size(); ++pass) {
+    for (const JointModel& joint : model.joints) {
+      if (moves(joint.b)) root[joint.a] = root[joint.b] = std::min(root[joint.a], root[joint.b]);
+    }
+  }
+  std::stable_sort(model.joints.begin(), model.joints.end(),
+                   [&](const JointModel& x, const JointModel& y) { return root[x.a] < root[y.a]; });
+  for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
+    const JointModel& joint = model.joints[j];
+    if (j == 0 || root[joint.a] != root[model.joints[j - 1].a]) model.joint_groups.push_back({j, 0, {}});
+    ++model.joint_groups.back().count;
+    for (const int body : {joint.a, joint.b}) {
+      if (moves(body)) model.bodies[body].joint_group = static_cast<int>(model.joint_groups.size()) - 1;
+      if (body >= 0) model.bodies[body].may_touch = true;
+    }
+  }
+  for (int i = 0; i < static_cast<int>(model.bodies.size()); ++i) {
+    if (model.bodies[i].joint_group >= 0) model.joint_groups[model.bodies[i].joint_group].bodies.push_back(i);
+  }
+}
+
+int blockedBy(JointKind kind) { return kind == JointKind::kWeld ? 6 : kind == JointKind::kBall ? 3 : 5; }
+
+// A group of joined bodies is one mover of the contact solver, which knows so many freedoms.
+void checkGroups(WorldModel& model) {
+  for (const PairModel& pair : model.pairs) {
+    for (const int body : {pair.a, pair.b}) {
+      if (model.bodies[body].joint_group >= 0) model.joint_groups[model.bodies[body].joint_group].may_touch = true;
+    }
+  }
+  for (JointGroup& group : model.joint_groups) {
+    group.may_touch = group.may_touch || !model.points.empty() || model.has_broad_phase;
+    int freedoms = 6 * static_cast<int>(group.bodies.size());
+    const bool large = freedoms > kMostGroupFreedoms;
+    for (int j = group.first; j < group.first + group.count; ++j) freedoms -= blockedBy(model.joints[j].kind);
+    if (!group.may_touch || (freedoms <= kMoverFreedoms && !large)) continue;
+    throw InputError(fmt::format(
+        "the {} bodies joined with \"{}\" can move in {} ways together, and contacts know joined bodies of at most {} bodies and {} "
+        "ways. Hold one of them to the world, weld some, or let nothing touch them.",
+        group.bodies.size(), model.bodies[group.bodies.front()].name, freedoms, kMostGroupFreedoms / 6, kMoverFreedoms));
+  }
+}
+
+bool comesBefore(const PairModel& x, const PairModel& y) { return std::pair(x.a, x.b) < std::pair(y.a, y.b); }
+
 }  // namespace
+
+Material materialOf(const WorldModel& model, int a, int b) {
+  const PairModel pair{a, b, {}};
+  const auto own = std::lower_bound(model.special_pairs.begin(), model.special_pairs.end(), pair, comesBefore);
+  if (own != model.special_pairs.end() && !comesBefore(pair, *own)) return own->material;
+  return combine(model.bodies[a].material, model.bodies[b].material);
+}
 
 Material combine(const Material& a, const Material& b) {
   Material m;
@@ -121,8 +178,25 @@ int WorldBuilder::addPoint(const DrivenPointModel& point) {
 
 void WorldBuilder::excludePair(int a, int b) { excluded_.emplace_back(std::min(a, b), std::max(a, b)); }
 
+void WorldBuilder::setPairMaterial(int a, int b, const Material& material) {
+  checkMaterial(
+      fmt::format("pair {} and {}", model_.bodies.at(static_cast<std::size_t>(a)).name, model_.bodies.at(static_cast<std::size_t>(b)).name),
+      material);
+  std::vector<PairModel>& special = model_.special_pairs;
+  const PairModel pair{std::min(a, b), std::max(a, b), material};
+  const auto place = std::lower_bound(special.begin(), special.end(), pair, comesBefore);
+  if (place != special.end() && !comesBefore(pair, *place)) {
+    *place = pair;
+  } else {
+    special.insert(place, pair);
+  }
+}
+
 WorldModel WorldBuilder::build() const {
   WorldModel model = model_;
+  groupJoints(model);
+  for (const BodyModel& body : model.bodies) model.bounces = model.bounces || body.material.restitution > 0;
+  for (const PairModel& pair : model.special_pairs) model.bounces = model.bounces || pair.material.restitution > 0;
   for (const DrivenPointModel& point : model.points) {
     const double h = model.options.h;
     model.point_forms.push_back({formOf(point, 0, h), formOf(point, 1, h), formOf(point, 2, h)});
@@ -141,15 +215,15 @@ WorldModel WorldBuilder::build() const {
             "bodies \"{}\" and \"{}\": this pair of shapes has no contact routine. Exclude the pair, or use a sphere for one of them.",
             A.name, B.name));
       }
-      if (!model.has_broad_phase) model.pairs.push_back({a, b, combine(A.material, B.material)});
+      if (!model.has_broad_phase) model.pairs.push_back({a, b, materialOf(model, a, b)});
       A.may_touch = B.may_touch = true;
-      model.bounces = model.bounces || model.pairs.back().material.restitution > 0;
     }
   }
   if (model.has_broad_phase) model.excluded_pairs = std::move(excluded);
   if (!model.points.empty()) {
     for (BodyModel& body : model.bodies) body.may_touch = true;
   }
+  checkGroups(model);
   return model;
 }
 

@@ -41,6 +41,7 @@ struct BodyModel {
   double bounding_radius = 0;  // about the centre of mass [m]; infinite for half-spaces
   double inner_radius = 0;     // about half its least thickness [m]; infinite for half-spaces and dishes
   double corner_reach = 0;     // how much further than that it reaches; 0 where turning doesn't change its outline [m]
+  int joint_group = -1;        // that binds it to others or to the world, -1: none
   bool may_touch = false;      // some pair or point can touch it; the others move in closed form alone
 };
 
@@ -71,6 +72,28 @@ struct PairModel {
   Material material;  // combined
 };
 
+// What a joint leaves free, in its frame J.
+enum class JointKind : unsigned char {
+  kPivot,   // a turns about J's z axis
+  kSlider,  // a slides along J's z axis
+  kBall,    // a turns about J's origin
+  kWeld,    // nothing
+};
+struct JointModel {
+  JointKind kind = JointKind::kPivot;
+  int a = 0, b = -1;   // bodies; b = -1: the world. a is dynamic
+  Pose X_AJ, X_BJ;     // J in the two inertial frames (in W for the world); as given to the builder: in the bodies' own frames
+  double damping = 0;  // of the free axis [N m s/rad] or [N s/m], >= 0
+};
+// Joints that share moving bodies, joints[first] .. joints[first + count - 1].
+struct JointGroup {
+  int first = 0, count = 0;
+  std::vector<int> bodies;  // ascending; static and driven ones don't count
+  bool may_touch = false;   // something can touch one of them
+};
+constexpr int kMostGroupFreedoms = 48;  // of the bodies of a group that something can touch, without their joints
+constexpr int kMostJointRows = 7;       // of one joint: a weld's six, a pivot's five and its damper
+
 struct WorldOptions {
   double h = 1e-3;                     // tick [s], 1e-5 .. 1e-2
   Vec3 gravity_W = Vec3(0, 0, -9.81);  // [m/s^2]
@@ -88,6 +111,9 @@ struct WorldModel {
   std::vector<PairModel> pairs;  // only those that can touch: at least one dynamic, shapes supported; none with a broad phase
   bool has_broad_phase = false;  // of more than kAllPairsBodies bodies: pairs are found tick by tick (broad_phase.h)
   std::vector<std::pair<int, int>> excluded_pairs;  // sorted; only with a broad phase
+  std::vector<PairModel> special_pairs;             // with a material of their own, sorted
+  std::vector<JointModel> joints;                   // by groups
+  std::vector<JointGroup> joint_groups;
   bool bounces = false;          // some pair has restitution
   int driven_count = 0;          // of bodies
 };
@@ -106,10 +132,12 @@ struct BodySpec {
 class WorldBuilder {
  public:
   explicit WorldBuilder(const WorldOptions& options);
-  int addBody(const BodySpec& spec);            // returns the body's index
-  int addPoint(const DrivenPointModel& point);  // returns the point's index
-  void excludePair(int a, int b);               // these two never touch
-  WorldModel build() const;
+  int addBody(const BodySpec& spec);                             // returns the body's index
+  int addPoint(const DrivenPointModel& point);                   // returns the point's index
+  int addJoint(const JointModel& joint);                         // returns the joint's index in the order of calls; the two never touch
+  void excludePair(int a, int b);                                // these two never touch
+  void setPairMaterial(int a, int b, const Material& material);  // of these two, in place of the combination of theirs; the last one counts
+  WorldModel build() const;                                      // joints in the order of their groups
 
  private:
   WorldModel model_;
@@ -117,5 +145,8 @@ class WorldBuilder {
 };
 
 Material combine(const Material& a, const Material& b);
+
+// Of two bodies, a < b: their own, or combined.
+Material materialOf(const WorldModel& model, int a, int b);
 
 }  // namespace pincer::engine

@@ -1,14 +1,9 @@
 // Where everything would be in the middle of the tick, and how fast at its end, if nothing touched.
+#include "engine/world/joints.h"
 #include "engine/world/step.h"
 
 namespace pincer::engine {
 namespace {
-
-Mat3 inverseInertia(const FreeRotation& rotation, const Quat& q_WI) {
-  if (rotation.kind == FreeRotation::Kind::kSpherical) return rotation.inverse_moments[0] * Mat3::Identity();
-  const Mat3 R = q_WI.toRotationMatrix();
-  return R * rotation.inverse_moments.asDiagonal() * R.transpose();
-}
 
 // Angular velocities, and the orientation in the middle; a body without angular momentum needs no thought.
 void predictRotation(const FreeRotation& rotation, const BodyState& s, double h, BodyScratch& out) {
@@ -121,6 +116,7 @@ void predict(const WorldModel& model, const WorldState& state, WorldScratch& scr
   for (std::size_t i = 0; i < model.points.size(); ++i) {
     predictPoint(model.points[i], model.point_forms[i], state.points[i], scratch.point_inputs[i], h, scratch.points[i]);
   }
+  if (!model.joints.empty()) predictJoints(model, scratch);
   scratch.contacts.clear();
   scratch.fast_pairs.clear();
 }
@@ -143,6 +139,7 @@ void predictImpact(const WorldModel& model, const WorldState& state, WorldScratc
     out.start.v_W = out.free.v_W = out.end.v_W = state.points[i].v_W;
     for (int axis = 0; axis < 3; ++axis) out.inverse_mass[axis] = model.points[i].locked[axis] || mass <= 0 ? 0 : 1 / mass;
   }
+  if (!model.joints.empty()) predictJoints(model, scratch);
   scratch.contacts.clear();
   scratch.fast_pairs.clear();
 }

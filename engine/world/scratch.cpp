@@ -12,6 +12,17 @@ WorldScratch::WorldScratch(const WorldModel& model) : h(model.options.h), island
   contacts.reserve(contact_count);
   fast_pairs.reserve(contact_count);
   impact_pairs.reserve(2 * contact_count);
+  for (const JointGroup& group : model.joint_groups) {
+    const auto rows = static_cast<std::size_t>(group.count) * kMostJointRows;
+    JointGroupScratch& out = joint_groups.emplace_back();
+    out.rows.reserve(rows);
+    out.A.resize(rows * rows);
+    out.lambda.resize(rows);
+    out.pivots.resize(rows);
+    out.basis.resize(36 * group.bodies.size() * group.bodies.size());
+    out.factor.resize(6 * kMoverFreedoms * group.bodies.size());
+    out.may_touch = group.may_touch;
+  }
   struck.resize(model.bodies.size());
   point_inputs.resize(model.points.size());
   motion_inputs.resize(static_cast<std::size_t>(model.driven_count));

@@ -68,10 +68,11 @@ struct MoverScratch {
 };
 struct BodyScratch : MoverScratch {
   Pose X_WI_mid, X_WB_mid;
-  Pose X_WB_end;                          // of driven bodies
-  Mat3 R_WB_mid = Mat3::Identity();       // X_WB_mid.q: a matrix turns many vectors in half the time
-  Mat3 inverse_inertia_W = Mat3::Zero();  // at the middle
-  Vec3 angular_impulse_W = Vec3::Zero();  // about the centre of mass [N m s]
+  Pose X_WB_end;                                // of driven bodies
+  Mat3 R_WB_mid = Mat3::Identity();             // X_WB_mid.q: a matrix turns many vectors in half the time
+  Mat3 inverse_inertia_W = Mat3::Zero();        // at the middle
+  Vec3 angular_impulse_W = Vec3::Zero();        // about the centre of mass [N m s]
+  Vec3 joint_angular_impulse_W = Vec3::Zero();  // the part of it that joints would give without contact; its linear part is in `free`
 };
 struct PointScratch : MoverScratch {
   Vec3 p_mid_W = Vec3::Zero();
@@ -80,6 +81,25 @@ struct PointScratch : MoverScratch {
   Vec3 v_tick_W = Vec3::Zero();                               // velocity at the start of the tick
   Vec3 tick_impulse_W = Vec3::Zero();                         // of all contacts over all parts of the tick [N s]
   bool input_ok = true;
+};
+
+// One direction that a joint blocks or brakes, see joints.h.
+struct JointRow {
+  int a, b;               // bodies, -1 for the world
+  Vec3 n_W;               // of the velocities where the joint is; zero for a row of angular velocities
+  Vec3 ang_a_W, ang_b_W;  // what multiplies the two angular velocities
+  Vec3 m_W;               // the axis of a row of angular velocities; zero for the others
+  double softness, bias;  // R and b
+  double miss;            // how far the constraint is violated [m, rad]
+};
+struct JointGroupScratch {
+  std::vector<JointRow> rows;
+  std::vector<double> A, lambda;
+  std::vector<int> pivots;
+  std::vector<double> basis;   // of the group's scaled velocities, a vector after the other
+  std::vector<double> factor;  // F: per body a 6 x kMoverFreedoms block, column-major
+  bool sound = true;           // A could be factorised
+  bool may_touch = false;      // something can touch one of its bodies, so that F is needed
 };
 
 // Two bodies that may hit each other within the tick.
@@ -95,8 +115,9 @@ struct WorldScratch {
   std::vector<PointScratch> points;
   std::vector<Contact> contacts;  // capacity options.max_contacts
   bool contacts_dropped = false;
-  std::vector<ImpactPair> fast_pairs;      // move so fast that the middle of the tick doesn't show whether they meet; capacity as contacts
-  std::vector<ImpactPair> impact_pairs;    // hit each other in this part of the tick, or may (impact.h)
+  std::vector<ImpactPair> fast_pairs;    // move so fast that the middle of the tick doesn't show whether they meet; capacity as contacts
+  std::vector<ImpactPair> impact_pairs;  // hit each other in this part of the tick, or may (impact.h)
+  std::vector<JointGroupScratch> joint_groups;
   std::vector<bool> struck;                // per body, in an impact
   double bounce = 1;                       // share of the restitution that acts in an impact: less where all of it would add energy
   std::vector<PointInput> point_inputs;    // at the end of this part of the tick

@@ -4,8 +4,12 @@
 
 #include <bit>
 
+#include "engine/world/joints.h"
+
 namespace pincer::engine {
 namespace {
+
+constexpr double kLargestJointGap = 1e-6;  // [m, rad]: more than the round-off of a scene file isn't what its author meant
 
 class Fnv1a {
  public:
@@ -65,6 +69,14 @@ WorldState makeState(const WorldModel& model, const std::vector<BodyStart>& star
     PointState s;
     s.p_W = s.p_target_W = p;
     state.points.push_back(s);
+  }
+  for (const JointModel& joint : model.joints) {
+    const Vec2 gap = jointGap(state, joint);
+    if (!(gap.maxCoeff() > kLargestJointGap)) continue;
+    throw InputError(
+        fmt::format("the joint of body \"{}\": at the start its two sides are {:g} m and {:g} rad apart, more than {:g}. Start the "
+                    "bodies where the joint holds them.",
+                    model.bodies[joint.a].name, gap[0], gap[1], kLargestJointGap));
   }
   state.contacts.resize(static_cast<std::size_t>(model.options.max_contacts));
   return state;

@@ -47,6 +47,12 @@ Scene interpret(const JsonValue& json, const std::string& name) {
   readTimes(json, scene);
   if (const JsonValue* v = json.find("solver")) readSolver(*v, scene.options);
   for (const JsonValue& body : json.at("bodies", "What is in the world.").array()) readBody(body, scene);
+  if (const JsonValue* v = json.find("pairs")) {
+    for (const JsonValue& pair : v->array()) scene.pairs.push_back(readPair(pair, scene));
+  }
+  if (const JsonValue* v = json.find("joints")) {
+    for (const JsonValue& joint : v->array()) scene.joints.push_back(readJoint(joint, scene));
+  }
   if (const JsonValue* v = json.find("fingers")) {
     for (const JsonValue& finger : v->array()) scene.fingers.push_back(readFinger(finger, scene));
   }
@@ -70,6 +76,14 @@ grasp::GraspModel buildWorld(const Scene& scene) {
   try {
     engine::WorldBuilder builder(scene.options);
     for (const engine::BodySpec& body : scene.bodies) builder.addBody(body);
+    for (const engine::JointModel& joint : scene.joints) builder.addJoint(joint);
+    for (const ScenePair& pair : scene.pairs) {
+      if (pair.touch) {
+        builder.setPairMaterial(pair.a, pair.b, pair.material);
+      } else {
+        builder.excludePair(pair.a, pair.b);
+      }
+    }
     std::vector<grasp::FingerModel> fingers;
     for (const SceneFinger& finger : scene.fingers) fingers.push_back(finger.model);
     return grasp::buildGrasp(std::move(builder), std::move(fingers));
