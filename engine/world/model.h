@@ -100,6 +100,9 @@ struct WorldOptions {
   double contact_margin = 1e-3;        // pairs closer than this make contacts [m], > 0
   int max_contacts = 64;               // 4 .. 16384; more are dropped, deepest kept, and StepStatus says so
   int threads = 1;                     // that solve islands, 1 .. 16; the results are the same to the bit
+  // Position error per tick that is allowed [m], 0 or 1e-12 .. 1; 0: every tick is one part. Costs three times a plain tick, or more.
+  double position_tolerance = 0;
+  int max_parts = 16;  // that a tick may be cut into for that, 2 .. 1024; rounded down to a power of two
   SolverOptions solver;
 };
 

@@ -35,11 +35,11 @@ void predictBody(const BodyModel& body, const BodyState& s, const Vec3& dv_gravi
 }
 
 void predictDriven(const BodyState& s, const MotionInput& in, double h, BodyScratch& out) {
-  const DrivenPlace start{s.X_WI, {s.v_W, s.L_W}};
   out.X_WB_end = in.X_WB;
-  out.start = start.motion;
+  out.start = {s.v_W, s.L_W};
   out.free = in.motion;
-  out.X_WI_mid = drivenPlace(start, in, h, 0.5).X_WB;
+  // Predicted as that of a dynamic body: what rests on it has its acceleration, and the gap between them must not show it.
+  out.X_WI_mid = {quatFromRotationVector(0.5 * h * s.L_W) * s.X_WI.q, s.X_WI.p + 0.5 * h * s.v_W};
   // What slides on it is measured against the way that it goes, not against the mean of two velocities.
   out.end.v_W = 2 / h * (in.X_WB.p - s.X_WI.p) - s.v_W;
   out.end.w_W = 2 / h * rotationVectorOf(in.X_WB.q * s.X_WI.q.conjugate()) - s.L_W;

@@ -23,6 +23,12 @@ WorldScratch::WorldScratch(const WorldModel& model) : h(model.options.h), island
     out.factor.resize(6 * kMoverFreedoms * group.bodies.size());
     out.may_touch = group.may_touch;
   }
+  for (WorldState* copy : {&before, &coarse}) {  // so that copying a state allocates nothing
+    if (!(model.options.position_tolerance > 0)) break;
+    copy->bodies.resize(model.bodies.size());
+    copy->points.resize(model.points.size());
+    copy->contacts.resize(contact_count);
+  }
   struck.resize(model.bodies.size());
   point_inputs.resize(model.points.size());
   motion_inputs.resize(static_cast<std::size_t>(model.driven_count));

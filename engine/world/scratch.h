@@ -12,6 +12,7 @@
 #include "engine/world/islands.h"
 #include "engine/world/model.h"
 #include "engine/world/stage_clock.h"
+#include "engine/world/state.h"
 
 namespace pincer::engine {
 
@@ -119,6 +120,7 @@ struct WorldScratch {
   std::vector<ImpactPair> impact_pairs;  // hit each other in this part of the tick, or may (impact.h)
   std::vector<JointGroupScratch> joint_groups;
   std::vector<bool> struck;                // per body, in an impact
+  WorldState before, coarse;               // the tick's start, and its end in half as many parts
   double bounce = 1;                       // share of the restitution that acts in an impact: less where all of it would add energy
   std::vector<PointInput> point_inputs;    // at the end of this part of the tick
   std::vector<MotionInput> motion_inputs;  // likewise, one per driven body

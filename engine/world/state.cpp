@@ -112,6 +112,7 @@ std::uint64_t hashOf(const WorldState& state) {
   hash.add(state.time);
   hash.add(static_cast<std::uint64_t>(state.tick));
   hash.add(state.h_last);
+  hash.add(static_cast<std::uint64_t>(state.parts));
   for (const BodyState& b : state.bodies) {
     hash.add(b.X_WI.q);
     for (const Vec3& v : {b.X_WI.p, b.v_W, b.L_W}) hash.add(v);

@@ -38,6 +38,7 @@ struct ContactMemory {
 struct WorldState {
   double time = 0;  // [s]
   std::int64_t tick = 0;
+  int parts = 1;      // that the last tick was cut into by the tolerance
   double h_last = 0;  // length of the last part of a tick [s], see step.h; 0 before the first
   std::vector<BodyState> bodies;
   std::vector<PointState> points;

@@ -8,7 +8,8 @@
 //   6 advance         impulses to momenta, momenta to poses
 //
 // Where bodies hit each other the tick is cut: 1 to 6 up to the hit, the hit, which takes no time (impact.h), 1 to 6 for what is left. Each
-// part is a tick of its own length scratch.h, towards targets on the way to those of the whole tick.
+// part is a tick of its own length scratch.h, towards targets on the way to those of the whole tick. With options.position_tolerance the tick
+// is cut into as many equal parts as that needs, judged by doing it again in twice as many (decision 13).
 //
 // Second order in the tick while contacts persist: geometry at the predicted middle, p += h (v + v+)/2; a contact that closes in this tick
 // lands exactly, p += h v+. (docs/decisions/0003-second-order-contact.md)
@@ -31,6 +32,7 @@ enum StepStatus : std::uint32_t {
   kStateNotFinite = 1u << 2,   // a NaN or infinity came out of the tick; the state isn't to be used any more. Restore a snapshot
   kInputNotFinite = 1u << 3,   // a target, motion or force wasn't finite; the point kept its last target, the body its place
   kImpactsCut = 1u << 4,       // more impacts than kMostImpacts in one tick: the rest landed. Shorten the tick
+  kToleranceNotMet = 1u << 5,  // max_parts were too few for position_tolerance. Raise it, or the tolerance
 };
 
 struct StepReport {

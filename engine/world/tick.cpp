@@ -1,4 +1,5 @@
-// One tick from its parts: whole, unless bodies hit each other in it.
+// One tick from its parts: whole, unless bodies hit each other in it, or a tolerance asks for more.
+#include <algorithm>
 #include <cmath>
 
 #include "engine/world/impact.h"
@@ -22,6 +23,19 @@ bool isFinite(const WorldState& state) {
   return std::isfinite(sum);
 }
 
+// How far a point of a body, or a driven point, is from where it is in the other state, at most [m].
+double largestDistance(const WorldModel& model, const WorldState& a, const WorldState& b) {
+  double largest = 0;
+  for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+    if (!model.bodies[i].dynamic) continue;
+    const Pose &x = a.bodies[i].X_WI, &y = b.bodies[i].X_WI;
+    const double turn = 2 * (x.q.conjugate() * y.q).vec().norm();
+    largest = std::max(largest, (x.p - y.p).norm() + turn * (model.bodies[i].inner_radius + model.bodies[i].corner_reach));
+  }
+  for (std::size_t i = 0; i < a.points.size(); ++i) largest = std::max(largest, (a.points[i].p_W - b.points[i].p_W).norm());
+  return largest;
+}
+
 class Tick {
  public:
   Tick(const WorldModel& model, WorldState& state, WorldScratch& scratch, const StepInputs& inputs, ContactSource* source)
@@ -29,11 +43,12 @@ class Tick {
 
   StepReport run() {
     scratch_.contacts_dropped = false;
-    for (std::size_t i = 0; i < state_.points.size(); ++i) {
-      scratch_.points[i].tick_impulse_W.setZero();
-      scratch_.points[i].v_tick_W = state_.points[i].v_W;
+    for (std::size_t i = 0; i < state_.points.size(); ++i) scratch_.points[i].v_tick_W = state_.points[i].v_W;
+    if (model_.options.position_tolerance > 0) {
+      runToTolerance();
+    } else {
+      runInParts(1);
     }
-    while (left_ > 0) passTime();
     ++state_.tick;
     state_.time = static_cast<double>(state_.tick) * model_.options.h;
     report_.contacts = static_cast<int>(scratch_.contacts.size());
@@ -44,17 +59,62 @@ class Tick {
   }
 
  private:
-  // To the tick's end, or to the next impact and through it.
+  // Doubles the parts until what they change is within the tolerance: halving a second-order step leaves a third of the change as error. The
+  // next tick begins with half of what this one needed.
+  void runToTolerance() {
+    scratch_.before = state_;
+    int parts = std::max(1, state_.parts / 2);
+    while (parts < model_.options.max_parts && turnsFar(parts)) parts *= 2;
+    runInParts(parts);
+    for (;;) {
+      if (2 * parts > model_.options.max_parts) {
+        report_.status |= kToleranceNotMet;
+        break;
+      }
+      scratch_.coarse = state_;
+      state_ = scratch_.before;
+      parts *= 2;
+      runInParts(parts);
+      if (largestDistance(model_, scratch_.coarse, state_) <= 3 * model_.options.position_tolerance) break;
+    }
+    state_.parts = parts;
+  }
+
+  // A part in which a body turns by more than this is too coarse to judge by halving it.
+  bool turnsFar(int parts) const {
+    constexpr double kLargestTurn = 0.2;  // [rad]
+    for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
+      if (!model_.bodies[i].may_touch || !model_.bodies[i].dynamic) continue;
+      const double turn = bodyAngularVelocity(model_, state_, static_cast<int>(i)).norm() * model_.options.h;
+      if (turn > kLargestTurn * parts) return true;
+    }
+    return false;
+  }
+
+  void runInParts(int parts) {
+    const double h = model_.options.h;
+    left_ = h;
+    impacts_ = 0;
+    report_ = {};
+    report_.parts = 0;
+    for (PointScratch& point : scratch_.points) point.tick_impulse_W.setZero();
+    for (int k = parts - 1; k >= 0; --k) {
+      stop_ = h * k / parts;
+      while (left_ > stop_) passTime();
+    }
+  }
+
+  // To the end of this part, or to the next impact and through it.
   void passTime() {
-    attempt(left_);
-    double t = left_;
+    const double h = left_ - stop_;
+    attempt(h);
+    double t = h;
     if (!scratch_.impact_pairs.empty()) t = timeOfImpact(model_, state_, scratch_);
-    if (!(t < left_)) return finish();
+    if (!(t < h)) return finish();
     if (t > kShortestPart * model_.options.h) {
       attempt(t);
       conclude();
       left_ -= t;
-      ++report_.parts;
     }
     applyImpacts(model_, state_, scratch_, source_);
     note();
@@ -63,12 +123,13 @@ class Tick {
 
   void finish() {
     conclude();
-    left_ = 0;
+    left_ = stop_;
   }
 
   void conclude() {
     note();
     advance(model_, state_, scratch_);
+    ++report_.parts;
     mark(scratch_, Stage::kAdvance);
   }
 
@@ -129,7 +190,8 @@ class Tick {
   WorldScratch& scratch_;
   const StepInputs& inputs_;
   ContactSource* source_;
-  double left_;  // of the tick [s]
+  double left_;      // of the tick [s]
+  double stop_ = 0;  // what is left of the tick at the end of this part [s]
   int impacts_ = 0;
   StepReport report_;
 };

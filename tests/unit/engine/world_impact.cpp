@@ -66,7 +66,7 @@ TEST(Impact, RestsWhenZenosBouncesAreOver) {
     while (world.state.time < end - early) world.tick();
     EXPECT_GT(world.ball().v_W.norm(), 0) << e;
     while (world.state.time < end + 2e-3) world.tick();
-    EXPECT_LT(world.ball().v_W.norm(), 1e-12) << e;
+    EXPECT_LT(world.ball().v_W.norm(), 1e-10) << e;  // the solver's tolerance
     EXPECT_NEAR(world.ball().X_WI.p.z(), kRadius, 1e-12) << e;
   }
 }
@@ -157,7 +157,8 @@ TEST(Impact, ThrownBodiesNeverGainEnergy) {
     for (int i = 0; i < 500; ++i) {
       step(model, state, scratch);
       const double now = kineticEnergy(model, state) + potentialEnergy(model, state);
-      EXPECT_LE(now, lowest + 1e-5) << "case " << n << ", tick " << i;  // a correction may lift by 10 um: m g 10 um = 1e-5 J
+      // An edge that rolls over sinks by up to L (w h)^2 / 8 = 30 um, and a correction lifts it again: m g 30 um = 3e-5 J.
+      ASSERT_LE(now, lowest + 3e-5) << "case " << n << ", tick " << i;
       lowest = std::min(lowest, now);
     }
   }
