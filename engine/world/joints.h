@@ -23,6 +23,9 @@ namespace pincer::engine {
 // Rows at the predicted middle; changes the free motions to what the joints allow. After all bodies are predicted.
 void predictJoints(const WorldModel& model, WorldScratch& scratch);
 
+// Fills F of a group from its rows.
+void factoriseInverseMass(const WorldModel& model, const WorldScratch& scratch, const JointGroup& g, JointGroupScratch& group);
+
 // Adds `sign` J F to A: how contact c's velocity follows its group's freedoms through `body`, at arm_W from its centre.
 void addJointedSide(const WorldModel& model, const WorldScratch& scratch, const Contact& c, int rows, double sign, int body,
                     const Vec3& arm_W, ContactSide& out);

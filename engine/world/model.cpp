@@ -195,6 +195,25 @@ void WorldBuilder::setPairMaterial(int a, int b, const Material& material) {
   }
 }
 
+int WorldBuilder::addJoint(const JointModel& joint) {
+  const int count = static_cast<int>(model_.bodies.size());
+  const std::string name = fmt::format("joint {}", model_.joints.size());
+  requireRange(name + ".damping", joint.damping, 0, 1e9, "A damper's coefficient is zero or positive.");
+  if (joint.a < 0 || joint.a >= count || joint.b < -1 || joint.b >= count || joint.a == joint.b) {
+    throw InputError(fmt::format("{}: it joins bodies {} and {}, but there are {}. Add both bodies first.", name, joint.a, joint.b, count));
+  }
+  if (!model_.bodies[joint.a].dynamic) {
+    throw InputError(
+        fmt::format("{}: its first body \"{}\" never moves by itself. Name the moving one first.", name, model_.bodies[joint.a].name));
+  }
+  JointModel inertial = joint;
+  inertial.X_AJ = model_.bodies[joint.a].X_IB * joint.X_AJ;
+  if (joint.b >= 0) inertial.X_BJ = model_.bodies[joint.b].X_IB * joint.X_BJ;
+  if (joint.b >= 0) excludePair(joint.a, joint.b);
+  model_.joints.push_back(inertial);
+  return static_cast<int>(model_.joints.size()) - 1;
+}
+
 WorldModel WorldBuilder::build() const {
   WorldModel model = model_;
   groupJoints(model);

@@ -117,8 +117,8 @@ struct WorldModel {
   std::vector<PairModel> special_pairs;             // with a material of their own, sorted
   std::vector<JointModel> joints;                   // by groups
   std::vector<JointGroup> joint_groups;
-  bool bounces = false;          // some pair has restitution
-  int driven_count = 0;          // of bodies
+  bool bounces = false;  // some pair has restitution
+  int driven_count = 0;  // of bodies
 };
 
 // What the builder is told about a body; B's pose and velocity at the start live in BodyStart.
