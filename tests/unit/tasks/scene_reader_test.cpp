@@ -176,7 +176,7 @@ const std::vector<Complaint> kComplaints = {
      "s.json:1: joints[0].body = \"body0\" never moves by itself: a joint has nothing to hold. Name the moving body here, this one under "
      "\"to\"."},
     {"JointType", sceneWith(", \"mass\": 1", ", \"joints\": [{\"type\": \"hinge\", \"body\": \"body0\"}]"),
-     "s.json:1: joints[0].type = \"hinge\" isn't known. It is one of: pivot, slider, ball, weld."},
+     "s.json:1: joints[0].type = \"hinge\" isn't known. Known here: pivot, slider, ball, weld."},
     {"DampedWeld", sceneWith(", \"mass\": 1", ", \"joints\": [{\"type\": \"weld\", \"body\": \"body0\", \"damping\": 1}]"),
      "s.json:1: joints[0].damping = 1 doesn't go with this type: only pivots and sliders have a free axis to damp. Remove the key."},
     {"LooseFinger", sceneWithFinger("\"position\": [0, 0, 1], \"stiffness\": [100, 0, 100]"),
