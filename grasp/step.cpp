@@ -37,17 +37,43 @@ Vec3 sumContacts(const GraspScratch& scratch, int finger, double h, FingerReport
   return to_mean.squaredNorm() > 0 ? Vec3(to_mean.normalized()) : Vec3(-report.n_W);
 }
 
+// Where the tick was cut, its last part doesn't speak for all of it: a landing in a short part would be felt as a blow.
+void averageOverTick(const engine::PointScratch& point, double tick, FingerReport& report) {
+  report.f_contact_W = point.tick_impulse_W / tick;
+  if (!report.touching) return;
+  report.normal_force = std::max(report.f_contact_W.dot(report.n_W), 0.0);
+  report.tangential_force = (report.f_contact_W - report.n_W * report.f_contact_W.dot(report.n_W)).norm();
+}
+
 void reportFinger(const GraspModel& model, const GraspState& state, const FingerInput& input, int finger, GraspScratch& scratch) {
-  const double h = model.world.options.h;
+  const double h = scratch.world.h;
   FingerReport& report = scratch.fingers[finger];
+  const engine::PointScratch& point = scratch.world.points[finger];
   const Quat q_FW = input.q_WF.conjugate();
   const Vec3 touch_W = sumContacts(scratch, finger, h, report);
   if (report.touching) report.place_L = placeOnPad(model.fingers[finger], q_FW * touch_W);
   const Vec3& n_W = scratch.nearest_n_W[finger];
   if (!report.touching && !n_W.isZero(0)) report.nearest_place_L = placeOnPad(model.fingers[finger], q_FW * -n_W);
-  const Vec3 a_W = (state.world.points[finger].v_W - scratch.world.points[finger].start.v_W) / h;
+  const double tick = model.world.options.h;
+  if (h < tick) averageOverTick(point, tick, report);
+  const Vec3 a_W = (state.world.points[finger].v_W - point.v_tick_W) / tick;
   report.f_user_W = report.f_contact_W + scratch.inputs[finger].f_W - model.fingers[finger].coupling.mass * a_W;
 }
+
+// The fingers' contacts, for each part of the tick.
+class FingerContacts final : public engine::ContactSource {
+ public:
+  FingerContacts(const GraspModel& model, GraspState& state, GraspScratch& scratch) : model_(model), state_(state), scratch_(scratch) {}
+  void addContacts(engine::WorldScratch&) override {
+    findFingerContacts(model_, state_, scratch_);
+    engine::mark(scratch_.world, engine::Stage::kFingerContacts);
+  }
+
+ private:
+  const GraspModel& model_;
+  GraspState& state_;
+  GraspScratch& scratch_;
+};
 
 }  // namespace
 
@@ -60,22 +86,13 @@ GraspState makeState(const GraspModel& model, const std::vector<engine::BodyStar
   return state;
 }
 
-engine::StepReport step(const GraspModel& model, GraspState& state, GraspScratch& scratch, std::span<const FingerInput> inputs) {
-  using engine::Stage;
-  if (scratch.world.clock) scratch.world.clock->start();
+engine::StepReport step(const GraspModel& model, GraspState& state, GraspScratch& scratch, std::span<const FingerInput> inputs,
+                        std::span<const engine::MotionInput> motions) {
   setInputs(inputs, scratch);
-  engine::predict(model.world, state.world, scratch.inputs, scratch.world);
-  engine::mark(scratch.world, Stage::kPredict);
-  engine::collideBodies(model.world, scratch.world);
-  engine::mark(scratch.world, Stage::kCollideBodies);
-  findFingerContacts(model, state, scratch);
-  engine::mark(scratch.world, Stage::kFingerContacts);
-  engine::solveContacts(model.world, state.world, scratch.world);
-  engine::mark(scratch.world, Stage::kSolve);
-  const engine::StepReport report = engine::advance(model.world, state.world, scratch.world);
-  engine::mark(scratch.world, Stage::kAdvance);
+  FingerContacts contacts(model, state, scratch);
+  const engine::StepReport report = engine::step(model.world, state.world, scratch.world, {scratch.inputs, motions}, &contacts);
   for (int i = 0; i < static_cast<int>(inputs.size()); ++i) reportFinger(model, state, inputs[i], i, scratch);
-  engine::mark(scratch.world, Stage::kFingerReport);
+  engine::mark(scratch.world, engine::Stage::kFingerReport);
   return report;
 }
 

@@ -50,7 +50,8 @@ struct GraspScratch {
 GraspState makeState(const GraspModel& model, const std::vector<engine::BodyStart>& starts, const std::vector<Vec3>& fingers);
 
 // One tick. `inputs` has one entry per finger. Results per finger in scratch.fingers. Allocates nothing, throws nothing.
-engine::StepReport step(const GraspModel& model, GraspState& state, GraspScratch& scratch, std::span<const FingerInput> inputs);
+engine::StepReport step(const GraspModel& model, GraspState& state, GraspScratch& scratch, std::span<const FingerInput> inputs,
+                        std::span<const engine::MotionInput> motions = {});
 
 // Arc-length place on the pad of the fingertip point in direction `d_F` (unit, from the centre): azimuthal equidistant about the pad normal.
 Vec2 placeOnPad(const FingerModel& finger, const Vec3& d_F);

@@ -118,4 +118,10 @@ Vec3 angularVelocity(const FreeRotation& rotation, const Quat& q_WI, const Vec3&
   return q_WI * rotation.inverse_moments.cwiseProduct(q_WI.conjugate() * L_W);
 }
 
+Mat3 inverseInertia(const FreeRotation& rotation, const Quat& q_WI) {
+  if (rotation.kind == FreeRotation::Kind::kSpherical) return rotation.inverse_moments[0] * Mat3::Identity();
+  const Mat3 R = q_WI.toRotationMatrix();
+  return R * rotation.inverse_moments.asDiagonal() * R.transpose();
+}
+
 }  // namespace pincer::engine

@@ -34,4 +34,7 @@ void rotateFreely(const FreeRotation& rotation, const Vec3& L_W, double h, Quat&
 // Angular velocity of the body in W [rad/s]: R I^-1 R^T L_W.
 Vec3 angularVelocity(const FreeRotation& rotation, const Quat& q_WI, const Vec3& L_W);
 
+// Inverse inertia in W [1/(kg m^2)]: R I^-1 R^T.
+Mat3 inverseInertia(const FreeRotation& rotation, const Quat& q_WI);
+
 }  // namespace pincer::engine

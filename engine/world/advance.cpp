@@ -1,7 +1,6 @@
 // From impulses to momenta, from momenta to poses, and what each contact remembers of it.
-#include <cmath>
-
 #include "engine/world/contact_rows.h"
+#include "engine/world/joints.h"
 #include "engine/world/step.h"
 
 namespace pincer::engine {
@@ -19,15 +18,31 @@ void applyImpulse(WorldScratch& scratch, const Side& side, const Vec3& arm_W, co
   body.angular_impulse_W += arm_W.cross(impulse_W) + moment_W;
 }
 
-// The same impulse, to the last bit, on both sides.
-void distribute(WorldScratch& scratch) {
+void rest(MoverScratch& mover) {
+  mover.impulse_W.setZero();
+  mover.touched = mover.closing = false;
+}
+
+void advanceDriven(const BodyScratch& scratch, BodyState& s) { s = {scratch.X_WB_end, scratch.free.v_W, scratch.free.w_W}; }
+
+}  // namespace
+
+void gatherImpulses(const WorldModel& model, WorldScratch& scratch) {
+  for (BodyScratch& body : scratch.bodies) {
+    rest(body);
+    body.angular_impulse_W.setZero();
+  }
+  for (PointScratch& point : scratch.points) rest(point);
   for (Contact& c : scratch.contacts) {
     if (!c.active()) continue;
     const Vec3 moment_W = (c.material.torsion_radius * c.r[3]) * c.n_W();
     applyImpulse(scratch, c.a, c.arm_a_W, c.impulse_W, moment_W, c.closing);
     applyImpulse(scratch, c.b, c.arm_b_W, -c.impulse_W, -moment_W, c.closing);
   }
+  if (!model.joints.empty()) gatherJointImpulses(model, scratch);
 }
+
+namespace {
 
 void advanceBody(const BodyModel& body, double h, BodyScratch& scratch, BodyState& s) {
   const Vec3 v_old = s.v_W, L_old = s.L_W;
@@ -118,35 +133,21 @@ void rememberContacts(const WorldScratch& scratch, double h, WorldState& state) 
   alignFaces({state.contacts.data(), static_cast<std::size_t>(state.contact_count)});
 }
 
-bool isFinite(const WorldState& state) {
-  double sum = 0;  // a NaN or infinity anywhere survives the sum
-  for (const BodyState& b : state.bodies) sum += b.X_WI.p.sum() + b.X_WI.q.coeffs().sum() + b.v_W.sum() + b.L_W.sum();
-  for (const PointState& p : state.points) sum += p.p_W.sum() + p.v_W.sum();
-  return std::isfinite(sum);
-}
-
 }  // namespace
 
-StepReport advance(const WorldModel& model, WorldState& state, WorldScratch& scratch) {
-  const double h = model.options.h;
-  distribute(scratch);
-  StepReport report;
+void advance(const WorldModel& model, WorldState& state, WorldScratch& scratch) {
+  const double h = scratch.h;
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
     if (model.bodies[i].dynamic) advanceBody(model.bodies[i], h, scratch.bodies[i], state.bodies[i]);
+    if (model.bodies[i].driven) advanceDriven(scratch.bodies[i], state.bodies[i]);
   }
   for (std::size_t i = 0; i < model.points.size(); ++i) {
     advancePoint(model.point_forms[i], h, scratch.points[i], state.points[i]);
-    if (!scratch.points[i].input_ok) report.status |= kInputNotFinite;
+    scratch.points[i].tick_impulse_W += scratch.points[i].impulse_W;
   }
+  if (!model.joints.empty()) settleJoints(model, state, scratch);
   rememberContacts(scratch, h, state);
-  ++state.tick;
-  state.time = static_cast<double>(state.tick) * h;
-  report.contacts = static_cast<int>(scratch.contacts.size());
-  report.solve = scratch.solve;
-  if (!scratch.solve.converged) report.status |= kSolverNotConverged;
-  if (scratch.contacts_dropped) report.status |= kContactsDropped;
-  if (!isFinite(state)) report.status |= kStateNotFinite;
-  return report;
+  state.h_last = h;
 }
 
 }  // namespace pincer::engine

@@ -1,5 +1,5 @@
 #include "contact/shape/pair_query.h"
-#include "engine/world/step.h"
+#include "engine/world/impact.h"
 
 namespace pincer::engine {
 namespace {
@@ -16,10 +16,11 @@ void collidePair(const WorldModel& model, const BodyPair& pair, const Material* 
   // What closes within the tick must be seen at its middle.
   const double margin = model.options.contact_margin + h * (sa.start.v_W - sb.start.v_W).norm();
   if (!boundsTouch(a, b, sa, sb, margin)) return;
+  noteFastPair(model, pair.a, pair.b, scratch);
   contact::PairPoints found;
   contact::collideShapes(a.shape, sa.X_WB_mid, b.shape, sb.X_WB_mid, margin, scratch.patches, found);
   if (found.count == 0) return;
-  const Material combined = material ? *material : combine(a.material, b.material);
+  const Material combined = material ? *material : materialOf(model, pair.a, pair.b);
   for (int i = 0; i < found.count; ++i) {
     const contact::PairPoint& point = found.points[i];
     Contact* const contact = addContact(scratch, point.phi);

@@ -2,51 +2,58 @@
 
 #include <algorithm>
 
+#include "engine/world/impact.h"
 #include "engine/world/stick_bias.h"
 
 namespace pincer::engine {
 namespace {
 
-// Half a tick's turn of the normal and of the arms, from their motion since the last tick's middle: n_end . v_end - n_mid . v_mid.
-double turnOfNormal(const WorldScratch& scratch, const Contact& c, const ContactMemory& memory) {
+// The turn of the normal and of the arms from now to the end, from their motion since the middle of the last part of a tick: n_end . v_end - n_mid . v_mid.
+double turnOfNormal(const WorldScratch& scratch, double h_last, const Contact& c, const ContactMemory& memory) {
   const Vec3 n_W = c.n_W();
   const Vec3 v_rel_W = c.R_WC * c.v_start_C.head<3>();
   double turn = (n_W - memory.n_W).dot(v_rel_W);
   turn += n_W.dot(mover(scratch, c.a).start.w_W.cross(c.arm_a_W - memory.arm_a_W));
   turn -= n_W.dot(mover(scratch, c.b).start.w_W.cross(c.arm_b_W - memory.arm_b_W));
-  return 0.5 * turn;
+  return scratch.h / (scratch.h + h_last) * turn;
+}
+
+// Newton's law of impact; what touches without hitting is only kept from closing.
+double impactBias(const WorldModel& model, const WorldScratch& scratch, const Contact& c) {
+  const double u_n = c.v_start_C[kNormalRow];
+  return scratch.bounce * bounceRestitution(c.material.restitution, u_n, gapAcceleration(model, c), model.options.h) * u_n;
 }
 
 double normalBias(const WorldModel& model, const WorldState& state, const WorldScratch& scratch, Contact& c) {
+  if (scratch.h == 0) return impactBias(model, scratch, c);
   const double h = model.options.h;
   const ContactMemory* memory = c.memory >= 0 ? &state.contacts[c.memory] : nullptr;
   // What landed in the last tick still has the speed that it landed with: it is stopped like a new contact.
   if (memory && memory->active && !memory->closing) {
-    return std::max(kNormalCorrection * c.phi / h, -kLargestCorrection) + turnOfNormal(scratch, c, *memory);
+    return std::max(kNormalCorrection * c.phi / h, -kLargestCorrection) + turnOfNormal(scratch, state.h_last, c, *memory);
   }
   const double u_n = c.v_start_C[kNormalRow];
-  const double phi_start = c.phi - 0.5 * h * u_n;
-  c.closing = u_n < -kClosingSpeed;
-  // Slower than a few ticks of gravity is rest, not a bounce.
-  const double bounce_speed = 1e-2 + 2 * h * model.options.gravity_W.norm();
-  if (u_n < -bounce_speed && c.material.restitution > 0 && phi_start + h * u_n < 0) return c.material.restitution * u_n;
-  return phi_start > 0 ? phi_start / h : std::max(kNormalCorrection * phi_start / h, -kLargestCorrection);
+  const double phi_start = c.phi - 0.5 * scratch.h * u_n;
+  c.closing = std::abs(u_n) > kClosingSpeed;  // also what hops and comes down within the tick
+  if (phi_start > 0) return phi_start / scratch.h;
+  return std::max(kNormalCorrection * phi_start / h, -kLargestCorrection);
 }
 
 void fillContact(const WorldModel& model, const WorldState& state, WorldScratch& scratch, int i) {
-  const double h = model.options.h;
+  const double rate = scratch.h > 0 ? kTangentCorrection / model.options.h : 0;
   Contact& c = scratch.contacts[i];
   const int first = scratch.first_row[i], count = scratch.first_row[i + 1] - first;
   const ContactMemory* memory = c.memory >= 0 ? &state.contacts[c.memory] : nullptr;
   Eigen::Vector4d q = relativeVelocity(c, mover(scratch, c.a).free, mover(scratch, c.b).free);
   c.stuck = memory && memory->active && !memory->sliding;
   c.bias_C.setZero();
-  if (c.stuck) c.bias_C = kTangentCorrection / h * (c.offset_C + 0.5 * h * c.v_start_C);
+  if (c.stuck) c.bias_C = rate * (c.offset_C + 0.5 * scratch.h * c.v_start_C);
   c.bias_C[kNormalRow] = normalBias(model, state, scratch, c);
   q += c.bias_C;
   q[3] *= c.material.torsion_radius;
   for (int k = 0; k < count; ++k) scratch.q[first + k] = q[k];
-  for (int k = 0; k < count; ++k) scratch.r[first + k] = memory ? memory->r[k] : 0;
+  const double longer = memory ? scratch.h / state.h_last : 0;  // than the last part of a tick: impulses grow with it
+  for (int k = 0; k < count; ++k) scratch.r[first + k] = memory ? longer * memory->r[k] : 0;
   scratch.mu[i] = c.mu;
 }
 
@@ -59,7 +66,7 @@ void fillContacts(const WorldModel& model, const WorldState& state, WorldScratch
     scratch.first_row[i + 1] = scratch.first_row[i] + (scratch.contacts[i].material.torsion_radius > 0 ? kMaxContactRows : 3);
     fillContact(model, state, scratch, i);
   }
-  alignStickBiases(model.options.h, kTangentCorrection / model.options.h, scratch);
+  if (scratch.h > 0) alignStickBiases(scratch.h, kTangentCorrection / model.options.h, scratch);
 }
 
 }  // namespace pincer::engine

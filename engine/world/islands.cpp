@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/world/island_threads.h"
+#include "engine/world/joints.h"
 #include "engine/world/scratch.h"
 
 namespace pincer::engine {
@@ -10,7 +11,11 @@ namespace {
 
 // The number of what moves there in IslandScratch's arrays per mover; -1 for what doesn't.
 int moverOf(const WorldModel& model, const WorldScratch& scratch, const Side& side) {
-  if (side.kind == SideKind::kBody) return model.bodies[side.index].dynamic ? side.index : -1;
+  if (side.kind == SideKind::kBody) {
+    const BodyModel& body = model.bodies[side.index];
+    if (body.joint_group >= 0) return model.joint_groups[body.joint_group].bodies.front();  // joined bodies are one mover
+    return body.dynamic ? side.index : -1;
+  }
   return scratch.points[side.index].inverse_mass.isZero(0) ? -1 : static_cast<int>(model.bodies.size()) + side.index;
 }
 
@@ -102,8 +107,20 @@ void fillSide(const WorldModel& model, const WorldScratch& scratch, const Contac
   if (mover < 0) return;
   const Side& side = is_a ? c.a : c.b;
   const double sign = is_a ? 1 : -1;
+  if (side.kind == SideKind::kBody && model.bodies[side.index].joint_group >= 0) {
+    for (int k = 0; k < rows; ++k) std::fill(out.A[k], out.A[k] + kMoverFreedoms, 0.0);
+    return addJointedSide(model, scratch, c, rows, sign, side.index, is_a ? c.arm_a_W : c.arm_b_W, out);
+  }
   if (side.kind == SideKind::kPoint) return fillPointSide(c, rows, sign, scratch.points[side.index].inverse_mass, out);
   fillBodySide(c, rows, sign, is_a ? c.arm_a_W : c.arm_b_W, std::sqrt(model.bodies[side.index].inverse_mass), s.root_inertia[mover], out);
+}
+
+// Two joined bodies that touch each other are one mover: what they do is one block.
+void joinSides(int rows, ContactSides& sides) {
+  for (int k = 0; k < rows; ++k) {
+    for (int j = 0; j < kMoverFreedoms; ++j) sides[0].A[k][j] += sides[1].A[k][j];
+  }
+  sides[1].mover = -1;
 }
 
 int numberOf(const WorldModel& model, const WorldScratch& scratch, const Side& side, int mover, Island& island, IslandScratch& s) {
@@ -128,6 +145,7 @@ void gather(const WorldModel& model, const WorldScratch& scratch, int k, int row
     ContactSides& sides = s.sides[island.place + n];
     fillSide(model, scratch, c, rows, true, ends.a, numberOf(model, scratch, c.a, ends.a, island, s), s, sides[0]);
     fillSide(model, scratch, c, rows, false, ends.b, numberOf(model, scratch, c.b, ends.b, island, s), s, sides[1]);
+    if (ends.a >= 0 && ends.a == ends.b) joinSides(rows, sides);
     first_row[n] = island.rows;
     s.mu[island.place + n] = scratch.mu[i];
     for (int l = 0; l < rows; ++l) {

@@ -42,6 +42,20 @@ void setInertia(const BodySpec& spec, BodyModel& body) {
   body.rotation = FreeRotation(inertia.moments);
 }
 
+// Of a homogeneous solid: a slab's half thickness is the root of three times the mean square distance from its middle plane.
+double innerRadius(const contact::Shape& shape) {
+  if (isSupportOnly(shape)) return std::numeric_limits<double>::infinity();
+  const Vec3 moments = principalInertia(massPropertiesOf(shape, 1)).moments;
+  return std::sqrt(std::max(3 * (0.5 * moments.sum() - moments.maxCoeff()), 0.0));
+}
+
+void setExtent(const BodySpec& spec, BodyModel& body) {
+  body.bounding_radius = contact::boundingRadius(spec.shape) + body.X_BI.p.norm();
+  body.inner_radius = innerRadius(spec.shape);
+  const bool is_round = isSupportOnly(spec.shape) || std::holds_alternative<contact::Sphere>(spec.shape);
+  body.corner_reach = is_round ? 0 : std::max(body.bounding_radius - body.inner_radius, 0.0);
+}
+
 // Fox-Goodwin is stable up to omega h = sqrt(6); half of the first axis' own limit leaves room for what the contact adds.
 AxisForm formOf(const DrivenPointModel& point, int axis, double h) {
   if (point.locked[axis]) return AxisForm::kLocked;
@@ -49,7 +63,64 @@ AxisForm formOf(const DrivenPointModel& point, int axis, double h) {
   return point.mass > 0 && soft ? AxisForm::kFourthOrder : AxisForm::kImplicit;
 }
 
+// Sorts the joints by the group that they belong to: the lowest body that moving bodies and joints connect them with.
+void groupJoints(WorldModel& model) {
+  std::vector<int> root(model.bodies.size());
+  for (std::size_t i = 0; i < root.size(); ++i) root[i] = static_cast<int>(i);
+  const auto moves = [&](int body) { return body >= 0 && model.bodies[body].dynamic; };
+  for (std::size_t pass = 0; pass < model.joints.size(); ++pass) {
+    for (const JointModel& joint : model.joints) {
+      if (moves(joint.b)) root[joint.a] = root[joint.b] = std::min(root[joint.a], root[joint.b]);
+    }
+  }
+  std::stable_sort(model.joints.begin(), model.joints.end(),
+                   [&](const JointModel& x, const JointModel& y) { return root[x.a] < root[y.a]; });
+  for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
+    const JointModel& joint = model.joints[j];
+    if (j == 0 || root[joint.a] != root[model.joints[j - 1].a]) model.joint_groups.push_back({j, 0, {}});
+    ++model.joint_groups.back().count;
+    for (const int body : {joint.a, joint.b}) {
+      if (moves(body)) model.bodies[body].joint_group = static_cast<int>(model.joint_groups.size()) - 1;
+      if (body >= 0) model.bodies[body].may_touch = true;
+    }
+  }
+  for (int i = 0; i < static_cast<int>(model.bodies.size()); ++i) {
+    if (model.bodies[i].joint_group >= 0) model.joint_groups[model.bodies[i].joint_group].bodies.push_back(i);
+  }
+}
+
+int blockedBy(JointKind kind) { return kind == JointKind::kWeld ? 6 : kind == JointKind::kBall ? 3 : 5; }
+
+// A group of joined bodies is one mover of the contact solver, which knows so many freedoms.
+void checkGroups(WorldModel& model) {
+  for (const PairModel& pair : model.pairs) {
+    for (const int body : {pair.a, pair.b}) {
+      if (model.bodies[body].joint_group >= 0) model.joint_groups[model.bodies[body].joint_group].may_touch = true;
+    }
+  }
+  for (JointGroup& group : model.joint_groups) {
+    group.may_touch = group.may_touch || !model.points.empty() || model.has_broad_phase;
+    int freedoms = 6 * static_cast<int>(group.bodies.size());
+    const bool large = freedoms > kMostGroupFreedoms;
+    for (int j = group.first; j < group.first + group.count; ++j) freedoms -= blockedBy(model.joints[j].kind);
+    if (!group.may_touch || (freedoms <= kMoverFreedoms && !large)) continue;
+    throw InputError(fmt::format(
+        "the {} bodies joined with \"{}\" can move in {} ways together, and contacts know joined bodies of at most {} bodies and {} "
+        "ways. Hold one of them to the world, weld some, or let nothing touch them.",
+        group.bodies.size(), model.bodies[group.bodies.front()].name, freedoms, kMostGroupFreedoms / 6, kMoverFreedoms));
+  }
+}
+
+bool comesBefore(const PairModel& x, const PairModel& y) { return std::pair(x.a, x.b) < std::pair(y.a, y.b); }
+
 }  // namespace
+
+Material materialOf(const WorldModel& model, int a, int b) {
+  const PairModel pair{a, b, {}};
+  const auto own = std::lower_bound(model.special_pairs.begin(), model.special_pairs.end(), pair, comesBefore);
+  if (own != model.special_pairs.end() && !comesBefore(pair, *own)) return own->material;
+  return combine(model.bodies[a].material, model.bodies[b].material);
+}
 
 Material combine(const Material& a, const Material& b) {
   Material m;
@@ -66,6 +137,9 @@ WorldBuilder::WorldBuilder(const WorldOptions& options) {
   requireRange("max_contacts", options.max_contacts, 4, 16384, "64 suits hand-sized scenes; four to six per body suit heaps.");
   requireRange("threads", options.threads, 1, 16, "1 suits hand-sized scenes; more pay where many heaps lie apart.");
   requireRange("solver.tolerance", options.solver.tolerance, 1e-14, 1e-2, "1e-10 is the usual one.");
+  if (options.position_tolerance != 0)
+    requireRange("position_tolerance", options.position_tolerance, 1e-12, 1, "In metres; 1e-6 is a micrometre per tick.");
+  requireRange("max_parts", options.max_parts, 2, 1024, "16 suits a tick of a millisecond.");
   if (!options.gravity_W.allFinite()) throw InputError("gravity isn't finite. Give three numbers in m/s^2, for example [0, 0, -9.81].");
   model_.options = options;
 }
@@ -81,7 +155,11 @@ int WorldBuilder::addBody(const BodySpec& spec) {
     throw InputError(fmt::format("body \"{}\": half-spaces and dishes have no mass and can't move. Make it static.", spec.name));
   }
   if (spec.dynamic) setInertia(spec, body);
-  body.bounding_radius = contact::boundingRadius(spec.shape) + body.X_BI.p.norm();
+  if (spec.driven && spec.dynamic)
+    throw InputError(fmt::format("body \"{}\": it can't be both dynamic and driven. Choose one.", spec.name));
+  body.driven = spec.driven;
+  if (spec.driven) body.motion = model_.driven_count++;
+  setExtent(spec, body);
   model_.bodies.push_back(std::move(body));
   return static_cast<int>(model_.bodies.size()) - 1;
 }
@@ -103,8 +181,44 @@ int WorldBuilder::addPoint(const DrivenPointModel& point) {
 
 void WorldBuilder::excludePair(int a, int b) { excluded_.emplace_back(std::min(a, b), std::max(a, b)); }
 
+void WorldBuilder::setPairMaterial(int a, int b, const Material& material) {
+  checkMaterial(
+      fmt::format("pair {} and {}", model_.bodies.at(static_cast<std::size_t>(a)).name, model_.bodies.at(static_cast<std::size_t>(b)).name),
+      material);
+  std::vector<PairModel>& special = model_.special_pairs;
+  const PairModel pair{std::min(a, b), std::max(a, b), material};
+  const auto place = std::lower_bound(special.begin(), special.end(), pair, comesBefore);
+  if (place != special.end() && !comesBefore(pair, *place)) {
+    *place = pair;
+  } else {
+    special.insert(place, pair);
+  }
+}
+
+int WorldBuilder::addJoint(const JointModel& joint) {
+  const int count = static_cast<int>(model_.bodies.size());
+  const std::string name = fmt::format("joint {}", model_.joints.size());
+  requireRange(name + ".damping", joint.damping, 0, 1e9, "A damper's coefficient is zero or positive.");
+  if (joint.a < 0 || joint.a >= count || joint.b < -1 || joint.b >= count || joint.a == joint.b) {
+    throw InputError(fmt::format("{}: it joins bodies {} and {}, but there are {}. Add both bodies first.", name, joint.a, joint.b, count));
+  }
+  if (!model_.bodies[joint.a].dynamic) {
+    throw InputError(
+        fmt::format("{}: its first body \"{}\" never moves by itself. Name the moving one first.", name, model_.bodies[joint.a].name));
+  }
+  JointModel inertial = joint;
+  inertial.X_AJ = model_.bodies[joint.a].X_IB * joint.X_AJ;
+  if (joint.b >= 0) inertial.X_BJ = model_.bodies[joint.b].X_IB * joint.X_BJ;
+  if (joint.b >= 0) excludePair(joint.a, joint.b);
+  model_.joints.push_back(inertial);
+  return static_cast<int>(model_.joints.size()) - 1;
+}
+
 WorldModel WorldBuilder::build() const {
   WorldModel model = model_;
+  groupJoints(model);
+  for (const BodyModel& body : model.bodies) model.bounces = model.bounces || body.material.restitution > 0;
+  for (const PairModel& pair : model.special_pairs) model.bounces = model.bounces || pair.material.restitution > 0;
   for (const DrivenPointModel& point : model.points) {
     const double h = model.options.h;
     model.point_forms.push_back({formOf(point, 0, h), formOf(point, 1, h), formOf(point, 2, h)});
@@ -123,7 +237,7 @@ WorldModel WorldBuilder::build() const {
             "bodies \"{}\" and \"{}\": this pair of shapes has no contact routine. Exclude the pair, or use a sphere for one of them.",
             A.name, B.name));
       }
-      if (!model.has_broad_phase) model.pairs.push_back({a, b, combine(A.material, B.material)});
+      if (!model.has_broad_phase) model.pairs.push_back({a, b, materialOf(model, a, b)});
       A.may_touch = B.may_touch = true;
     }
   }
@@ -131,6 +245,7 @@ WorldModel WorldBuilder::build() const {
   if (!model.points.empty()) {
     for (BodyModel& body : model.bodies) body.may_touch = true;
   }
+  checkGroups(model);
   return model;
 }
 

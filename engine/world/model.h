@@ -28,15 +28,20 @@ struct Material {
 struct BodyModel {
   std::string name;
   contact::Shape shape;
-  bool dynamic = true;          // false: never moves
-  double mass = 0;              // [kg]; 0 for static bodies
+  bool dynamic = true;          // false: never moves, or is driven
+  bool driven = false;          // follows the motion that the caller gives, whatever touches it
+  int motion = -1;              // of driven bodies: which of the inputs
+  double mass = 0;              // [kg]; 0 for static and driven bodies
   double inverse_mass = 0;      // [1/kg]
   Vec3 moments = Vec3::Zero();  // principal moments of inertia [kg m^2]
-  Pose X_BI;                    // inertial frame in B; identity for static bodies
+  Pose X_BI;                    // inertial frame in B; identity for static and driven bodies
   Pose X_IB;
   FreeRotation rotation;
   Material material;
   double bounding_radius = 0;  // about the centre of mass [m]; infinite for half-spaces
+  double inner_radius = 0;     // about half its least thickness [m]; infinite for half-spaces and dishes
+  double corner_reach = 0;     // how much further than that it reaches; 0 where turning doesn't change its outline [m]
+  int joint_group = -1;        // that binds it to others or to the world, -1: none
   bool may_touch = false;      // some pair or point can touch it; the others move in closed form alone
 };
 
@@ -67,12 +72,37 @@ struct PairModel {
   Material material;  // combined
 };
 
+// What a joint leaves free, in its frame J.
+enum class JointKind : unsigned char {
+  kPivot,   // a turns about J's z axis
+  kSlider,  // a slides along J's z axis
+  kBall,    // a turns about J's origin
+  kWeld,    // nothing
+};
+struct JointModel {
+  JointKind kind = JointKind::kPivot;
+  int a = 0, b = -1;   // bodies; b = -1: the world. a is dynamic
+  Pose X_AJ, X_BJ;     // J in the two inertial frames (in W for the world); as given to the builder: in the bodies' own frames
+  double damping = 0;  // of the free axis [N m s/rad] or [N s/m], >= 0
+};
+// Joints that share moving bodies, joints[first] .. joints[first + count - 1].
+struct JointGroup {
+  int first = 0, count = 0;
+  std::vector<int> bodies;  // ascending; static and driven ones don't count
+  bool may_touch = false;   // something can touch one of them
+};
+constexpr int kMostGroupFreedoms = 48;  // of the bodies of a group that something can touch, without their joints
+constexpr int kMostJointRows = 7;       // of one joint: a weld's six, a pivot's five and its damper
+
 struct WorldOptions {
   double h = 1e-3;                     // tick [s], 1e-5 .. 1e-2
   Vec3 gravity_W = Vec3(0, 0, -9.81);  // [m/s^2]
   double contact_margin = 1e-3;        // pairs closer than this make contacts [m], > 0
   int max_contacts = 64;               // 4 .. 16384; more are dropped, deepest kept, and StepStatus says so
   int threads = 1;                     // that solve islands, 1 .. 16; the results are the same to the bit
+  // Position error per tick that is allowed [m], 0 or 1e-12 .. 1; 0: every tick is one part. Costs three times a plain tick, or more.
+  double position_tolerance = 0;
+  int max_parts = 16;  // that a tick may be cut into for that, 2 .. 1024; rounded down to a power of two
   SolverOptions solver;
 };
 
@@ -84,6 +114,11 @@ struct WorldModel {
   std::vector<PairModel> pairs;  // only those that can touch: at least one dynamic, shapes supported; none with a broad phase
   bool has_broad_phase = false;  // of more than kAllPairsBodies bodies: pairs are found tick by tick (broad_phase.h)
   std::vector<std::pair<int, int>> excluded_pairs;  // sorted; only with a broad phase
+  std::vector<PairModel> special_pairs;             // with a material of their own, sorted
+  std::vector<JointModel> joints;                   // by groups
+  std::vector<JointGroup> joint_groups;
+  bool bounces = false;  // some pair has restitution
+  int driven_count = 0;  // of bodies
 };
 
 // What the builder is told about a body; B's pose and velocity at the start live in BodyStart.
@@ -93,16 +128,19 @@ struct BodySpec {
   bool dynamic = true;
   double mass = 0;  // [kg], > 0 for dynamic bodies
   Material material;
+  bool driven = false;  // not dynamic, but moves as the caller says
 };
 
 // Collects bodies and points, checks them, and builds the model. Every error names the body, the value, its range and a remedy (InputError).
 class WorldBuilder {
  public:
   explicit WorldBuilder(const WorldOptions& options);
-  int addBody(const BodySpec& spec);            // returns the body's index
-  int addPoint(const DrivenPointModel& point);  // returns the point's index
-  void excludePair(int a, int b);               // these two never touch
-  WorldModel build() const;
+  int addBody(const BodySpec& spec);                             // returns the body's index
+  int addPoint(const DrivenPointModel& point);                   // returns the point's index
+  int addJoint(const JointModel& joint);                         // returns the joint's index in the order of calls; the two never touch
+  void excludePair(int a, int b);                                // these two never touch
+  void setPairMaterial(int a, int b, const Material& material);  // of these two, in place of the combination of theirs; the last one counts
+  WorldModel build() const;                                      // joints in the order of their groups
 
  private:
   WorldModel model_;
@@ -110,5 +148,8 @@ class WorldBuilder {
 };
 
 Material combine(const Material& a, const Material& b);
+
+// Of two bodies, a < b: their own, or combined.
+Material materialOf(const WorldModel& model, int a, int b);
 
 }  // namespace pincer::engine

@@ -1,19 +1,9 @@
 // Where everything would be in the middle of the tick, and how fast at its end, if nothing touched.
+#include "engine/world/joints.h"
 #include "engine/world/step.h"
 
 namespace pincer::engine {
 namespace {
-
-Mat3 inverseInertia(const FreeRotation& rotation, const Quat& q_WI) {
-  if (rotation.kind == FreeRotation::Kind::kSpherical) return rotation.inverse_moments[0] * Mat3::Identity();
-  const Mat3 R = q_WI.toRotationMatrix();
-  return R * rotation.inverse_moments.asDiagonal() * R.transpose();
-}
-
-void rest(MoverScratch& out) {
-  out.impulse_W.setZero();
-  out.touched = out.closing = false;
-}
 
 // Angular velocities, and the orientation in the middle; a body without angular momentum needs no thought.
 void predictRotation(const FreeRotation& rotation, const BodyState& s, double h, BodyScratch& out) {
@@ -37,13 +27,22 @@ void place(const BodyModel& body, BodyScratch& out) {
 void predictBody(const BodyModel& body, const BodyState& s, const Vec3& dv_gravity_W, double h, BodyScratch& out) {
   out.start.v_W = s.v_W;
   out.free.v_W = s.v_W + dv_gravity_W;
-  rest(out);
-  out.angular_impulse_W.setZero();
   if (!body.may_touch) return;  // moves alone: advance needs nothing more
   out.X_WI_mid.p = s.X_WI.p + (0.5 * h) * s.v_W;
   predictRotation(body.rotation, s, h, out);
   place(body, out);
   out.inverse_inertia_W = inverseInertia(body.rotation, out.X_WI_mid.q);
+}
+
+void predictDriven(const BodyState& s, const MotionInput& in, double h, BodyScratch& out) {
+  out.X_WB_end = in.X_WB;
+  out.start = {s.v_W, s.L_W};
+  out.free = in.motion;
+  // Predicted as that of a dynamic body: what rests on it has its acceleration, and the gap between them must not show it.
+  out.X_WI_mid = {quatFromRotationVector(0.5 * h * s.L_W) * s.X_WI.q, s.X_WI.p + 0.5 * h * s.v_W};
+  // What slides on it is measured against the way that it goes, not against the mean of two velocities.
+  out.end.v_W = 2 / h * (in.X_WB.p - s.X_WI.p) - s.v_W;
+  out.end.w_W = 2 / h * rotationVectorOf(in.X_WB.q * s.X_WI.q.conjugate()) - s.L_W;
 }
 
 // One axis of a driven point: (effective mass) v+ = momentum + contact impulse, with the spring-damper's impulse over the tick inside.
@@ -78,7 +77,6 @@ void predictPoint(const DrivenPointModel& point, const std::array<AxisForm, 3>& 
   out.p_target_W = out.input_ok ? in.p_target_W : s.p_target_W;
   out.v_target_W = out.input_ok ? in.v_target_W : Vec3::Zero();
   const Vec3 f_W = out.input_ok ? in.f_W : Vec3::Zero();
-  rest(out);
   out.start.v_W = s.v_W;
   for (int i = 0; i < 3; ++i) {
     const AxisInput a{point.mass,
@@ -102,22 +100,48 @@ void predictPoint(const DrivenPointModel& point, const std::array<AxisForm, 3>& 
 
 }  // namespace
 
-void predict(const WorldModel& model, const WorldState& state, std::span<const PointInput> inputs, WorldScratch& scratch) {
-  const double h = model.options.h;
+void predict(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
+  const double h = scratch.h;
   const Vec3 dv_gravity_W = h * model.options.gravity_W;
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
     if (model.bodies[i].dynamic) {
       predictBody(model.bodies[i], state.bodies[i], dv_gravity_W, h, scratch.bodies[i]);
     } else {
-      scratch.bodies[i].X_WI_mid = state.bodies[i].X_WI;
+      BodyScratch& body = scratch.bodies[i];
+      body.X_WI_mid = state.bodies[i].X_WI;
+      if (model.bodies[i].driven) predictDriven(state.bodies[i], scratch.motion_inputs[model.bodies[i].motion], h, body);
       place(model.bodies[i], scratch.bodies[i]);
     }
   }
   for (std::size_t i = 0; i < model.points.size(); ++i) {
-    predictPoint(model.points[i], model.point_forms[i], state.points[i], inputs[i], h, scratch.points[i]);
+    predictPoint(model.points[i], model.point_forms[i], state.points[i], scratch.point_inputs[i], h, scratch.points[i]);
   }
+  if (!model.joints.empty()) predictJoints(model, scratch);
   scratch.contacts.clear();
-  scratch.contacts_dropped = false;
+  scratch.fast_pairs.clear();
+}
+
+void predictImpact(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
+  scratch.h = 0;
+  for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+    BodyScratch& out = scratch.bodies[i];
+    const BodyState& s = state.bodies[i];
+    out.X_WI_mid = s.X_WI;
+    out.start = {s.v_W, bodyAngularVelocity(model, state, static_cast<int>(i))};
+    out.free = out.end = out.start;
+    if (model.bodies[i].dynamic) out.inverse_inertia_W = inverseInertia(model.bodies[i].rotation, s.X_WI.q);
+    place(model.bodies[i], out);
+  }
+  for (std::size_t i = 0; i < model.points.size(); ++i) {
+    PointScratch& out = scratch.points[i];
+    const double mass = model.points[i].mass;
+    out.p_mid_W = state.points[i].p_W;
+    out.start.v_W = out.free.v_W = out.end.v_W = state.points[i].v_W;
+    for (int axis = 0; axis < 3; ++axis) out.inverse_mass[axis] = model.points[i].locked[axis] || mass <= 0 ? 0 : 1 / mass;
+  }
+  if (!model.joints.empty()) predictJoints(model, scratch);
+  scratch.contacts.clear();
+  scratch.fast_pairs.clear();
 }
 
 }  // namespace pincer::engine

@@ -4,12 +4,34 @@
 
 namespace pincer::engine {
 
-WorldScratch::WorldScratch(const WorldModel& model) : islands(model) {
+WorldScratch::WorldScratch(const WorldModel& model) : h(model.options.h), islands(model) {
   const auto contact_count = static_cast<std::size_t>(model.options.max_contacts);
   const std::size_t row_count = contact_count * kMaxContactRows;
   bodies.resize(model.bodies.size());
   points.resize(model.points.size());
   contacts.reserve(contact_count);
+  fast_pairs.reserve(contact_count);
+  impact_pairs.reserve(2 * contact_count);
+  for (const JointGroup& group : model.joint_groups) {
+    const auto rows = static_cast<std::size_t>(group.count) * kMostJointRows;
+    JointGroupScratch& out = joint_groups.emplace_back();
+    out.rows.reserve(rows);
+    out.A.resize(rows * rows);
+    out.lambda.resize(rows);
+    out.pivots.resize(rows);
+    out.basis.resize(36 * group.bodies.size() * group.bodies.size());
+    out.factor.resize(6 * kMoverFreedoms * group.bodies.size());
+    out.may_touch = group.may_touch;
+  }
+  for (WorldState* copy : {&before, &coarse}) {  // so that copying a state allocates nothing
+    if (!(model.options.position_tolerance > 0)) break;
+    copy->bodies.resize(model.bodies.size());
+    copy->points.resize(model.points.size());
+    copy->contacts.resize(contact_count);
+  }
+  struck.resize(model.bodies.size());
+  point_inputs.resize(model.points.size());
+  motion_inputs.resize(static_cast<std::size_t>(model.driven_count));
   first_row.resize(contact_count + 1);
   mu.resize(contact_count);
   q.resize(row_count);

@@ -6,11 +6,13 @@
 #include <vector>
 
 #include "contact/surface/patch_cache.h"
+#include "engine/motion/driven_motion.h"
 #include "engine/solve/cascade.h"
 #include "engine/world/broad_phase.h"
 #include "engine/world/islands.h"
 #include "engine/world/model.h"
 #include "engine/world/stage_clock.h"
+#include "engine/world/state.h"
 
 namespace pincer::engine {
 
@@ -48,12 +50,17 @@ struct Contact {
   bool active() const { return r[2] > 0; }
 };
 
-// Velocity of a body's centre of mass or of a point, and angular velocity; a point's is zero.
-struct Motion {
-  Vec3 v_W = Vec3::Zero(), w_W = Vec3::Zero();
+// What a driven body does at the end of the tick: pose of its frame B, velocity of B's origin, angular velocity.
+using MotionInput = DrivenPlace;
+
+// Where a driven point's target is at the end of the tick, and a force on the point over the tick.
+struct PointInput {
+  Vec3 p_target_W = Vec3::Zero();  // [m]
+  Vec3 v_target_W = Vec3::Zero();  // [m/s]
+  Vec3 f_W = Vec3::Zero();         // [N]
 };
 
-// What a body or point went through in this tick.
+// What a body or point went through in this part of the tick.
 struct MoverScratch {
   Motion start, free, end;        // at the start of the tick; at its end, were there no contact; at its end (of bodies: if touched)
   Vec3 impulse_W = Vec3::Zero();  // of all contacts [N s]
@@ -62,24 +69,61 @@ struct MoverScratch {
 };
 struct BodyScratch : MoverScratch {
   Pose X_WI_mid, X_WB_mid;
-  Mat3 R_WB_mid = Mat3::Identity();       // X_WB_mid.q: a matrix turns many vectors in half the time
-  Mat3 inverse_inertia_W = Mat3::Zero();  // at the middle
-  Vec3 angular_impulse_W = Vec3::Zero();  // about the centre of mass [N m s]
+  Pose X_WB_end;                                // of driven bodies
+  Mat3 R_WB_mid = Mat3::Identity();             // X_WB_mid.q: a matrix turns many vectors in half the time
+  Mat3 inverse_inertia_W = Mat3::Zero();        // at the middle
+  Vec3 angular_impulse_W = Vec3::Zero();        // about the centre of mass [N m s]
+  Vec3 joint_angular_impulse_W = Vec3::Zero();  // the part of it that joints would give without contact; its linear part is in `free`
 };
 struct PointScratch : MoverScratch {
   Vec3 p_mid_W = Vec3::Zero();
   Vec3 inverse_mass = Vec3::Zero();                           // effective, per world axis, of the implicit spring-damper [1/kg]
   Vec3 p_target_W = Vec3::Zero(), v_target_W = Vec3::Zero();  // at the end of the tick
+  Vec3 v_tick_W = Vec3::Zero();                               // velocity at the start of the tick
+  Vec3 tick_impulse_W = Vec3::Zero();                         // of all contacts over all parts of the tick [N s]
   bool input_ok = true;
+};
+
+// One direction that a joint blocks or brakes, see joints.h.
+struct JointRow {
+  int a, b;               // bodies, -1 for the world
+  Vec3 n_W;               // of the velocities where the joint is; zero for a row of angular velocities
+  Vec3 ang_a_W, ang_b_W;  // what multiplies the two angular velocities
+  Vec3 m_W;               // the axis of a row of angular velocities; zero for the others
+  double softness, bias;  // R and b
+  double miss;            // how far the constraint is violated [m, rad]
+};
+struct JointGroupScratch {
+  std::vector<JointRow> rows;
+  std::vector<double> A, lambda;
+  std::vector<int> pivots;
+  std::vector<double> basis;   // of the group's scaled velocities, a vector after the other
+  std::vector<double> factor;  // F: per body a 6 x kMoverFreedoms block, column-major
+  bool sound = true;           // A could be factorised
+  bool may_touch = false;      // something can touch one of its bodies, so that F is needed
+};
+
+// Two bodies that may hit each other within the tick.
+struct ImpactPair {
+  int a = 0, b = 0;
 };
 
 struct WorldScratch {
   explicit WorldScratch(const WorldModel& model);
 
+  double h;  // length of this part of the tick [s]; 0 in an impact, which takes no time
   std::vector<BodyScratch> bodies;
   std::vector<PointScratch> points;
   std::vector<Contact> contacts;  // capacity options.max_contacts
   bool contacts_dropped = false;
+  std::vector<ImpactPair> fast_pairs;    // move so fast that the middle of the tick doesn't show whether they meet; capacity as contacts
+  std::vector<ImpactPair> impact_pairs;  // hit each other in this part of the tick, or may (impact.h)
+  std::vector<JointGroupScratch> joint_groups;
+  std::vector<bool> struck;                // per body, in an impact
+  WorldState before, coarse;               // the tick's start, and its end in half as many parts
+  double bounce = 1;                       // share of the restitution that acts in an impact: less where all of it would add energy
+  std::vector<PointInput> point_inputs;    // at the end of this part of the tick
+  std::vector<MotionInput> motion_inputs;  // likewise, one per driven body
   std::vector<int> first_row;
   std::vector<double> mu, q, r, u;
   contact::PatchCache patches;

@@ -16,10 +16,13 @@ struct StageClock {
   Clock::time_point last = Clock::now();
   std::array<double, kStageCount> seconds{};  // of the last tick
 
-  void start() { last = Clock::now(); }
+  void start() {
+    seconds = {};
+    last = Clock::now();
+  }
   void mark(Stage stage) {
     const auto now = Clock::now();
-    seconds[static_cast<std::size_t>(stage)] = std::chrono::duration<double>(now - last).count();
+    seconds[static_cast<std::size_t>(stage)] += std::chrono::duration<double>(now - last).count();
     last = now;
   }
 };

@@ -4,8 +4,12 @@
 
 #include <bit>
 
+#include "engine/world/joints.h"
+
 namespace pincer::engine {
 namespace {
+
+constexpr double kLargestJointGap = 1e-6;  // [m, rad]: more than the round-off of a scene file isn't what its author meant
 
 class Fnv1a {
  public:
@@ -54,7 +58,10 @@ WorldState makeState(const WorldModel& model, const std::vector<BodyStart>& star
     s.X_WI = starts[i].X_WB * body.X_BI;
     s.X_WI.q.normalize();
     s.v_W = starts[i].v_W;
-    s.L_W = s.X_WI.q * body.moments.cwiseProduct(s.X_WI.q.conjugate() * starts[i].w_W);
+    if (!body.dynamic)
+      s.L_W = starts[i].w_W;
+    else
+      s.L_W = s.X_WI.q * body.moments.cwiseProduct(s.X_WI.q.conjugate() * starts[i].w_W);
     state.bodies.push_back(s);
   }
   for (const Vec3& p : points) {
@@ -63,6 +70,14 @@ WorldState makeState(const WorldModel& model, const std::vector<BodyStart>& star
     s.p_W = s.p_target_W = p;
     state.points.push_back(s);
   }
+  for (const JointModel& joint : model.joints) {
+    const Vec2 gap = jointGap(state, joint);
+    if (!(gap.maxCoeff() > kLargestJointGap)) continue;
+    throw InputError(
+        fmt::format("the joint of body \"{}\": at the start its two sides are {:g} m and {:g} rad apart, more than {:g}. Start the "
+                    "bodies where the joint holds them.",
+                    model.bodies[joint.a].name, gap[0], gap[1], kLargestJointGap));
+  }
   state.contacts.resize(static_cast<std::size_t>(model.options.max_contacts));
   return state;
 }
@@ -70,7 +85,7 @@ WorldState makeState(const WorldModel& model, const std::vector<BodyStart>& star
 Pose bodyPose(const WorldModel& model, const WorldState& state, int body) { return state.bodies[body].X_WI * model.bodies[body].X_IB; }
 
 Vec3 bodyAngularVelocity(const WorldModel& model, const WorldState& state, int body) {
-  if (!model.bodies[body].dynamic) return Vec3::Zero();
+  if (!model.bodies[body].dynamic) return state.bodies[body].L_W;
   return angularVelocity(model.bodies[body].rotation, state.bodies[body].X_WI.q, state.bodies[body].L_W);
 }
 
@@ -96,6 +111,8 @@ std::uint64_t hashOf(const WorldState& state) {
   Fnv1a hash;
   hash.add(state.time);
   hash.add(static_cast<std::uint64_t>(state.tick));
+  hash.add(state.h_last);
+  hash.add(static_cast<std::uint64_t>(state.parts));
   for (const BodyState& b : state.bodies) {
     hash.add(b.X_WI.q);
     for (const Vec3& v : {b.X_WI.p, b.v_W, b.L_W}) hash.add(v);

@@ -11,7 +11,7 @@ namespace pincer::engine {
 struct BodyState {
   Pose X_WI;                // inertial frame in W
   Vec3 v_W = Vec3::Zero();  // of the centre of mass [m/s]
-  Vec3 L_W = Vec3::Zero();  // angular momentum about the centre of mass [kg m^2/s]
+  Vec3 L_W = Vec3::Zero();  // angular momentum about the centre of mass [kg m^2/s]; of a driven body its angular velocity [rad/s]
 };
 
 struct PointState {
@@ -38,6 +38,8 @@ struct ContactMemory {
 struct WorldState {
   double time = 0;  // [s]
   std::int64_t tick = 0;
+  int parts = 1;      // that the last tick was cut into by the tolerance
+  double h_last = 0;  // length of the last part of a tick [s], see step.h; 0 before the first
   std::vector<BodyState> bodies;
   std::vector<PointState> points;
   std::vector<ContactMemory> contacts;  // always options.max_contacts of them, so that no tick allocates; the first contact_count count

@@ -33,17 +33,4 @@ void solveContacts(const WorldModel& model, const WorldState& state, WorldScratc
   for (std::size_t i = 0; i < scratch.contacts.size(); ++i) readSolution(scratch, static_cast<int>(i), scratch.contacts[i]);
 }
 
-StepReport step(const WorldModel& model, WorldState& state, WorldScratch& scratch, std::span<const PointInput> inputs) {
-  if (scratch.clock) scratch.clock->start();
-  predict(model, state, inputs, scratch);
-  mark(scratch, Stage::kPredict);
-  collideBodies(model, scratch);
-  mark(scratch, Stage::kCollideBodies);
-  solveContacts(model, state, scratch);
-  mark(scratch, Stage::kSolve);
-  const StepReport report = advance(model, state, scratch);
-  mark(scratch, Stage::kAdvance);
-  return report;
-}
-
 }  // namespace pincer::engine

@@ -15,7 +15,7 @@ struct StatusKind {
   const char* sentence;  // what happened, and what to change
 };
 
-constexpr std::array<StatusKind, 4> kStatusKinds = {{
+constexpr std::array<StatusKind, 6> kStatusKinds = {{
     {engine::kSolverNotConverged, "solver_not_converged",
      "the contact solver stopped before its tolerance; its impulses are safe, but not exact. Loosen solver.tolerance, or look for contacts "
      "that "
@@ -25,6 +25,9 @@ constexpr std::array<StatusKind, 4> kStatusKinds = {{
     {engine::kStateNotFinite, "state_not_finite",
      "a number overflowed; the run was ended. Look for extreme masses, velocities or stiffnesses."},
     {engine::kInputNotFinite, "input_not_finite", "a finger's target wasn't a number; the finger stayed at its last one."},
+    {engine::kImpactsCut, "impacts_cut", "bodies hit each other more often than a tick can be cut; some hits landed. Shorten the tick."},
+    {engine::kToleranceNotMet, "tolerance_not_met",
+     "solver.max_parts were too few for solver.position_tolerance. Raise max_parts, or the tolerance."},
 }};
 
 class StatusCounts {

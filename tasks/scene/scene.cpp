@@ -17,6 +17,8 @@ constexpr NumberRule kTick = {.min = 1e-5, .max = 1e-2, .remedy = "In seconds; a
 constexpr NumberRule kDuration = {.min = 0, .max = 1e6, .min_open = true, .remedy = "In seconds."};
 constexpr NumberRule kTolerance = {.min = 1e-14, .max = 1e-2, .remedy = "Of the solver's relative residual; usual: 1e-10."};
 
+constexpr NumberRule kPositionTolerance = {.min = 1e-12, .max = 1, .remedy = "Position error per tick in metres; 1e-6 is a micrometre."};
+
 void checkVersion(const JsonValue& json) {
   const JsonValue& version = json.at("version", "This program reads version 1.");
   version.integer(kSceneVersion, kSceneVersion, "This program reads version 1.");
@@ -26,6 +28,8 @@ void readSolver(const JsonValue& json, engine::WorldOptions& options) {
   json.allowOnly(keys::kSolver);
   if (const JsonValue* v = json.find("tolerance")) options.solver.tolerance = v->number(kTolerance);
   if (const JsonValue* v = json.find("max_contacts")) options.max_contacts = v->integer(4, 256, "A whole number of contacts.");
+  if (const JsonValue* v = json.find("position_tolerance")) options.position_tolerance = v->number(kPositionTolerance);
+  if (const JsonValue* v = json.find("max_parts")) options.max_parts = v->integer(2, 1024, "How many parts a tick may be cut into.");
   if (const JsonValue* v = json.find("contact_margin")) options.contact_margin = v->number(kLength);
 }
 
@@ -47,6 +51,12 @@ Scene interpret(const JsonValue& json, const std::string& name) {
   readTimes(json, scene);
   if (const JsonValue* v = json.find("solver")) readSolver(*v, scene.options);
   for (const JsonValue& body : json.at("bodies", "What is in the world.").array()) readBody(body, scene);
+  if (const JsonValue* v = json.find("pairs")) {
+    for (const JsonValue& pair : v->array()) scene.pairs.push_back(readPair(pair, scene));
+  }
+  if (const JsonValue* v = json.find("joints")) {
+    for (const JsonValue& joint : v->array()) scene.joints.push_back(readJoint(joint, scene));
+  }
   if (const JsonValue* v = json.find("fingers")) {
     for (const JsonValue& finger : v->array()) scene.fingers.push_back(readFinger(finger, scene));
   }
@@ -70,6 +80,14 @@ grasp::GraspModel buildWorld(const Scene& scene) {
   try {
     engine::WorldBuilder builder(scene.options);
     for (const engine::BodySpec& body : scene.bodies) builder.addBody(body);
+    for (const engine::JointModel& joint : scene.joints) builder.addJoint(joint);
+    for (const ScenePair& pair : scene.pairs) {
+      if (pair.touch) {
+        builder.setPairMaterial(pair.a, pair.b, pair.material);
+      } else {
+        builder.excludePair(pair.a, pair.b);
+      }
+    }
     std::vector<grasp::FingerModel> fingers;
     for (const SceneFinger& finger : scene.fingers) fingers.push_back(finger.model);
     return grasp::buildGrasp(std::move(builder), std::move(fingers));

@@ -19,6 +19,19 @@ struct SceneFinger {
   Vec3 f_W = Vec3::Zero();  // constant force on the proxy, besides the coupling [N]
 };
 
+// The motion of a driven body: a place and a rotation vector from keyframe to keyframe.
+struct SceneMotion {
+  Trajectory place, turn;
+  engine::MotionInput at(double time) const;
+};
+
+// What is particular to two bodies.
+struct ScenePair {
+  int a = 0, b = 0;
+  bool touch = true;
+  engine::Material material;  // if they touch
+};
+
 struct Recording {
   std::int64_t every = 1;            // ticks between two rows
   std::vector<Quantity> quantities;  // may be empty: nothing is recorded
@@ -31,6 +44,9 @@ struct Scene {
   double duration = 0;           // [s], a whole number of ticks
   std::vector<engine::BodySpec> bodies;
   std::vector<engine::BodyStart> starts;  // one per body
+  std::vector<SceneMotion> motions;       // one per driven body, in order
+  std::vector<ScenePair> pairs;
+  std::vector<engine::JointModel> joints;
   std::vector<SceneFinger> fingers;
   Recording record;
   std::vector<Expectation> expectations;
@@ -50,6 +66,9 @@ grasp::GraspState startState(const Scene& scene, const grasp::GraspModel& model)
 
 // Where every finger's device is at `time`, the end of a tick. One entry per finger.
 void fingerInputs(const Scene& scene, double time, std::span<grasp::FingerInput> inputs);
+
+// How every driven body moves at `time`, the end of a tick. One entry per driven body.
+void bodyMotions(const Scene& scene, double time, std::span<engine::MotionInput> motions);
 
 // How many whole ticks `seconds` is, or -1 when it is none (to a millionth of a tick).
 std::int64_t wholeTicks(double seconds, double tick);

@@ -14,6 +14,7 @@ constexpr NumberRule kFriction = {.min = 0, .remedy = "A friction coefficient ca
 constexpr NumberRule kRestitution = {.min = 0, .max = 1, .remedy = "0 doesn't bounce, 1 loses nothing; typical: plastic on wood 0.5."};
 constexpr NumberRule kTorsionRadius = {.min = 0, .max = 1, .remedy = "In metres; 0 for a point contact, a fingertip's is about 0.0033."};
 constexpr NumberRule kVelocity = {.min = -1e3, .max = 1e3, .remedy = "Velocities are in m/s."};
+constexpr NumberRule kRotation = {.min = -100, .max = 100, .remedy = "An axis times an angle in radians."};
 constexpr NumberRule kSpin = {.min = -1e4, .max = 1e4, .remedy = "Angular velocities are in rad/s."};
 
 engine::Material readMaterial(const JsonValue& json) {
@@ -35,6 +36,11 @@ bool isSupport(const contact::Shape& shape) {
 
 bool readDynamic(const JsonValue& json, const contact::Shape& shape) {
   const JsonValue* fixed = json.find("static");
+  if (const JsonValue* v = json.find("trajectory")) {
+    if (isSupport(shape)) v->reject("doesn't go with this shape: half-spaces and dishes never move. Use a box.");
+    if (fixed) fixed->reject("doesn't go with a trajectory: one of the two says how the body moves. Remove one.");
+    return false;
+  }
   if (!isSupport(shape)) return !(fixed && fixed->boolean());
   if (fixed && !fixed->boolean()) fixed->reject("doesn't go with this shape: half-spaces and dishes never move. Remove the key.");
   return false;
@@ -48,8 +54,11 @@ double readMass(const JsonValue& json, const engine::BodySpec& spec) {
   const JsonValue* mass = json.find("mass");
   const JsonValue* density = json.find("density");
   if (!spec.dynamic) {
-    refuse(json, "mass", "doesn't go with a body that never moves. Remove the key.");
-    refuse(json, "density", "doesn't go with a body that never moves. Remove the key.");
+    const bool driven = json.find("trajectory") != nullptr;
+    const std::string_view because = driven ? "doesn't go with a trajectory, which the body follows whatever touches it. Remove the key."
+                                            : "doesn't go with a body that never moves. Remove the key.";
+    refuse(json, "mass", because);
+    refuse(json, "density", because);
     return 0;
   }
   if (mass && density) density->reject("says again what \"mass\" says. Keep one of the two.");
@@ -76,8 +85,7 @@ engine::BodyStart readStart(const JsonValue& json, const engine::BodySpec& spec)
     start.X_WB = readHalfSpacePose(json.at("shape"));
   } else {
     start.X_WB.p = readVector(json, "position", kCoordinate);
-    start.X_WB.q =
-        quatFromRotationVector(readVector(json, "rotation", {.min = -100, .max = 100, .remedy = "An axis times an angle in radians."}));
+    start.X_WB.q = quatFromRotationVector(readVector(json, "rotation", kRotation));
   }
   if (!spec.dynamic) {
     for (const std::string_view key : {"velocity", "angular_velocity"})
@@ -98,8 +106,31 @@ void readBody(const JsonValue& json, Scene& scene) {
   spec.dynamic = readDynamic(json, spec.shape);
   spec.mass = readMass(json, spec);
   if (const JsonValue* material = json.find("material")) spec.material = readMaterial(*material);
-  scene.starts.push_back(readStart(json, spec));
+  engine::BodyStart start = readStart(json, spec);
+  if (const JsonValue* trajectory = json.find("trajectory")) {
+    spec.driven = true;
+    scene.motions.push_back(readBodyTrajectory(*trajectory, start, readVector(json, "rotation", kRotation)));
+  }
+  scene.starts.push_back(start);
   scene.bodies.push_back(std::move(spec));
+}
+
+ScenePair readPair(const JsonValue& json, const Scene& scene) {
+  json.allowOnly(keys::kPair);
+  const JsonValue& names = json.at("bodies", "The names of two bodies.");
+  if (names.array().size() != 2) names.reject("needs two names of bodies.");
+  std::vector<std::string_view> known;
+  for (const engine::BodySpec& body : scene.bodies) known.push_back(body.name);
+  ScenePair pair;
+  pair.a = static_cast<int>(names.array()[0].oneOf(known));
+  pair.b = static_cast<int>(names.array()[1].oneOf(known));
+  if (pair.a == pair.b) names.reject("names one body twice. A body doesn't touch itself.");
+  if (const JsonValue* v = json.find("touch")) pair.touch = v->boolean();
+  const JsonValue* material = json.find("material");
+  if (!pair.touch && material) material->reject("doesn't go with two that never touch. Remove the key.");
+  if (pair.touch && !material) json.reject("lacks the key \"material\", what the two are to each other (or \"touch\": false).");
+  if (material) pair.material = readMaterial(*material);
+  return pair;
 }
 
 }  // namespace pincer::tasks

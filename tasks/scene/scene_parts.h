@@ -25,6 +25,11 @@ contact::Shape readShape(const JsonValue& json, const std::string& file);
 // Pose of a half-space in W, from its normal and a point on it.
 Pose readHalfSpacePose(const JsonValue& shape);
 
+// Sets where the body starts; `start_rotation` is its rotation vector there, if the keyframes say nothing.
+SceneMotion readBodyTrajectory(const JsonValue& json, engine::BodyStart& start, const Vec3& start_rotation);
+engine::JointModel readJoint(const JsonValue& json, const Scene& scene);
+ScenePair readPair(const JsonValue& json, const Scene& scene);
+
 SceneFinger readFinger(const JsonValue& json, const Scene& scene);
 
 // Both after bodies, fingers, tick and duration are known.

@@ -7,12 +7,14 @@ Simulation::Simulation(Scene scene)
       model_(buildWorld(scene_)),
       state_(startState(scene_, model_)),
       scratch_(model_),
-      inputs_(scene_.fingers.size()) {}
+      inputs_(scene_.fingers.size()),
+      motions_(scene_.motions.size()) {}
 
 engine::StepReport Simulation::tick() {
   ++ticks_;
   fingerInputs(scene_, time(), inputs_);
-  return grasp::step(model_, state_, scratch_, inputs_);
+  bodyMotions(scene_, time(), motions_);
+  return grasp::step(model_, state_, scratch_, inputs_, motions_);
 }
 
 }  // namespace pincer::tasks

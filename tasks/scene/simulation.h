@@ -30,6 +30,7 @@ class Simulation {
   grasp::GraspState state_;
   grasp::GraspScratch scratch_;
   std::vector<grasp::FingerInput> inputs_;
+  std::vector<engine::MotionInput> motions_;
   std::int64_t ticks_ = 0;
 };
 

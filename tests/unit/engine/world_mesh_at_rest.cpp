@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <string>
 
-#include "contact/mesh/mesh_report.h"
 #include "contact/mesh/mesh_reader.h"
+#include "contact/mesh/mesh_report.h"
 #include "contact/surface/smooth_mesh.h"
 #include "engine/world/state.h"
 #include "engine/world/step.h"

@@ -93,6 +93,25 @@ TEST(SceneReader, TurnsAHalfSpacesNormalToItsPlace) {
   EXPECT_FALSE(scene.bodies[0].dynamic);
 }
 
+TEST(SceneReader, MovesADrivenBodyFromKeyframeToKeyframe) {
+  const Scene scene = parseScene(
+      sceneWith(R"(, "position": [0, 0, 1], "trajectory": {"keyframes": [{"time": 0}, {"time": 2, "rotation": [0, 0, 12]}]})"), "s.json");
+  EXPECT_TRUE(buildWorld(scene).world.bodies[0].driven);
+  const engine::MotionInput middle = scene.motions.at(0).at(1);
+  EXPECT_EQ(middle.X_WB.p, Vec3(0, 0, 1));
+  EXPECT_NEAR(std::abs(middle.X_WB.q.dot(quatFromRotationVector(Vec3(0, 0, 6)))), 1, 1e-15);  // half way of a minimum-jerk turn
+  EXPECT_NEAR(middle.motion.w_W.z(), 1.875 * 6, 1e-12);                                       // whose largest rate is 15/8 of the mean
+}
+
+TEST(SceneReader, GivesPairsTheirOwnMaterial) {
+  const Scene scene = parseScene(sceneWith(R"(, "mass": 1}, {"shape": {"type": "half_space"})",
+                                           R"(, "pairs": [{"bodies": ["body1", "body0"], "material": {"mu_s": 0.9, "restitution": 0.7}}])"),
+                                 "s.json");
+  const grasp::GraspModel model = buildWorld(scene);
+  EXPECT_EQ(model.world.pairs.at(0).material.mu_s, 0.9);
+  EXPECT_EQ(model.world.pairs.at(0).material.restitution, 0.7);
+}
+
 TEST(SceneReader, MultipliesDensityByVolume) {
   const Scene scene = parseScene(sceneWith(", \"density\": 1000"), "s.json");
   EXPECT_NEAR(scene.bodies[0].mass, 1000 * 4.0 / 3 * 3.14159265358979 * 8e-6, 1e-15);
@@ -168,6 +187,22 @@ const std::vector<Complaint> kComplaints = {
      "s.json:1: bodies is empty, and there is no finger: nothing could happen."},
     {"StaticWithVelocity", sceneWith(", \"static\": true, \"velocity\": [1, 0, 0]"),
      "s.json:1: bodies[0].velocity doesn't go with a body that never moves. Remove the key."},
+    {"MassAndTrajectory", sceneWith(", \"mass\": 1, \"trajectory\": {\"keyframes\": [{\"time\": 0}]}"),
+     "s.json:1: bodies[0].mass = 1 doesn't go with a trajectory, which the body follows whatever touches it. Remove the key."},
+    {"NoKeyframe", sceneWith(", \"trajectory\": {\"keyframes\": []}"),
+     "s.json:1: bodies[0].trajectory has no keyframe. For a body that rests, use \"static\": true."},
+    {"PairWithoutMaterial",
+     sceneWith(", \"mass\": 1}, {\"shape\": {\"type\": \"half_space\"}", ", \"pairs\": [{\"bodies\": [\"body0\", \"body1\"]}]"),
+     "s.json:1: pairs[0] lacks the key \"material\", what the two are to each other (or \"touch\": false)."},
+    {"PairOfOne", sceneWith(", \"mass\": 1", ", \"pairs\": [{\"bodies\": [\"body0\", \"body0\"], \"touch\": false}]"),
+     "s.json:1: pairs[0].bodies names one body twice. A body doesn't touch itself."},
+    {"JointOfAWall", sceneWith(", \"static\": true", ", \"joints\": [{\"type\": \"pivot\", \"body\": \"body0\"}]"),
+     "s.json:1: joints[0].body = \"body0\" never moves by itself: a joint has nothing to hold. Name the moving body here, this one under "
+     "\"to\"."},
+    {"JointType", sceneWith(", \"mass\": 1", ", \"joints\": [{\"type\": \"hinge\", \"body\": \"body0\"}]"),
+     "s.json:1: joints[0].type = \"hinge\" isn't known. Known here: pivot, slider, ball, weld."},
+    {"DampedWeld", sceneWith(", \"mass\": 1", ", \"joints\": [{\"type\": \"weld\", \"body\": \"body0\", \"damping\": 1}]"),
+     "s.json:1: joints[0].damping = 1 doesn't go with this type: only pivots and sliders have a free axis to damp. Remove the key."},
     {"LooseFinger", sceneWithFinger("\"position\": [0, 0, 1], \"stiffness\": [100, 0, 100]"),
      "s.json:1: fingers[0] has neither mass nor stiffness along y: nothing says where it is. Give it a mass or a stiffness, or lock the "
      "axis."},
@@ -209,6 +244,10 @@ TEST(SceneSchema, NamesExactlyTheKeysThatTheReaderKnows) {
   const std::vector<std::pair<std::string, std::span<const std::string_view>>> parts = {{"scene", keys::kScene},
                                                                                         {"solver", keys::kSolver},
                                                                                         {"body", keys::kBody},
+                                                                                        {"body_trajectory", keys::kBodyTrajectory},
+                                                                                        {"body_keyframe", keys::kBodyKeyframe},
+                                                                                        {"pair", keys::kPair},
+                                                                                        {"joint", keys::kJoint},
                                                                                         {"material", keys::kMaterial},
                                                                                         {"finger", keys::kFinger},
                                                                                         {"trajectory", keys::kTrajectory},

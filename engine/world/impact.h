@@ -1,0 +1,47 @@
+// impact: bodies that hit each other within a tick: when, and what their velocities are just after.
+//
+//   u_n+ = -e u_n-   (Newton),   friction in its cone, all contacts of the struck bodies in one solve, in no time
+//
+//   u_n-  normal velocity of a relative to b when the gap closes [m/s], < 0;   e  coefficient of restitution [-]
+// The moment is the root of the gap along the path that the bodies would take in this part of the tick; a sphere above a plane is hit on a
+// parabola, so exactly. The tick is cut there (step.h).
+//
+// Bounces end: where gravity closes the gap again with acceleration a, a flight lasts T = 2 e |u_n-| / a and all flights to come T / (1 - e).
+// A hit bounces if T is at least a sixteenth of a tick and all that would follow lasts at least a tick; else it lands.
+//
+// Two bodies that cross a quarter of the thinner one's thickness within a tick are swept, whatever their restitution: the middle of the tick
+// doesn't show whether they meet.
+//
+// Newton's law can add energy in oblique hits with friction (T. R. Kane, D. A. Levinson, Dynamics: Theory and Applications, 1985, section 5.8).
+// Then e is lowered, by quarters, until it doesn't; e = 0 never does.
+// Departure from W. J. Stronge, Impact Mechanics, 2000, whose energetic coefficient needs the course of each hit: for bodies of convex shape
+// that don't rub they are the same.
+#pragma once
+#include "engine/world/step.h"
+
+namespace pincer::engine {
+
+// How often a tick is cut by impacts at most; what hits then lands, or bounces at the tick's end.
+constexpr int kMostImpacts = 16;
+
+// The restitution with which a hit at normal velocity `u` bounces [-]; 0 where it lands.
+//   acceleration  with which gravity opens the gap (negative: closes it) [m/s^2];  h  tick [s]
+double bounceRestitution(double restitution, double u, double acceleration, double h);
+
+// Acceleration of the gap along the unit normal n_W by gravity [m/s^2].
+double gapAcceleration(const WorldModel& model, const Contact& c);
+
+// Notes the pair in scratch.fast_pairs if it needs to be swept.
+void noteFastPair(const WorldModel& model, int a, int b, WorldScratch& scratch);
+
+// Takes the contacts of pairs that may hit each other in this tick out of scratch.contacts, and notes the pairs.
+void holdBackImpacts(const WorldModel& model, const WorldState& state, WorldScratch& scratch);
+
+// When the first of the noted pairs closes [s] after the start of this part of the tick, on the path that the solved contacts give;
+// infinity if none does. Call gatherImpulses before.
+double timeOfImpact(const WorldModel& model, const WorldState& state, WorldScratch& scratch);
+
+// Makes the velocities of `state` those just after the hits at its present poses.
+void applyImpacts(const WorldModel& model, WorldState& state, WorldScratch& scratch, ContactSource* source);
+
+}  // namespace pincer::engine

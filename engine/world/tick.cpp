@@ -1,0 +1,206 @@
+// One tick from its parts: whole, unless bodies hit each other in it, or a tolerance asks for more.
+#include <algorithm>
+#include <cmath>
+
+#include "engine/world/impact.h"
+#include "engine/world/step.h"
+
+namespace pincer::engine {
+namespace {
+
+constexpr double kShortestPart = 1e-9;  // of a tick: a hit sooner than that is a hit at once
+
+bool isFinite(const MotionInput& in) {
+  return in.X_WB.p.allFinite() && in.X_WB.q.coeffs().allFinite() && in.motion.v_W.allFinite() && in.motion.w_W.allFinite();
+}
+
+bool isFinite(const PointInput& in) { return in.p_target_W.allFinite() && in.v_target_W.allFinite() && in.f_W.allFinite(); }
+
+bool isFinite(const WorldState& state) {
+  double sum = 0;  // a NaN or infinity anywhere survives the sum
+  for (const BodyState& b : state.bodies) sum += b.X_WI.p.sum() + b.X_WI.q.coeffs().sum() + b.v_W.sum() + b.L_W.sum();
+  for (const PointState& p : state.points) sum += p.p_W.sum() + p.v_W.sum();
+  return std::isfinite(sum);
+}
+
+// How far a point of a body, or a driven point, is from where it is in the other state, at most [m].
+double largestDistance(const WorldModel& model, const WorldState& a, const WorldState& b) {
+  double largest = 0;
+  for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+    if (!model.bodies[i].dynamic) continue;
+    const Pose &x = a.bodies[i].X_WI, &y = b.bodies[i].X_WI;
+    const double turn = 2 * (x.q.conjugate() * y.q).vec().norm();
+    largest = std::max(largest, (x.p - y.p).norm() + turn * (model.bodies[i].inner_radius + model.bodies[i].corner_reach));
+  }
+  for (std::size_t i = 0; i < a.points.size(); ++i) largest = std::max(largest, (a.points[i].p_W - b.points[i].p_W).norm());
+  return largest;
+}
+
+class Tick {
+ public:
+  Tick(const WorldModel& model, WorldState& state, WorldScratch& scratch, const StepInputs& inputs, ContactSource* source)
+      : model_(model), state_(state), scratch_(scratch), inputs_(inputs), source_(source), left_(model.options.h) {}
+
+  StepReport run() {
+    scratch_.contacts_dropped = false;
+    for (std::size_t i = 0; i < state_.points.size(); ++i) scratch_.points[i].v_tick_W = state_.points[i].v_W;
+    if (model_.options.position_tolerance > 0) {
+      runToTolerance();
+    } else {
+      runInParts(1);
+    }
+    ++state_.tick;
+    state_.time = static_cast<double>(state_.tick) * model_.options.h;
+    report_.contacts = static_cast<int>(scratch_.contacts.size());
+    report_.solve = scratch_.solve;
+    if (scratch_.contacts_dropped) report_.status |= kContactsDropped;
+    if (!isFinite(state_)) report_.status |= kStateNotFinite;
+    return report_;
+  }
+
+ private:
+  // Doubles the parts until what they change is within the tolerance: halving a second-order step leaves a third of the change as error. The
+  // next tick begins with half of what this one needed.
+  void runToTolerance() {
+    scratch_.before = state_;
+    int parts = std::max(1, state_.parts / 2);
+    while (parts < model_.options.max_parts && turnsFar(parts)) parts *= 2;
+    runInParts(parts);
+    for (;;) {
+      if (2 * parts > model_.options.max_parts) {
+        report_.status |= kToleranceNotMet;
+        break;
+      }
+      scratch_.coarse = state_;
+      state_ = scratch_.before;
+      parts *= 2;
+      runInParts(parts);
+      if (largestDistance(model_, scratch_.coarse, state_) <= 3 * model_.options.position_tolerance) break;
+    }
+    state_.parts = parts;
+  }
+
+  // A part in which a body turns by more than this is too coarse to judge by halving it.
+  bool turnsFar(int parts) const {
+    constexpr double kLargestTurn = 0.2;  // [rad]
+    for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
+      if (!model_.bodies[i].may_touch || !model_.bodies[i].dynamic) continue;
+      const double turn = bodyAngularVelocity(model_, state_, static_cast<int>(i)).norm() * model_.options.h;
+      if (turn > kLargestTurn * parts) return true;
+    }
+    return false;
+  }
+
+  void runInParts(int parts) {
+    const double h = model_.options.h;
+    left_ = h;
+    impacts_ = 0;
+    report_ = {};
+    report_.parts = 0;
+    for (PointScratch& point : scratch_.points) point.tick_impulse_W.setZero();
+    for (int k = parts - 1; k >= 0; --k) {
+      stop_ = h * k / parts;
+      while (left_ > stop_) passTime();
+    }
+  }
+
+  // To the end of this part, or to the next impact and through it.
+  void passTime() {
+    const double h = left_ - stop_;
+    attempt(h);
+    double t = h;
+    if (!scratch_.impact_pairs.empty()) t = timeOfImpact(model_, state_, scratch_);
+    if (!(t < h)) return finish();
+    if (t > kShortestPart * model_.options.h) {
+      attempt(t);
+      conclude();
+      left_ -= t;
+    }
+    applyImpacts(model_, state_, scratch_, source_);
+    note();
+    ++impacts_;
+  }
+
+  void finish() {
+    conclude();
+    left_ = stop_;
+  }
+
+  void conclude() {
+    note();
+    advance(model_, state_, scratch_);
+    ++report_.parts;
+    mark(scratch_, Stage::kAdvance);
+  }
+
+  void attempt(double h) {
+    scratch_.h = h;
+    setInputs(h);
+    predict(model_, state_, scratch_);
+    mark(scratch_, Stage::kPredict);
+    collideBodies(model_, scratch_);
+    mark(scratch_, Stage::kCollideBodies);
+    if (source_) source_->addContacts(scratch_);
+    if (impacts_ < kMostImpacts) {
+      holdBackImpacts(model_, state_, scratch_);
+    } else {
+      scratch_.impact_pairs.clear();
+      report_.status |= kImpactsCut;
+    }
+    solveContacts(model_, state_, scratch_);
+    gatherImpulses(model_, scratch_);
+    mark(scratch_, Stage::kSolve);
+  }
+
+  void note() {
+    if (!scratch_.solve.converged) report_.status |= kSolverNotConverged;
+  }
+
+  // Targets at the end of a part of length h: the state holds those at its start, the inputs those at the tick's end.
+  void setInputs(double h) {
+    const double share = h / left_;
+    for (std::size_t i = 0; i < scratch_.point_inputs.size(); ++i)
+      setPoint(state_.points[i], inputs_.points[i], share, scratch_.point_inputs[i]);
+    for (std::size_t i = 0; i < model_.bodies.size() && model_.driven_count > 0; ++i) {
+      if (model_.bodies[i].driven) setMotion(static_cast<std::size_t>(model_.bodies[i].motion), state_.bodies[i], share);
+    }
+  }
+
+  void setPoint(const PointState& now, const PointInput& end, double share, PointInput& out) {
+    out = end;
+    if (!isFinite(end)) report_.status |= kInputNotFinite;
+    if (share < 1)
+      out.p_target_W = cubicBetween(now.p_target_W, now.v_target_W, end.p_target_W, end.v_target_W, left_, share, out.v_target_W);
+  }
+
+  void setMotion(std::size_t i, const BodyState& now, double share) {
+    MotionInput& out = scratch_.motion_inputs[i];
+    out = {now.X_WI, {}};
+    if (i >= inputs_.motions.size()) return;
+    if (!isFinite(inputs_.motions[i])) {
+      report_.status |= kInputNotFinite;
+      return;
+    }
+    out = inputs_.motions[i];
+    if (share < 1) out = drivenPlace({now.X_WI, {now.v_W, now.L_W}}, inputs_.motions[i], left_, share);
+  }
+
+  const WorldModel& model_;
+  WorldState& state_;
+  WorldScratch& scratch_;
+  const StepInputs& inputs_;
+  ContactSource* source_;
+  double left_;      // of the tick [s]
+  double stop_ = 0;  // what is left of the tick at the end of this part [s]
+  int impacts_ = 0;
+  StepReport report_;
+};
+
+}  // namespace
+
+StepReport step(const WorldModel& model, WorldState& state, WorldScratch& scratch, const StepInputs& inputs, ContactSource* source) {
+  if (scratch.clock) scratch.clock->start();
+  return Tick(model, state, scratch, inputs, source).run();
+}
+
+}  // namespace pincer::engine

@@ -1,0 +1,224 @@
+// Joints: closed forms, momentum, drift.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "engine/world/joints.h"
+#include "engine/world/step.h"
+#include "tests/support/allocation_guard.h"
+#include "tests/support/worlds.h"
+
+namespace pincer::engine {
+namespace {
+
+using testing::startAt;
+
+constexpr double kG = 9.81;
+constexpr double kPi = 3.14159265358979323846;
+const Quat kAlongX = Quat(Eigen::AngleAxisd(kPi / 2, Vec3::UnitY()));  // turns z to x
+
+struct Jointed {
+  WorldModel model;
+  WorldState state;
+  WorldScratch scratch;
+
+  Jointed(const WorldBuilder& builder, const std::vector<BodyStart>& starts)
+      : model(builder.build()), state(makeState(model, starts, {})), scratch(model) {}
+  StepReport tick() { return step(model, state, scratch); }
+  void run(double seconds) {
+    for (int n = static_cast<int>(std::lround(seconds / model.options.h)); n > 0; --n) tick();
+  }
+  double energy() const { return kineticEnergy(model, state) + potentialEnergy(model, state); }
+  double gap() const {
+    double worst = 0;
+    for (const JointModel& joint : model.joints) worst = std::max(worst, jointGap(state, joint).maxCoeff());
+    return worst;
+  }
+};
+
+WorldOptions tickOf(double h, double g = kG) {
+  WorldOptions options;
+  options.h = h;
+  options.gravity_W = Vec3(0, 0, -g);
+  return options;
+}
+
+// A rod of 0.2 m that hangs on a pivot about x at its end, `angle` off the vertical.
+Jointed pendulum(double h, double angle, double damping = 0) {
+  WorldBuilder builder(tickOf(h));
+  builder.addBody({"rod", contact::Box{Vec3(0.005, 0.005, 0.1)}, true, 0.1, {}});
+  builder.addJoint({JointKind::kPivot, 0, -1, {kAlongX, Vec3(0, 0, 0.1)}, {kAlongX, Vec3(0, 0, 1)}, damping});
+  const Quat q(Eigen::AngleAxisd(angle, Vec3::UnitX()));
+  return {builder, {{{q, Vec3(0, 0, 1) - q * Vec3(0, 0, 0.1)}, Vec3::Zero(), Vec3::Zero()}}};
+}
+
+// Quarter period K(sin(angle/2)) sqrt(I/(m g l)), K by the arithmetic-geometric mean (Abramowitz and Stegun, 17.6.4).
+double quarterPeriod(double angle) {
+  const double I = 0.1 / 12 * (0.01 * 0.01 + 0.2 * 0.2) + 0.1 * 0.01;
+  double a = 1, b = std::cos(0.5 * angle);
+  for (int n = 0; n < 6; ++n) {
+    const double mean = 0.5 * (a + b);
+    b = std::sqrt(a * b);
+    a = mean;
+  }
+  return kPi / (2 * a) * std::sqrt(I / (0.1 * kG * 0.1));
+}
+
+// Time until the pendulum passes the vertical, between ticks on a straight line.
+double passingTime(double h, double angle) {
+  Jointed world = pendulum(h, angle);
+  double before = world.state.bodies[0].X_WI.p.y();
+  for (;;) {
+    world.tick();
+    const double now = world.state.bodies[0].X_WI.p.y();
+    if (before * now <= 0) return world.state.time - h * now / (now - before);
+    before = now;
+  }
+}
+
+TEST(Joints, PendulumSwingsWithItsPeriodToSecondOrder) {
+  for (double angle : {0.1, 2.5}) {
+    const double exact = quarterPeriod(angle);
+    const double coarse = std::abs(passingTime(2e-3, angle) / exact - 1), fine = std::abs(passingTime(1e-3, angle) / exact - 1);
+    EXPECT_LT(fine, 2e-5) << angle;
+    EXPECT_GT(coarse / fine, 3) << angle;
+  }
+}
+
+TEST(Joints, PendulumNeitherDriftsNorGainsEnergy) {
+  Jointed world = pendulum(1e-3, 2);
+  const double start = world.energy();
+  double gap = 0, most = -1, least = 1;
+  for (int i = 0; i < 60000; ++i) {
+    ASSERT_EQ(world.tick().status, kStepOk);
+    gap = std::max(gap, world.gap());
+    most = std::max(most, world.energy() / start - 1);
+    least = std::min(least, world.energy() / start - 1);
+  }
+  EXPECT_LT(gap, 1e-14);
+  EXPECT_LT(most, 1e-4);
+  EXPECT_GT(least, -1e-3);
+}
+
+// I w' = -d w: an exponential, whatever the axis.
+TEST(Joints, DamperStopsACylinderOnItsAxis) {
+  WorldBuilder builder(tickOf(1e-3));
+  builder.addBody({"cylinder", contact::Cylinder{0.03, 0.05}, true, 0.4, {}});
+  const double I = 0.5 * 0.4 * 0.03 * 0.03, d = 5 * I;
+  builder.addJoint({JointKind::kPivot, 0, -1, {}, {Quat::Identity(), Vec3(0, 0, 0.5)}, d});
+  Jointed world(builder, {startAt(Vec3(0, 0, 0.5), Vec3::Zero(), Vec3(0, 0, 10))});
+  world.run(1);
+  EXPECT_NEAR(bodyAngularVelocity(world.model, world.state, 0).z() / (10 * std::exp(-5.0)), 1,
+              1.1e-5);  // (h d / I)^2 / 12 x 5 = 1.04e-5, of the trapezoidal rule
+  EXPECT_EQ(world.state.bodies[0].X_WI.p, Vec3(0, 0, 0.5));
+  EXPECT_LT(world.gap(), 1e-15);
+}
+
+TEST(Joints, StiffDamperDoesNotRing) {
+  Jointed world = pendulum(1e-3, 1, 1e3);
+  double before = -1;
+  for (int i = 0; i < 1000; ++i) {
+    world.tick();
+    const double w = bodyAngularVelocity(world.model, world.state, 0).x();
+    EXPECT_LE(w, 0);
+    EXPECT_GE(w, -1.1 * 0.1 * kG * 0.1 / 1e3);
+    before = w;
+  }
+  EXPECT_LT(before, 0);
+}
+
+// m v' = m g sin - d v along the slider; across it nothing moves.
+TEST(Joints, SliderFallsToItsTerminalSpeed) {
+  WorldBuilder builder(tickOf(1e-3));
+  builder.addBody({"carriage", contact::Box{Vec3(0.02, 0.01, 0.01)}, true, 0.2, {}});
+  const Quat tilted(Eigen::AngleAxisd(0.6, Vec3(1, 2, 0).normalized()));
+  builder.addJoint({JointKind::kSlider, 0, -1, {tilted, Vec3(0.01, 0, 0)}, {tilted, Vec3(0.01, 0, 1)}, 2});
+  Jointed world(builder, {startAt(Vec3(0, 0, 1))});
+  world.run(0.3);
+  const Vec3 axis = tilted * Vec3::UnitZ();
+  const double terminal = 0.2 * kG / 2 * axis.z(), tau = 0.2 / 2;
+  EXPECT_NEAR(world.state.bodies[0].v_W.dot(axis), -terminal * (1 - std::exp(-0.3 / tau)), 1e-5);
+  EXPECT_NEAR((world.state.bodies[0].X_WI.p - Vec3(0, 0, 1)).dot(axis), -terminal * (0.3 - tau * (1 - std::exp(-0.3 / tau))), 1e-6);
+  EXPECT_LT(world.gap(), 1e-15);
+}
+
+// A ball hits a door at distance b from its hinge, e = 1: angular momentum about the hinge and energy are kept, so that
+// w = 2 m v b / (I + m b^2) and the ball leaves with v (m b^2 - I)/(m b^2 + I).
+TEST(Joints, BallOpensADoorAsMomentumAndEnergySay) {
+  WorldBuilder builder(tickOf(1e-3, 0));
+  const Material elastic{0, 0, 1, 0};
+  builder.addBody({"door", contact::Box{Vec3(0.1, 0.005, 0.1)}, true, 0.3, elastic});
+  builder.addBody({"ball", contact::Sphere{0.01}, true, 0.05, elastic});
+  builder.addJoint({JointKind::kPivot, 0, -1, {Quat::Identity(), Vec3(-0.1, 0, 0)}, {Quat::Identity(), Vec3(-0.1, 0, 0)}, 0});
+  Jointed world(builder, {startAt(Vec3::Zero()), startAt(Vec3(0.06, -0.0205, 0), Vec3(0, 1.3, 0))});
+  world.run(0.02);
+  const double I = 0.3 / 12 * (0.2 * 0.2 + 0.01 * 0.01) + 0.3 * 0.01, b = 0.16, mbb = 0.05 * b * b;
+  EXPECT_NEAR(bodyAngularVelocity(world.model, world.state, 0).z(), 2 * 0.05 * 1.3 * b / (I + mbb), 1e-8);
+  EXPECT_NEAR(world.state.bodies[1].v_W.y(), 1.3 * (mbb - I) / (mbb + I), 1e-8);
+  EXPECT_LT(world.gap(), 1e-15);
+}
+
+// Two halves of a rod, welded: they tumble like the whole.
+TEST(Joints, WeldMakesOneBodyOfTwo) {
+  WorldBuilder halves(tickOf(1e-3, 0)), whole(tickOf(1e-3, 0));
+  for (const char* name : {"left", "right"}) halves.addBody({name, contact::Box{Vec3(0.05, 0.01, 0.015)}, true, 0.1, {}});
+  halves.addJoint({JointKind::kWeld, 0, 1, {Quat::Identity(), Vec3(0.05, 0, 0)}, {Quat::Identity(), Vec3(-0.05, 0, 0)}, 0});
+  whole.addBody({"rod", contact::Box{Vec3(0.1, 0.01, 0.015)}, true, 0.2, {}});
+  const Vec3 v(0.1, 0, 0), w(3, 2, 5);
+  const auto at = [&](double x) { return startAt(Vec3(x, 0, 0), v + w.cross(Vec3(x, 0, 0)), w); };
+  Jointed two(halves, {at(-0.05), at(0.05)}), one(whole, {at(0)});
+  two.run(1);
+  one.run(1);
+  const Vec3 middle = 0.5 * (two.state.bodies[0].X_WI.p + two.state.bodies[1].X_WI.p);
+  EXPECT_NEAR((middle - Vec3(0.1, 0, 0)).norm(), 0, 1e-12);
+  EXPECT_LT(two.gap(), 1e-14);
+  EXPECT_LT(rotationVectorOf(bodyPose(two.model, two.state, 0).q.conjugate() * bodyPose(one.model, one.state, 0).q).norm(), 1e-4);
+  EXPECT_NEAR(two.energy() / one.energy(), 1, 1e-4);
+}
+
+// Scissors in free flight: a pivot between two bodies keeps momentum and angular momentum.
+TEST(Joints, PivotBetweenTwoBodiesKeepsTheirMomenta) {
+  WorldBuilder builder(tickOf(1e-3, 0));
+  for (const char* name : {"blade", "other"}) builder.addBody({name, contact::Box{Vec3(0.06, 0.008, 0.002)}, true, 0.05, {}});
+  builder.addJoint({JointKind::kPivot, 0, 1, {Quat::Identity(), Vec3(-0.04, 0, 0)}, {Quat::Identity(), Vec3(-0.04, 0, 0)}, 1e-5});
+  const Vec3 hinge(-0.04, 0, 0);
+  const auto spinning = [&](double w) { return startAt(Vec3::Zero(), Vec3(0, 0, w).cross(-hinge), Vec3(0, 0, w)); };
+  Jointed world(builder, {spinning(8), spinning(-3)});
+  const auto momentum = [&] { return Vec3(0.05 * (world.state.bodies[0].v_W + world.state.bodies[1].v_W)); };
+  const auto spin = [&] {
+    Vec3 L = Vec3::Zero();
+    for (const BodyState& b : world.state.bodies) L += b.L_W + 0.05 * b.X_WI.p.cross(b.v_W);
+    return L;
+  };
+  const Vec3 P = momentum(), L = spin();
+  const double energy = world.energy();
+  world.run(2);
+  EXPECT_LT((momentum() - P).norm(), 1e-15);
+  EXPECT_LT((spin() - L).norm(), 2e-6 * L.norm());  // poses are projected along the inertia of the tick's middle: second order
+  EXPECT_LT(world.gap(), 1e-14);
+  EXPECT_LE(world.energy(), energy * (1 + 1e-6));
+}
+
+// Bodies joined at the wrong place are refused, and so is a joint that holds nothing.
+TEST(Joints, StartApartIsRefused) {
+  WorldBuilder builder(tickOf(1e-3));
+  builder.addBody({"rod", contact::Sphere{0.01}, true, 0.1, {}});
+  builder.addBody({"wall", contact::HalfSpace{}, false, 0, {}});
+  EXPECT_THROW(builder.addJoint({JointKind::kPivot, 1, -1, {}, {}, 0}), InputError);
+  EXPECT_THROW(builder.addJoint({JointKind::kPivot, 0, 7, {}, {}, 0}), InputError);
+  builder.addJoint({JointKind::kBall, 0, -1, {}, {}, 0});
+  const WorldModel model = builder.build();
+  EXPECT_THROW(makeState(model, {startAt(Vec3(0, 0, 0.001)), startAt(Vec3(0, 0, -1))}, {}), InputError);
+  EXPECT_NO_THROW(makeState(model, {startAt(Vec3::Zero()), startAt(Vec3(0, 0, -1))}, {}));
+}
+
+TEST(Joints, AllocateNothing) {
+  if (!testing::allocationsAreCounted()) GTEST_SKIP() << "a sanitizer owns the allocator";
+  Jointed world = pendulum(1e-3, 2, 1e-4);
+  const auto before = testing::allocationCount();
+  for (int i = 0; i < 200; ++i) world.tick();
+  EXPECT_EQ(testing::allocationCount(), before);
+}
+
+}  // namespace
+}  // namespace pincer::engine
