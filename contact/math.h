@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <cmath>
+#include <limits>
 
 namespace pincer {
 
@@ -24,6 +25,18 @@ struct Pose {
   Pose operator*(const Pose& X_BC) const { return {q * X_BC.q, q * X_BC.p + p}; }
   Pose inverse() const { return {q.conjugate(), -(q.conjugate() * p)}; }
 };
+
+// Angle between two vectors of any length [rad], accurate near 0 and pi.
+inline double angleBetween(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
+
+// Twice the area that two vectors of the plane span, positive when b lies to the left of a.
+inline double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+// 1 or -1; not copysign: -0.0 must choose like 0.0.
+inline double signOf(double a) { return a < 0 ? -1 : 1; }
+
+constexpr double kDegree = M_PI / 180;  // [rad]
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Right-handed orthonormal frame whose third column is the unit vector `n`; columns (t1, t2, n).
 // Continuous in n but for n = -z. Source: T. Duff et al., "Building an orthonormal basis, revisited", JCGT 6(1), 2017.

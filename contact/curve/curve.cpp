@@ -9,15 +9,13 @@ namespace pincer::contact {
 
 namespace {
 
-constexpr double kDegree = M_PI / 180;
 constexpr double kSharpestBend = 90 * kDegree;  // beyond, the local centre of unequal segments leaves the inner side
 constexpr double kSharpestCorner = 179 * kDegree;
-constexpr double kStraight = 1e-12;    // [rad] of a bend, below which O counts as infinitely far: t changes by less than that
+constexpr double kLeastBend = 1e-12;   // [rad] of a bend, below which O counts as infinitely far: t changes by less than that
 constexpr double kBeyondGates = 1e-3;  // of t: so that a solution on a gate isn't at the end of the bracket
 constexpr int kMaxNewton = 20, kMaxHalvings = 50;
 constexpr double kSolved = 1e-14;  // of t, in the last step
 
-double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 Vec2 rightOf(const Vec2& e) { return {e.y(), -e.x()}; }
 
 }  // namespace
@@ -61,7 +59,7 @@ void Curve::addBends() {
     const double turn_sine = cross(before.e, after.e), turn_cosine = before.e.dot(after.e);
     const double beta = std::atan2(turn_sine, turn_cosine);
     // O lies on both bisectors, at rho from M0: rho sin(beta) = a cos(beta) + b
-    const double kappa = std::abs(beta) < kStraight ? 0 : turn_sine / (a * turn_cosine + b);
+    const double kappa = std::abs(beta) < kLeastBend ? 0 : turn_sine / (a * turn_cosine + b);
     bends_.push_back(
         {before.start + a * before.e, after.start, after.start + b * after.e, before.e, before.n, beta, kappa, a + b * turn_cosine});
   }

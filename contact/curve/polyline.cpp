@@ -8,8 +8,6 @@ namespace pincer::contact {
 
 namespace {
 
-constexpr double kDegree = M_PI / 180;
-
 double turnBetween(const Vec2& a, const Vec2& b) { return std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b)); }
 
 void requireVertex(const Polyline& polyline, std::size_t i, double largest_turn) {

@@ -8,8 +8,6 @@ namespace pincer::contact {
 
 namespace {
 
-double angleBetween(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
-
 constexpr double kFarthestMirror = 0.35;  // [rad] 20 degrees: further away the neighbours belong to another shape
 
 constexpr double kCancelled = 1e-6;  // opposite facets cancel; what is left below this has no direction

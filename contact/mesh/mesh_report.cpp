@@ -16,8 +16,6 @@ using Triangle = std::array<std::int32_t, 3>;
 
 const Vec3& vertex(const TriangleMesh& mesh, std::int32_t i) { return mesh.vertices[static_cast<std::size_t>(i)]; }
 
-double angleBetween(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
-
 // The file's normal at corner i of a triangle; null where it has none.
 const Vec3* fileNormal(const TriangleMesh& mesh, std::int32_t t, int i) {
   if (mesh.triangle_normals.empty()) return nullptr;

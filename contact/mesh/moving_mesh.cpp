@@ -7,8 +7,6 @@ namespace pincer::contact {
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 // Smallest x > 0 with a + b x + c x^2 = 0, a > 0; infinity if there is none.
 double smallestPositiveRoot(double a, double b, double c) {
   const double discriminant = b * b - 4 * a * c;

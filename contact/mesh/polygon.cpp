@@ -9,8 +9,6 @@ namespace {
 // Height of a triangle over its longest edge, relative to that edge, below which it counts as flat: some thousand units of round-off.
 constexpr double kFlat = 1e-12;
 
-double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
-
 Vec3 newellNormal(const std::vector<Vec3>& polygon) {
   Vec3 n = Vec3::Zero();
   for (std::size_t i = 1; i + 1 < polygon.size(); ++i) n += (polygon[i] - polygon[0]).cross(polygon[i + 1] - polygon[0]);

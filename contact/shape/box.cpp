@@ -4,8 +4,6 @@
 namespace pincer::contact {
 namespace {
 
-double signOf(double a) { return a < 0 ? -1 : 1; }  // not copysign: -0.0 must choose like 0.0
-
 Vec3 signsOf(const Vec3& v) { return {signOf(v.x()), signOf(v.y()), signOf(v.z())}; }
 
 int indexOfLargest(const Vec3& v) {

@@ -9,15 +9,13 @@
 namespace pincer::contact {
 namespace {
 
-constexpr double kUpright = 1e-6;                                         // [rad], see the header
+constexpr double kStanding = 1e-6;                                        // [rad], see the header
 constexpr double kInset = 0.05;                                           // of the least half width: how far insetOf moves the faces
 constexpr double kCos = 0.92387953251128674, kSin = 0.38268343236508977;  // of 2 pi / kRimCorners
 
-double signOf(double a) { return a < 0 ? -1 : 1; }  // not copysign: -0.0 must choose like 0.0
-
 Vec2 unitOr(const Vec2& v, const Vec2& otherwise) {
   const double length = v.norm();
-  return length > kUpright ? Vec2(v / length) : otherwise;
+  return length > kStanding ? Vec2(v / length) : otherwise;
 }
 
 // Furthest point of the disc of radius r along d; its centre where d has no direction.
@@ -40,7 +38,7 @@ Mat3 bend(const Solid&, const Vec3&) {
 Mat3 rimBend(double radius, const Vec3& d) {
   const double length = d.head<2>().norm();
   Mat3 H = Mat3::Zero();
-  if (!(length > kUpright)) return H;
+  if (!(length > kStanding)) return H;
   const Vec2 across(-d.y() / length, d.x() / length);
   H.topLeftCorner<2, 2>() = radius / length * across * across.transpose();
   return H;

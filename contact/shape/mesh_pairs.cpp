@@ -17,14 +17,14 @@ constexpr double kDeepest = 0.25;  // of the smaller body's radius: deeper featu
 constexpr double kSameSide = 0.5;  // cosine: surfaces that face alike don't touch
 constexpr double kSlack = 1e-6;    // of the size, or sine: on the border of a triangle, of a normal's range
 
-using Triangle = MeshFeatures::Triangle;
+using FlatTriangle = MeshFeatures::Triangle;
 
-enum : std::uint32_t { kCornerOfA = 0, kCornerOfB = 1, kEdges = 2 };
+enum : std::uint32_t { kMeshCornerOfA = 0, kMeshCornerOfB = 1, kMeshEdges = 2 };
 std::uint32_t featureOf(std::uint32_t kind, std::uint32_t name) { return kind << 30 | (name & 0x3fffffff); }
 
-const Vec3& cornerOf(const Triangle& t, int i) { return t.p[static_cast<std::size_t>(i % 3)]; }
+const Vec3& cornerOf(const FlatTriangle& t, int i) { return t.p[static_cast<std::size_t>(i % 3)]; }
 
-bool isOver(const Triangle& t, const Vec3& q, double slack) {
+bool isOver(const FlatTriangle& t, const Vec3& q, double slack) {
   for (int i = 0; i < 3; ++i) {
     const Vec3 edge = cornerOf(t, i + 1) - cornerOf(t, i);
     if (t.n.cross(edge).dot(q - cornerOf(t, i)) < -slack * edge.norm()) return false;
@@ -36,7 +36,7 @@ bool isOver(const Triangle& t, const Vec3& q, double slack) {
 struct EdgeSides {
   Vec3 own, other;
 
-  EdgeSides(const Triangle& t, int i) : own(t.n.cross(cornerOf(t, i + 1) - cornerOf(t, i)).normalized()) {
+  EdgeSides(const FlatTriangle& t, int i) : own(t.n.cross(cornerOf(t, i + 1) - cornerOf(t, i)).normalized()) {
     const Vec3 e = (cornerOf(t, i + 1) - cornerOf(t, i)).normalized(), d = t.beyond[static_cast<std::size_t>(i)] - cornerOf(t, i);
     other = (d - e.dot(d) * e).normalized();
   }
@@ -70,7 +70,7 @@ class MeshOnSolid {
 
  private:
   void look(std::int32_t t) {
-    const Triangle triangle = features_.triangle(mesh_, t);
+    const FlatTriangle triangle = features_.triangle(mesh_, t);
     const double height = triangle.n.dot(solid_.support(-triangle.n) - triangle.p[0]) - rounding_;
     if (height > margin_) return;
     if (height > deepest_) lookAtFace(triangle);
@@ -84,7 +84,7 @@ class MeshOnSolid {
     if (phi < margin_ && phi > deepest_) candidates_.add({p, n, phi, feature});
   }
 
-  void lookAtFace(const Triangle& triangle) {
+  void lookAtFace(const FlatTriangle& triangle) {
     Facet facet;
     facetOf(solid_.shape, solid_.inwards(-triangle.n), facet);
     for (int k = 0; k < facet.count; ++k) {
@@ -92,7 +92,7 @@ class MeshOnSolid {
       const Vec3 q = solid_.place(corner.p) - rounding_ * triangle.n;
       const double phi = triangle.n.dot(q - triangle.p[0]);
       if (phi < margin_ && isOver(triangle, q, kSlack * size_))
-        add(q - 0.5 * phi * triangle.n, -triangle.n, phi, featureOf(kCornerOfB, corner.vertex));
+        add(q - 0.5 * phi * triangle.n, -triangle.n, phi, featureOf(kMeshCornerOfB, corner.vertex));
     }
   }
 
@@ -110,16 +110,16 @@ class MeshOnSolid {
     return s;
   }
 
-  void lookAtCorner(const Triangle& triangle, int i) {
+  void lookAtCorner(const FlatTriangle& triangle, int i) {
     const Vec3& p = cornerOf(triangle, i);
     const NearestPoint s = nearest(p);
     if (triangle.n.dot(s.n_B) > kSameSide) return;
     add(p - 0.5 * s.distance * s.n_B, s.n_B, s.distance,
-        featureOf(kCornerOfA, static_cast<std::uint32_t>(triangle.vertices[static_cast<std::size_t>(i)])));
+        featureOf(kMeshCornerOfA, static_cast<std::uint32_t>(triangle.vertices[static_cast<std::size_t>(i)])));
   }
 
   // The distance from a convex solid is convex along the edge: its ends tell whether it is least between them.
-  void lookAtEdge(const Triangle& triangle, int i, std::uint32_t name) {
+  void lookAtEdge(const FlatTriangle& triangle, int i, std::uint32_t name) {
     const Vec3 &p0 = cornerOf(triangle, i), &p1 = cornerOf(triangle, i + 1);
     const Vec3 middle = 0.5 * (p0 + p1);
     const double length = (p1 - p0).norm();
@@ -140,7 +140,7 @@ class MeshOnSolid {
     for (int k = 0; k < found.count; ++k) {
       const PairPoint& point = found.points[static_cast<std::size_t>(k)];
       const bool is_end = point.feature >> 28 == 0;  // of the edge: a corner of the mesh
-      if (!is_end) add(point.p_W, point.n_W, point.phi, featureOf(kEdges, 4 * name + place++));
+      if (!is_end) add(point.p_W, point.n_W, point.phi, featureOf(kMeshEdges, 4 * name + place++));
     }
   }
 
@@ -165,7 +165,7 @@ class MeshOnMesh {
     const double reach = b_.surface->boundingRadius() + margin_;
     const Vec3 centre = -(R_.transpose() * p_);
     a_.surface->features().visitBox(centre - Vec3::Constant(reach), centre + Vec3::Constant(reach), kMostTriangles, [&](std::int32_t t) {
-      const Triangle ta = inB(a_.surface->features().triangle(a_.surface->triangles(), t));
+      const FlatTriangle ta = inB(a_.surface->features().triangle(a_.surface->triangles(), t));
       const Vec3 low = ta.p[0].cwiseMin(ta.p[1]).cwiseMin(ta.p[2]), high = ta.p[0].cwiseMax(ta.p[1]).cwiseMax(ta.p[2]);
       if (left_ <= 0) return;
       b_.surface->features().visitBox(low - Vec3::Constant(margin_), high + Vec3::Constant(margin_), left_, [&](std::int32_t u) {
@@ -177,7 +177,7 @@ class MeshOnMesh {
   const ContactCandidates& candidates() const { return candidates_; }
 
  private:
-  Triangle inB(Triangle t) const {
+  FlatTriangle inB(FlatTriangle t) const {
     for (Vec3& p : t.p) p = R_ * p + p_;
     for (int i = 0; i < 3; ++i) {
       if (t.ownsEdge(i)) t.beyond[static_cast<std::size_t>(i)] = R_ * t.beyond[static_cast<std::size_t>(i)] + p_;
@@ -186,15 +186,15 @@ class MeshOnMesh {
     return t;
   }
 
-  void look(const Triangle& ta, std::int32_t a, const Triangle& tb, std::int32_t b) {
-    lookAtCorners(ta, tb, 1, kCornerOfA);
-    lookAtCorners(tb, ta, -1, kCornerOfB);
+  void look(const FlatTriangle& ta, std::int32_t a, const FlatTriangle& tb, std::int32_t b) {
+    lookAtCorners(ta, tb, 1, kMeshCornerOfA);
+    lookAtCorners(tb, ta, -1, kMeshCornerOfB);
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 3; ++j) {
         if (!ta.ownsEdge(i) || !tb.ownsEdge(j)) continue;
         const auto ea = 3 * static_cast<std::uint32_t>(a) + static_cast<std::uint32_t>(i),
                    eb = 3 * static_cast<std::uint32_t>(b) + static_cast<std::uint32_t>(j);
-        lookAtEdges(ta, i, tb, j, featureOf(kEdges, ea * 2654435761u ^ eb));
+        lookAtEdges(ta, i, tb, j, featureOf(kMeshEdges, ea * 2654435761u ^ eb));
       }
     }
   }
@@ -204,7 +204,7 @@ class MeshOnMesh {
   }
 
   // Corners of `t` on the triangle `face`, whose normal points out of b where sign is 1.
-  void lookAtCorners(const Triangle& t, const Triangle& face, double sign, std::uint32_t kind) {
+  void lookAtCorners(const FlatTriangle& t, const FlatTriangle& face, double sign, std::uint32_t kind) {
     if (t.n.dot(face.n) > kSameSide) return;
     for (int i = 0; i < 3; ++i) {
       const Vec3& p = cornerOf(t, i);
@@ -216,7 +216,7 @@ class MeshOnMesh {
     }
   }
 
-  void lookAtEdges(const Triangle& ta, int i, const Triangle& tb, int j, std::uint32_t feature) {
+  void lookAtEdges(const FlatTriangle& ta, int i, const FlatTriangle& tb, int j, std::uint32_t feature) {
     const Vec3 &a0 = cornerOf(ta, i), &b0 = cornerOf(tb, j);
     const Vec3 ea = cornerOf(ta, i + 1) - a0, eb = cornerOf(tb, j + 1) - b0;
     Vec3 n = ea.cross(eb);

@@ -15,9 +15,9 @@
 namespace pincer::contact {
 namespace {
 
-using Facet = std::array<int, 3>;
+using HullFacet = std::array<int, 3>;
 
-Vec3 normalOf(const std::vector<Vec3>& p, const Facet& f) {
+Vec3 normalOf(const std::vector<Vec3>& p, const HullFacet& f) {
   const auto at = [&](int k) -> const Vec3& { return p[static_cast<std::size_t>(f[static_cast<std::size_t>(k)])]; };
   return (at(1) - at(0)).cross(at(2) - at(0));
 }
@@ -43,7 +43,7 @@ void requirePoints(const std::vector<Vec3>& points, const std::string& source) {
 
 using HalfEdges = std::map<std::pair<int, int>, int>;  // from, to -> facet
 
-HalfEdges halfEdgesOf(const std::vector<Facet>& facets) {
+HalfEdges halfEdgesOf(const std::vector<HullFacet>& facets) {
   HalfEdges edges;
   for (std::size_t f = 0; f < facets.size(); ++f) {
     for (std::size_t k = 0; k < 3; ++k) edges[{facets[f][k], facets[f][(k + 1) % 3]}] = static_cast<int>(f);
@@ -51,7 +51,7 @@ HalfEdges halfEdgesOf(const std::vector<Facet>& facets) {
   return edges;
 }
 
-int thirdCorner(const Facet& f, int a, int b) {
+int thirdCorner(const HullFacet& f, int a, int b) {
   for (const int c : f) {
     if (c != a && c != b) return c;
   }
@@ -59,7 +59,7 @@ int thirdCorner(const Facet& f, int a, int b) {
 }
 
 // Twice the area over the longest side: how far a facet is from having no direction.
-double heightOf(const std::vector<Vec3>& p, const Facet& f) {
+double heightOf(const std::vector<Vec3>& p, const HullFacet& f) {
   double longest = 0;
   for (std::size_t k = 0; k < 3; ++k)
     longest = std::max(longest, (p[static_cast<std::size_t>(f[(k + 1) % 3])] - p[static_cast<std::size_t>(f[k])]).norm());
@@ -68,7 +68,7 @@ double heightOf(const std::vector<Vec3>& p, const Facet& f) {
 
 // Facets that lie in one plane are one face: judged by the larger of two neighbours. A sliver has no direction of its own, and would join
 // the faces on either side of it: it goes to the one across its longest side.
-std::vector<int> groupsOf(const std::vector<Vec3>& points, const std::vector<Facet>& facets, const HalfEdges& edges, double flat) {
+std::vector<int> groupsOf(const std::vector<Vec3>& points, const std::vector<HullFacet>& facets, const HalfEdges& edges, double flat) {
   UnionFind groups(facets.size());
   const auto at = [&](int v) -> const Vec3& { return points[static_cast<std::size_t>(v)]; };
   std::vector<bool> sliver(facets.size());
@@ -77,7 +77,7 @@ std::vector<int> groupsOf(const std::vector<Vec3>& points, const std::vector<Fac
     const auto other = edges.find({ends.second, ends.first});
     if (other == edges.end() || other->second < f) continue;
     if (sliver[static_cast<std::size_t>(f)] || sliver[static_cast<std::size_t>(other->second)]) continue;
-    const Facet &a = facets[static_cast<std::size_t>(f)], &b = facets[static_cast<std::size_t>(other->second)];
+    const HullFacet &a = facets[static_cast<std::size_t>(f)], &b = facets[static_cast<std::size_t>(other->second)];
     const Vec3 na = normalOf(points, a), nb = normalOf(points, b);
     const bool a_is_larger = na.squaredNorm() >= nb.squaredNorm();
     const Vec3& n = a_is_larger ? na : nb;
@@ -100,7 +100,7 @@ std::vector<int> groupsOf(const std::vector<Vec3>& points, const std::vector<Fac
 }
 
 // The border of a group of facets, as a loop.
-std::vector<int> borderOf(const std::vector<Facet>& facets, const std::vector<int>& group, int which, const HalfEdges& edges) {
+std::vector<int> borderOf(const std::vector<HullFacet>& facets, const std::vector<int>& group, int which, const HalfEdges& edges) {
   std::map<int, int> next;
   for (std::size_t f = 0; f < facets.size(); ++f) {
     if (group[f] != which) continue;
@@ -150,7 +150,7 @@ Polytope::Polytope(const std::vector<Vec3>& points, const std::string& source) {
 }
 
 // Faces with their loops; keeps the corners only, those where three faces meet.
-void Polytope::setFaces(const std::vector<Facet>& facets, double flat, const std::string& source) {
+void Polytope::setFaces(const std::vector<HullFacet>& facets, double flat, const std::string& source) {
   const HalfEdges edges = halfEdgesOf(facets);
   const std::vector<int> group = groupsOf(vertices_, facets, edges, flat);
   std::vector<std::vector<int>> loops;

@@ -8,7 +8,7 @@
 namespace pincer::contact {
 namespace {
 
-constexpr double kSame = 1e-12;  // of the size: a gap must be larger by this to win over an earlier candidate
+constexpr double kEqual = 1e-12;  // of the size: a gap must be larger by this to win over an earlier candidate
 
 struct Kinks {
   std::array<Vec3, 2 * Strata::kMost> normals;
@@ -19,7 +19,7 @@ struct Kinks {
 class Search {
  public:
   Search(const PosedSolid& a, const PosedSolid& b, double size)
-      : a_(a), b_(b), same_(kSame * size), round_(isRound(a.shape) || isRound(b.shape)) {}
+      : a_(a), b_(b), same_(kEqual * size), round_(isRound(a.shape) || isRound(b.shape)) {}
 
   void start(const Vec3& n) { best_ = {n, gapAlong(a_, b_, n)}; }
   void run() {

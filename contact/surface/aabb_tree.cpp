@@ -1,17 +1,10 @@
 #include "contact/surface/aabb_tree.h"
 
-#include <cmath>
-#include <limits>
 #include <numeric>
 
+#include "contact/surface/outward_float.h"
+
 namespace pincer::contact {
-
-namespace {
-
-float below(double x) { return std::nextafter(static_cast<float>(x), -std::numeric_limits<float>::infinity()); }
-float above(double x) { return std::nextafter(static_cast<float>(x), std::numeric_limits<float>::infinity()); }
-
-}  // namespace
 
 AabbTree::AabbTree(const std::vector<Aabb>& boxes) : order_(boxes.size()) {
   std::iota(order_.begin(), order_.end(), 0);

@@ -11,7 +11,6 @@ namespace pincer::contact {
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kMaxTries = 16;          // places from which a further contact is looked for, per query
 constexpr double kOnePlace = 1e-3;     // of r: contacts nearer than this are one
 constexpr double kApart = 0.998;       // cosine of 3.6 degrees: further contacts differ by more in their normals

@@ -9,7 +9,7 @@ namespace pincer::contact {
 
 namespace {
 
-constexpr int kMaxCrossings = 200;
+constexpr int kMaxFacets = 200;
 constexpr double kOnFeature = 1e-8;  // of the mesh's size: nearer to a border's point than this, direction is lost
 
 class FlatWalk {
@@ -17,7 +17,7 @@ class FlatWalk {
   FlatWalk(const SurfaceNet& net, const Vec3& C, const Foot& start) : net_(net), C_(C), start_(start) { moveTo(start.triangle); }
 
   ShellContact run() {
-    while (crossings_ < kMaxCrossings) {
+    while (crossings_ < kMaxFacets) {
       if (!descend()) return contact();
       ++crossings_;
     }

@@ -6,9 +6,9 @@ namespace pincer::contact {
 
 namespace {
 
-constexpr double kDone = 1e-6;  // [m]
-constexpr int kMaxSteps = 50;
-constexpr int kMaxCrossings = 40;  // per step
+constexpr double kPublishedDone = 1e-6;  // [m]
+constexpr int kMaxIterations = 50;
+constexpr int kMaxEdgeCrossings = 40;  // per step
 constexpr double kGain = 1;
 
 // The vector `d` in the plane of the triangle, as a change of the barycentric coordinates of corners 0, 1, 2.
@@ -27,7 +27,7 @@ std::array<Vec3, 3> cornersOf(const SurfaceNet& net, std::int32_t t) { return {n
 // Moves the foot by `d` [m] along the flat triangles; stops at a border. Returns the edges crossed.
 int advance(const SurfaceNet& net, Foot& foot, Vec3 d) {
   int crossings = 0;
-  while (crossings < kMaxCrossings) {
+  while (crossings < kMaxEdgeCrossings) {
     const auto corners = cornersOf(net, foot.triangle);
     const std::array<double, 3> db = barycentric(corners, d);
     double part = 1;
@@ -75,8 +75,8 @@ ShellContact followPublished(const SurfaceNet& net, PatchCache& cache, const Vec
     const Vec3 n = x.N.normalized(), R = C - x.S;
     const double h = R.dot(n);
     const Vec3 T = R - h * n;
-    if (T.squaredNorm() < kDone * kDone) return {foot, n, h, true, contact.cost};
-    if (contact.cost.steps >= kMaxSteps || !T.allFinite()) return contact;
+    if (T.squaredNorm() < kPublishedDone * kPublishedDone) return {foot, n, h, true, contact.cost};
+    if (contact.cost.steps >= kMaxIterations || !T.allFinite()) return contact;
     const auto corners = cornersOf(net, foot.triangle);
     const std::array<double, 3> db = barycentric(corners, T);
     const Vec3 d = (corners[1] - corners[0]) * db[1] + (corners[2] - corners[0]) * db[2];

@@ -3,15 +3,13 @@
 #include <limits>
 
 #include "contact/surface/edge_cubic.h"
+#include "contact/surface/outward_float.h"
 
 namespace pincer::contact {
 
 namespace {
 
 constexpr int kMaxVisits = 2000;
-
-float below(double x) { return std::nextafter(static_cast<float>(x), -std::numeric_limits<float>::infinity()); }
-float above(double x) { return std::nextafter(static_cast<float>(x), std::numeric_limits<float>::infinity()); }
 
 // Where the segment from `a` to `b` meets the triangle, if it does. Source: T. Moeller, B. Trumbore, J. Graphics Tools 2(1), 1997.
 bool meets(const Vec3& a, const Vec3& b, const Vec3& p0, const Vec3& p1, const Vec3& p2) {

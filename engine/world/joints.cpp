@@ -7,8 +7,8 @@
 namespace pincer::engine {
 namespace {
 
-constexpr double kRegularisation = 1e-13;  // of A's diagonal
-constexpr int kSettlings = 3;              // Newton's method from a tick's error: 1e-6, 1e-12, round-off
+constexpr double kJointRegularisation = 1e-13;  // of A's diagonal
+constexpr int kSettlings = 3;                   // Newton's method from a tick's error: 1e-6, 1e-12, round-off
 
 // One side of a joint at one moment: where its frame J is, and how its body answers impulses.
 struct JointSide {
@@ -18,16 +18,16 @@ struct JointSide {
 };
 
 // Pose, and inverse inertia in W, of the bodies of a group at one moment.
-class Moment {
+class JointMoment {
  public:
   virtual const Pose& X_WI(int body) const = 0;
   virtual const Mat3& inverseInertia(int body) const = 0;
 
  protected:
-  ~Moment() = default;
+  ~JointMoment() = default;
 };
 
-class MiddleOfTick final : public Moment {
+class MiddleOfTick final : public JointMoment {
  public:
   explicit MiddleOfTick(const WorldScratch& scratch) : scratch_(scratch) {}
   const Pose& X_WI(int body) const override { return scratch_.bodies[body].X_WI_mid; }
@@ -38,7 +38,7 @@ class MiddleOfTick final : public Moment {
 };
 
 // The inverse inertia of the middle, whatever the pose: any symmetric positive metric projects onto the same joints.
-class EndOfTick final : public Moment {
+class EndOfTick final : public JointMoment {
  public:
   EndOfTick(const WorldState& state, const WorldScratch& scratch) : state_(state), scratch_(scratch) {}
   const Pose& X_WI(int body) const override { return state_.bodies[body].X_WI; }
@@ -49,7 +49,7 @@ class EndOfTick final : public Moment {
   const WorldScratch& scratch_;
 };
 
-JointSide sideOf(const Moment& moment, int body, const Pose& X_IJ) {
+JointSide sideOf(const JointMoment& moment, int body, const Pose& X_IJ) {
   if (body < 0) return {body, X_IJ, Vec3::Zero()};
   const Pose& X_WI = moment.X_WI(body);
   return {body, X_WI * X_IJ, X_WI.q * X_IJ.p};
@@ -58,7 +58,7 @@ JointSide sideOf(const Moment& moment, int body, const Pose& X_IJ) {
 // Fills the rows that the joint blocks; with `e`, how far each is violated.
 class RowWriter {
  public:
-  RowWriter(const JointModel& joint, const Moment& moment, JointGroupScratch& group)
+  RowWriter(const JointModel& joint, const JointMoment& moment, JointGroupScratch& group)
       : a_(sideOf(moment, joint.a, joint.X_AJ)),
         b_(sideOf(moment, joint.b, joint.X_BJ)),
         R_WJ_(b_.X_WJ.q.toRotationMatrix()),
@@ -104,7 +104,7 @@ double response(const JointRow& row, int body, const Vec3& mlin_W, const Vec3& m
 }
 
 // A, factorised.
-void factorise(const WorldModel& model, const Moment& moment, JointGroupScratch& group) {
+void factorise(const WorldModel& model, const JointMoment& moment, JointGroupScratch& group) {
   const int m = static_cast<int>(group.rows.size());
   for (int j = 0; j < m; ++j) {
     const JointRow& row = group.rows[j];
@@ -118,7 +118,7 @@ void factorise(const WorldModel& model, const Moment& moment, JointGroupScratch&
       for (int i = 0; i < m; ++i) group.A[i + j * m] += response(group.rows[i], body, mlin, mang);
     }
   }
-  for (int k = 0; k < m; ++k) group.A[k * (m + 1)] = group.A[k * (m + 1)] * (1 + kRegularisation) + group.rows[k].softness;
+  for (int k = 0; k < m; ++k) group.A[k * (m + 1)] = group.A[k * (m + 1)] * (1 + kJointRegularisation) + group.rows[k].softness;
   group.sound = m > 0 && factoriseLu(group.A.data(), m, group.pivots.data());
 }
 
@@ -169,7 +169,7 @@ void setDamping(const WorldModel& model, const WorldScratch& scratch, double dam
   row.bias = soft ? rate(row, startOf(scratch, row.a), startOf(scratch, row.b)) : 0;
 }
 
-void writeGroup(const WorldModel& model, const JointGroup& g, const Moment& moment, JointGroupScratch& group) {
+void writeGroup(const WorldModel& model, const JointGroup& g, const JointMoment& moment, JointGroupScratch& group) {
   group.rows.clear();
   for (int j = g.first; j < g.first + g.count; ++j) RowWriter(model.joints[j], moment, group).writeAll(model.joints[j].kind);
 }

@@ -13,8 +13,8 @@
 #include "tasks/app/plan_text.h"
 #include "tasks/app/progress.h"
 #include "tasks/app/tick_times.h"
-#include "tasks/scene/simulation.h"
 #include "tasks/scene/builtin_scenes.h"
+#include "tasks/scene/simulation.h"
 
 namespace pincer::tasks {
 namespace {

@@ -18,10 +18,6 @@ using contact::SmoothMesh;
 using contact::SurfaceNet;
 using contact::SurfaceVariant;
 
-constexpr double kDegree = M_PI / 180;
-
-double angleBetween(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
-
 std::vector<Record> sphereErrors(int level, double position_bound) {
   constexpr double kR = 0.02, kDepth = 0.002;
   const auto mesh = SmoothMesh::build(contact::icosphere(kR, level));

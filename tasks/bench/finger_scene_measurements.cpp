@@ -22,11 +22,8 @@ using contact::TriangleMesh;
 
 constexpr double kPressed = 0.002;          // [m]
 constexpr double kStep = 0.1 * kBenchTick;  // [m] per tick at 100 mm/s
-constexpr double kDegree = M_PI / 180;
 
 Mesh meshOf(const TriangleMesh& mesh) { return {SmoothMesh::build(mesh)}; }
-
-double angleBetween(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
 // Ticks after which a device that set out from rest moves evenly. A massless tip without damping rings at half the tick rate until then: its
 // direction alternates, by as much as it turns at first, and 4 % less with every tick.

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "contact/shape/pair_query.h"
+
 namespace pincer::tasks {
 namespace {
 

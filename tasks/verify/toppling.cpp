@@ -8,8 +8,6 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
-
 // Bisection of the slope that tips a block: a turn of 1e-7 rad within 1 s, which an excess of 1e-10 causes.
 std::vector<Record> tipping(MeasureContext& context) {
   const Scene scene = readBuiltinScene("tipping_block");

@@ -13,7 +13,6 @@ namespace {
 
 using tests::RandomNumbers;
 
-constexpr double kDegree = M_PI / 180;
 constexpr double kFinger = 0.02;  // [m] of the discrimination experiment
 constexpr double kRadius = 0.1;   // [m] of its arc
 const SurfaceVariant kVariants[] = {SurfaceVariant::smooth, SurfaceVariant::facet, SurfaceVariant::force};

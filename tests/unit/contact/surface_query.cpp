@@ -15,15 +15,12 @@ namespace {
 
 constexpr double kFinger = 0.008;  // [m] radius
 constexpr double kTick = 100e-6;   // [m] a finger at 100 mm/s moves this far in 1 ms
-constexpr double kDegree = M_PI / 180;
 
 // Through the file format, in millimetres, as a user's object comes.
 std::shared_ptr<const SmoothMesh> asObject(const TriangleMesh& mesh) {
   const std::string file = formatMesh(mesh, MeshFormat::obj, {.metres_per_unit = 0.001});
   return SmoothMesh::build(parseMesh(file, MeshFormat::obj, mesh.source, {.metres_per_unit = 0.001}));
 }
-
-double angleBetween(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
 Vec3 onSphere(int i, int n) {  // Fibonacci lattice
   const double z = 1 - (2.0 * i + 1) / n, a = 2.399963229728653 * i;

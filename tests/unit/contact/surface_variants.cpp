@@ -16,7 +16,6 @@ namespace {
 using tests::RandomNumbers;
 
 constexpr double kFinger = 0.008;  // [m]
-constexpr double kDegree = M_PI / 180;
 constexpr SurfaceVariant kVariants[] = {SurfaceVariant::smooth, SurfaceVariant::facet, SurfaceVariant::force,
                                         SurfaceVariant::smooth_published};
 
@@ -26,7 +25,6 @@ std::shared_ptr<const SmoothMesh> asVariant(const TriangleMesh& mesh, SurfaceVar
   return SmoothMesh::build(mesh, options);
 }
 
-double angleBetween(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 Vec3 placeOnFinger(const SurfaceContact& c, const Vec3& C) { return (c.p_BS - C).normalized(); }
 
 Vec3 randomDirection(RandomNumbers& random) {
