@@ -3,8 +3,17 @@
 #include <algorithm>
 
 namespace pincer::engine {
+namespace {
 
-WorldScratch::WorldScratch(const WorldModel& model) : h(model.options.h), islands(model) {
+// A finger or body on a mesh needs some dozens of patches; a world without meshes none.
+int patchesFor(const WorldModel& model) {
+  const auto is_mesh = [](const BodyModel& body) { return std::holds_alternative<contact::Mesh>(body.shape); };
+  return std::any_of(model.bodies.begin(), model.bodies.end(), is_mesh) ? 1024 : 1;
+}
+
+}  // namespace
+
+WorldScratch::WorldScratch(const WorldModel& model) : h(model.options.h), patches(patchesFor(model)), islands(model) {
   const auto contact_count = static_cast<std::size_t>(model.options.max_contacts);
   const std::size_t row_count = contact_count * kMaxContactRows;
   bodies.resize(model.bodies.size());

@@ -89,10 +89,9 @@ TickState makePickupState(const PickupScene& scene) {
   return state;
 }
 
-double clearanceOverDish(const PickupScene& scene, const Pose& X_WB) {
+double clearanceOverDish(const PickupScene& scene, const Pose& X_WB, contact::PatchCache& patches) {
   const auto& bodies = scene.model.grasp.world.bodies;
   contact::PairPoints points;
-  contact::PatchCache patches(64);
   contact::collideShapes(bodies[kObjectBody].shape, X_WB, bodies[kDishBody].shape, Pose(), kFarthest, patches, points);
   double clearance = kFarthest;
   for (int i = 0; i < points.count; ++i) clearance = std::min(clearance, points.points[static_cast<std::size_t>(i)].phi);

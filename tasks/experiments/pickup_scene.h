@@ -28,6 +28,6 @@ PickupScene makePickupScene(const SpherePickupOptions& options, const PickupObje
 TickState makePickupState(const PickupScene& scene);
 
 // Gap between the object and the dish [m]; more than 0.3 m reads as 0.3.
-double clearanceOverDish(const PickupScene& scene, const Pose& X_WB);
+double clearanceOverDish(const PickupScene& scene, const Pose& X_WB, contact::PatchCache& patches);
 
 }  // namespace pincer::tasks

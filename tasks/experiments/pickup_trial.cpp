@@ -130,7 +130,7 @@ PickupView PickupTrial::view(bool wants_lift, double now) const {
     view.fingers[i] = {on_object, finger.sliding, on_object ? finger.normal_force : 0, slide_speed, finger.p_WC};
   }
   view.p_WBcm = object.X_WI.p;
-  view.clearance = clearanceOverDish(scene_, engine::bodyPose(scene_.model.grasp.world, world, kObjectBody));
+  view.clearance = clearanceOverDish(scene_, engine::bodyPose(scene_.model.grasp.world, world, kObjectBody), scratch_.grasp.world.patches);
   return view;
 }
 
