@@ -48,7 +48,8 @@ void queryBody(const GraspModel& model, GraspState& state, GraspScratch& scratch
     report.gap = found.main().phi;
     scratch.nearest_n_W[finger] = mid.R_WB_mid * (p_BC - found.main().p_BS).normalized();
   }
-  for (int i = 0; i < found.count; ++i) {
+  const bool neither_moves = !b.dynamic && scratch.world.points[finger].inverse_mass.isZero(0);
+  for (int i = 0; i < found.count && !neither_moves; ++i) {
     if (found.points[i].phi < margin) addFingerContact(model, scratch, finger, body, found.points[i]);
   }
 }

@@ -38,6 +38,23 @@ TEST(GraspStep, ActionEqualsReactionToTheLastBitEveryTick) {
   EXPECT_GT(scratch.fingers[0].normal_force, 0.5);
 }
 
+// Where neither side can move there is nothing to solve; the islands once read outside their arrays there.
+TEST(GraspStep, ALockedFingerMayPressOnWhatNeverMoves) {
+  engine::WorldBuilder builder(engine::WorldOptions{});
+  builder.addBody({"floor", contact::HalfSpace{}, false, 0, {}});
+  std::vector<FingerModel> fingers(1);
+  fingers[0].name = "index";
+  fingers[0].coupling.locked.setConstant(true);
+  const GraspModel model = buildGrasp(builder, fingers);
+  const Vec3 pressed(0, 0, 0.005);  // 3 mm deep
+  GraspState state = makeState(model, {{}}, {pressed});
+  GraspScratch scratch(model);
+  std::vector<FingerInput> inputs(1);
+  inputs[0].p_WF = pressed;
+  for (int i = 0; i < 10; ++i) EXPECT_EQ(step(model, state, scratch, inputs).status, engine::kStepOk);
+  EXPECT_EQ(state.world.points[0].p_W, pressed);
+}
+
 TEST(GraspStep, CouplingSpringCarriesWhatTheUserFeels) {
   GraspWorld w = pinchedBall(0.075, 0.9);
   GraspScratch scratch(w.model);
