@@ -115,7 +115,7 @@ void PickupTrial::noteCounts(const PickupCounts& before, double now) {
   if (after.drops > before.drops) note(now, "drop");
 }
 
-PickupView PickupTrial::view(bool wants_lift, double now) const {
+PickupView PickupTrial::view(bool wants_lift, double now) {
   PickupView view;
   view.time = now - start_;
   view.wants_lift = wants_lift;

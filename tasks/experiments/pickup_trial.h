@@ -51,7 +51,7 @@ class PickupTrial {
   void end(const char* outcome, Cue cue, double now);
   void note(double time, const char* kind, const char* detail = "");
   void noteCounts(const PickupCounts& before, double now);
-  PickupView view(bool wants_lift, double now) const;
+  PickupView view(bool wants_lift, double now);
   void record(const std::vector<FingerInputs>& samples, double now, std::uint32_t status);
   TrialRecord row() const;
 
