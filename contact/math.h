@@ -29,6 +29,12 @@ struct Pose {
 // Angle between two vectors of any length [rad], accurate near 0 and pi.
 inline double angleBetween(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
+// Angle of the rotation that turns `a` into `b` [rad], 0 .. pi, accurate near 0 and pi.
+inline double angleBetween(const Quat& a, const Quat& b) {
+  const Quat d = a.conjugate() * b;
+  return 2 * std::atan2(d.vec().norm(), std::abs(d.w()));  // atan2 also resolves angles that acos(w) rounds to zero
+}
+
 // Twice the area that two vectors of the plane span, positive when b lies to the left of a.
 inline double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 

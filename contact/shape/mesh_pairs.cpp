@@ -151,98 +151,6 @@ class MeshOnSolid {
   ContactCandidates candidates_;
 };
 
-// Finds the candidates of two meshes in the frame of b.
-class MeshOnMesh {
- public:
-  MeshOnMesh(const Mesh& a, const Pose& X_BA, const Mesh& b, double margin)
-      : a_(a), b_(b), R_(X_BA.q.toRotationMatrix()), p_(X_BA.p), margin_(margin) {
-    size_ = std::min(a.surface->boundingRadius(), b.surface->boundingRadius());
-    deepest_ = -kDeepest * size_;
-  }
-
-  void find() {
-    // b's box in a's frame, from its bounding sphere.
-    const double reach = b_.surface->boundingRadius() + margin_;
-    const Vec3 centre = -(R_.transpose() * p_);
-    a_.surface->features().visitBox(centre - Vec3::Constant(reach), centre + Vec3::Constant(reach), kMostTriangles, [&](std::int32_t t) {
-      const FlatTriangle ta = inB(a_.surface->features().triangle(a_.surface->triangles(), t));
-      const Vec3 low = ta.p[0].cwiseMin(ta.p[1]).cwiseMin(ta.p[2]), high = ta.p[0].cwiseMax(ta.p[1]).cwiseMax(ta.p[2]);
-      if (left_ <= 0) return;
-      b_.surface->features().visitBox(low - Vec3::Constant(margin_), high + Vec3::Constant(margin_), left_, [&](std::int32_t u) {
-        --left_;
-        look(ta, t, b_.surface->features().triangle(b_.surface->triangles(), u), u);
-      });
-    });
-  }
-  const ContactCandidates& candidates() const { return candidates_; }
-
- private:
-  FlatTriangle inB(FlatTriangle t) const {
-    for (Vec3& p : t.p) p = R_ * p + p_;
-    for (int i = 0; i < 3; ++i) {
-      if (t.ownsEdge(i)) t.beyond[static_cast<std::size_t>(i)] = R_ * t.beyond[static_cast<std::size_t>(i)] + p_;
-    }
-    t.n = R_ * t.n;
-    return t;
-  }
-
-  void look(const FlatTriangle& ta, std::int32_t a, const FlatTriangle& tb, std::int32_t b) {
-    lookAtCorners(ta, tb, 1, kMeshCornerOfA);
-    lookAtCorners(tb, ta, -1, kMeshCornerOfB);
-    for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 3; ++j) {
-        if (!ta.ownsEdge(i) || !tb.ownsEdge(j)) continue;
-        const auto ea = 3 * static_cast<std::uint32_t>(a) + static_cast<std::uint32_t>(i),
-                   eb = 3 * static_cast<std::uint32_t>(b) + static_cast<std::uint32_t>(j);
-        lookAtEdges(ta, i, tb, j, featureOf(kMeshEdges, ea * 2654435761u ^ eb));
-      }
-    }
-  }
-
-  void add(const Vec3& p, const Vec3& n, double phi, std::uint32_t feature) {
-    if (phi < margin_ && phi > deepest_) candidates_.add({p, n, phi, feature});
-  }
-
-  // Corners of `t` on the triangle `face`, whose normal points out of b where sign is 1.
-  void lookAtCorners(const FlatTriangle& t, const FlatTriangle& face, double sign, std::uint32_t kind) {
-    if (t.n.dot(face.n) > kSameSide) return;
-    for (int i = 0; i < 3; ++i) {
-      const Vec3& p = cornerOf(t, i);
-      if (!t.ownsCorner(i)) continue;
-      const double phi = face.n.dot(p - face.p[0]);
-      if (phi < margin_ && phi > deepest_ && isOver(face, p, kSlack * size_))
-        add(p - 0.5 * phi * face.n, sign * face.n, phi,
-            featureOf(kind, static_cast<std::uint32_t>(t.vertices[static_cast<std::size_t>(i)])));
-    }
-  }
-
-  void lookAtEdges(const FlatTriangle& ta, int i, const FlatTriangle& tb, int j, std::uint32_t feature) {
-    const Vec3 &a0 = cornerOf(ta, i), &b0 = cornerOf(tb, j);
-    const Vec3 ea = cornerOf(ta, i + 1) - a0, eb = cornerOf(tb, j + 1) - b0;
-    Vec3 n = ea.cross(eb);
-    const double length2 = n.squaredNorm();
-    if (!(length2 > kSlack * kSlack * ea.squaredNorm() * eb.squaredNorm())) return;
-    const EdgeSides sides_a(ta, i), sides_b(tb, j);
-    if (n.dot(sides_b.own + sides_b.other) > 0) n = -n;  // out of b: away from its triangles
-    const Vec3 d = b0 - a0;
-    const Vec3 c = ea.cross(eb);
-    const double s = d.cross(eb).dot(c) / length2, t = d.cross(ea).dot(c) / length2;
-    if (s < 0 || s > 1 || t < 0 || t > 1) return;
-    n /= std::sqrt(length2);
-    if (!sides_a.lieAbove(n) || !sides_b.lieAbove(-n)) return;
-    const Vec3 on_a = a0 + s * ea, on_b = b0 + t * eb;
-    add(0.5 * (on_a + on_b), n, n.dot(on_a - on_b), feature);
-  }
-
-  const Mesh& a_;
-  const Mesh& b_;
-  Mat3 R_;  // of a in b
-  Vec3 p_;
-  double margin_, size_, deepest_;
-  int left_ = kMostTrianglePairs;
-  ContactCandidates candidates_;
-};
-
 bool spheresTouch(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin) {
   const double furthest = boundingRadius(a) + boundingRadius(b) + margin;
   return (X_WA.p - X_WB.p).squaredNorm() < furthest * furthest;
@@ -267,15 +175,6 @@ void collideMeshWithConvex(const Mesh& mesh, const Pose& X_WA, const Shape& soli
   MeshOnSolid search(mesh, posed, margin);
   search.find();
   keepInWorld(search.candidates(), X_WA, out);
-}
-
-void collideMeshes(const Mesh& a, const Pose& X_WA, const Mesh& b, const Pose& X_WB, double margin, PairPoints& out) {
-  out.count = 0;
-  if (!spheresTouch(a, X_WA, b, X_WB, margin)) return;
-  const Pose X_BA{X_WB.q.conjugate() * X_WA.q, X_WB.q.conjugate() * (X_WA.p - X_WB.p)};
-  MeshOnMesh search(a, X_BA, b, margin);
-  search.find();
-  keepInWorld(search.candidates(), X_WB, out);
 }
 
 }  // namespace pincer::contact

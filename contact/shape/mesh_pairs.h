@@ -1,4 +1,4 @@
-// mesh_pairs: contact points of a mesh with a convex solid, and of two meshes, concave ones included.
+// mesh_pairs: contact points of a mesh, also a concave one, with a convex solid.
 //
 // Triangles near the other body are found through the mesh's tree; then the closest features decide, each with the direction that its
 // geometry gives:
@@ -7,7 +7,6 @@
 //                                       facet that faces the triangle (convex_features.h), so a cylinder stands on its rim
 //   edge on edge                        across both edges, where that direction lies between the normals on either side of both; against a
 //                                       solid the edge is a segment, and separation.h gives the direction
-//   mesh on mesh                        corners on triangles both ways, edge on edge
 // All are local, so that the depth of shallow overlap is right also in hollows; a feature that is deeper than kDeepest of the smaller body
 // is taken for one of the far side and left out. Contact is with the flat triangles, not with the smooth surface between their corners: they
 // differ by up to e^2 k / 8 (edge length e, curvature k), as on half-spaces (pair_query.h).
@@ -15,17 +14,15 @@
 // Of all candidates up to four are kept: those of like normal (within kLike) form a group; the deepest of each group first, then within
 // groups in turn the one that is furthest from what the group has, by point_choice.h's d^2 / (g + s).
 // Cost: about 0.1 us per triangle near the other body, plus a few us per edge that lies across an edge of it; at most kMostTriangles
-// (per pair of meshes: kMostTrianglePairs) are looked at, and kMostCandidates points kept until the choice.
+// are looked at.
 #pragma once
 #include "contact/shape/pair_query.h"
 
 namespace pincer::contact {
 
 constexpr int kMostTriangles = 20000;
-constexpr int kMostTrianglePairs = 100000;
 
-// As collideShapes (pair_query.h); n out of the solid (b) towards the mesh (a), both poses in W. Allocate nothing.
+// As collideShapes (pair_query.h); n out of the solid (b) towards the mesh (a), both poses in W. Allocates nothing.
 void collideMeshWithConvex(const Mesh& mesh, const Pose& X_WA, const Shape& solid, const Pose& X_WB, double margin, PairPoints& out);
-void collideMeshes(const Mesh& a, const Pose& X_WA, const Mesh& b, const Pose& X_WB, double margin, PairPoints& out);
 
 }  // namespace pincer::contact

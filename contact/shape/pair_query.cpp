@@ -28,6 +28,7 @@ double radiusOf(const Mesh& m) { return m.surface->boundingRadius(); }
 double radiusOf(const Convex& c) { return c.hull->boundingRadius(); }
 
 bool isSphere(const Shape& shape) { return std::holds_alternative<Sphere>(shape); }
+bool isFlatCylinder(const Shape& shape) { return std::holds_alternative<CylinderWithFlat>(shape); }
 bool isMesh(const Shape& shape) { return std::holds_alternative<Mesh>(shape); }
 bool isSupport(const Shape& shape) { return std::holds_alternative<HalfSpace>(shape) || std::holds_alternative<Dish>(shape); }
 
@@ -73,14 +74,17 @@ double boundingRadius(const Shape& shape) {
   return std::visit([](const auto& s) { return radiusOf(s); }, shape);
 }
 
-bool pairIsSupported(const Shape& a, const Shape& b) { return !isSupport(a) || !isSupport(b); }
+bool pairIsSupported(const Shape& a, const Shape& b) {
+  if (isSphere(a) || isSphere(b)) return true;
+  if (isSupport(a) || isSupport(b)) return !(isSupport(a) && isSupport(b));
+  return !(isMesh(a) && isMesh(b)) && !isFlatCylinder(a) && !isFlatCylinder(b);
+}
 
 void collideShapes(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin, PatchCache& cache, PairPoints& out) {
   out.count = 0;
   if (!pairIsSupported(a, b)) return;
   if (isSphere(a)) return collideSphere(std::get<Sphere>(a), X_WA, b, X_WB, margin, cache, out);
   if (isConvex(a) && isConvex(b) && !isSphere(b) && a.index() <= b.index()) return collideConvex(a, X_WA, b, X_WB, margin, out);
-  if (isMesh(a) && isMesh(b)) return collideMeshes(std::get<Mesh>(a), X_WA, std::get<Mesh>(b), X_WB, margin, out);
   if (isMesh(a) && isConvex(b) && !isSphere(b)) return collideMeshWithConvex(std::get<Mesh>(a), X_WA, b, X_WB, margin, out);
   if (isSupport(b)) return collideWithSupport(a, X_WA, b, X_WB, margin, out);
   collideShapes(b, X_WB, a, X_WA, margin, cache, out);

@@ -11,7 +11,7 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr const char* kExample = R"(
+constexpr const char* kBenchExample = R"(
 What touching a mesh costs and how well it is felt, each figure beside what pincer promises (docs/benchmarks.md). Exit code 1 if a promise isn't
 kept. Times are this machine's, while it does whatever else it does.
 
@@ -41,7 +41,7 @@ void addBenchCommand(CLI::App& app, int& exit_code) {
   contact->add_option("--meshes", arguments->contact.meshes, "Directory of mesh files to touch too, each scaled to 80 mm");
   contact->add_option("--out", arguments->contact.out, "Directory for tables (CSV) and plots of the contact's place on the finger");
   contact->add_flag("--peers", arguments->contact.peers, "Measure Bullet and ODE on the same paths (built with -DPINCER_PEERS=ON)");
-  contact->footer(kExample);
+  contact->footer(kBenchExample);
   contact->callback([arguments, &exit_code] {
     exit_code = runMeasurements(contactMeasurements(arguments->contact), arguments->measure, "bench contact");
   });

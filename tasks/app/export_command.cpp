@@ -11,7 +11,7 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr const char* kExample = R"(
+constexpr const char* kExportExample = R"(
 Writes session.csv, trial.csv, sample.csv and event.csv, with units in the column names.
 
 Example:
@@ -41,7 +41,7 @@ void addExportCommand(CLI::App& app, int& exit_code) {
   command->add_option("--out", arguments->directory, "Directory for the tables (default: csv beside the session)");
   command->add_option("--trial", arguments->filter.trial, "Samples of this trial only");
   command->add_option("--every", arguments->filter.stride, "Every n-th sample only")->check(CLI::PositiveNumber)->capture_default_str();
-  command->footer(kExample);
+  command->footer(kExportExample);
   command->callback([arguments, &exit_code] { exit_code = exportSession(*arguments); });
 }
 

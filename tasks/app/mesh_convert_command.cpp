@@ -11,7 +11,7 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr const char* kExample = R"(
+constexpr const char* kMeshConvertExample = R"(
 The formats are told from the names: OBJ, STL, PLY, OFF. With --repair every change is printed; a sound mesh comes out as it went in.
 What is left to mend by hand is printed last.
 
@@ -29,7 +29,7 @@ struct ConvertArguments {
   int fill_holes = 0;
 };
 
-void scaleTo(double size, contact::TriangleMesh& mesh) {
+void scaleToSize(double size, contact::TriangleMesh& mesh) {
   const contact::MeshReport report = contact::inspect(mesh);
   const double largest = (report.box_max - report.box_min).maxCoeff();
   if (!(largest > 0)) throw InputError(fmt::format("{}: all its points coincide: it has no size. Export it again.", mesh.source));
@@ -48,7 +48,7 @@ void convert(const ConvertArguments& arguments) {
   fmt::print("{}\n", arguments.input.file);
   contact::TriangleMesh mesh =
       readWithProgress(arguments.input, arguments.repair ? contact::Degenerate::keep : contact::Degenerate::reject);
-  if (arguments.size > 0) scaleTo(arguments.size, mesh);
+  if (arguments.size > 0) scaleToSize(arguments.size, mesh);
   if (arguments.repair) mesh = repaired(std::move(mesh), arguments);
   const std::string units = arguments.to_units.empty() ? arguments.input.units : arguments.to_units;
   writeAndSay(arguments.input, arguments.out, mesh, units);
@@ -72,7 +72,7 @@ void addMeshConvert(CLI::App& mesh, int& exit_code) {
   command->add_option("--fill-holes", arguments->fill_holes, "With --repair: close nearly flat holes of at most so many edges")
       ->check(CLI::Range(0, 1000))
       ->needs(repair);
-  command->footer(kExample);
+  command->footer(kMeshConvertExample);
   command->callback([arguments, &exit_code] {
     convert(*arguments);
     exit_code = kExitOk;

@@ -11,7 +11,7 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr const char* kExample = R"(
+constexpr const char* kMeshRoundExample = R"(
 Sharp edges and corners become arcs of the radius, tangent to both faces, with normals: write OBJ or PLY to keep these. A finger then
 keeps contact where it would fly off a sharp edge.
 
@@ -57,7 +57,7 @@ void addMeshRoundEdges(CLI::App& mesh, int& exit_code) {
       ->capture_default_str();
   command->add_option("--segments", arguments->segments, "Pieces of an arc of 90 degrees")->check(CLI::Range(1, 64))->capture_default_str();
   command->add_flag("--ignore-normals", arguments->ignore_normals, "The crease angle decides, not the file's normals");
-  command->footer(kExample);
+  command->footer(kMeshRoundExample);
   command->callback([arguments, &exit_code] {
     roundFile(*arguments);
     exit_code = kExitOk;

@@ -19,7 +19,7 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr const char* kExample = R"(
+constexpr const char* kPlanExample = R"(
 What runs in a tick of a scene and in which specialised form, what is left out, and what each stage costs on this machine, measured over
 a run of the scene (begun again where it ends before the wanted number of ticks).
 
@@ -131,7 +131,7 @@ void addPlanCommand(CLI::App& app, int& exit_code) {
   command->add_option("scene", arguments->scene, "Scene file (JSON), or the name of a built-in scene")->required();
   command->add_option("--ticks", arguments->ticks, "Ticks to measure")->check(CLI::Range(1, 10'000'000))->capture_default_str();
   command->add_flag("--json", arguments->json, "Print the plan as JSON");
-  command->footer(kExample);
+  command->footer(kPlanExample);
   command->callback([arguments, &exit_code] { exit_code = runPlan(*arguments); });
 }
 

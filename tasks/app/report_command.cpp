@@ -11,7 +11,7 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr const char* kExample = R"(
+constexpr const char* kReportExample = R"(
 The table of a session, and a page with plots (needs gnuplot). Sessions that were killed or interrupted get theirs too.
 
 Example:
@@ -40,7 +40,7 @@ void addReportCommand(CLI::App& app, int& exit_code) {
   command->add_option("session", arguments->session, "Session file")->required();
   command->add_option("--html", arguments->html, "Where to write the page (default: report.html beside the session)");
   command->add_flag("--json", arguments->json, "Print the table as JSON");
-  command->footer(kExample);
+  command->footer(kReportExample);
   command->callback([arguments, &exit_code] { exit_code = report(*arguments); });
 }
 

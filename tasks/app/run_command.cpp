@@ -21,7 +21,7 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr const char* kExample = R"(
+constexpr const char* kRunExample = R"(
 A simulated participant on simulated arms and contact location displays does the task; trials, events and samples are kept in
 DIR/session.db, a page with plots in DIR/report.html.
 
@@ -139,7 +139,7 @@ void addRunCommand(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->add_flag("!--no-report", arguments->report, "Only the session and the table");
   command->add_flag("--json", arguments->json, "Print the table as JSON");
-  command->footer(kExample);
+  command->footer(kRunExample);
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 

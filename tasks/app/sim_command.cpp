@@ -13,7 +13,7 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr const char* kExample = R"(
+constexpr const char* kSimExample = R"(
 Runs the bodies and fingers of a scene file (docs/scenes.md), shows where they end up, and checks what the scene expects.
 Exit code 1 if an expectation fails.
 
@@ -51,7 +51,7 @@ void addSimCommand(CLI::App& app, int& exit_code) {
       ->check(CLI::PositiveNumber);
   command->add_option("--out", arguments->options.csv, "Write the recorded quantities to this CSV file");
   command->add_flag("--json", arguments->json, "Print the result as JSON");
-  command->footer(kExample);
+  command->footer(kSimExample);
   command->callback([arguments, &exit_code] { exit_code = runSim(*arguments); });
 }
 

@@ -9,7 +9,7 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr const char* kExample = R"(
+constexpr const char* kStressExample = R"(
 Random worlds, class by class: what must hold whatever happens is checked in every tick. Exit code 1 if anything unflagged fails.
 
 Examples:
@@ -30,7 +30,7 @@ void addStressCommand(CLI::App& app, int& exit_code) {
   addMeasureOptions(*command, arguments->measure);
   command->add_option("--seeds", arguments->stress.seeds, "Worlds per class")->check(CLI::Range(1, 100'000'000))->capture_default_str();
   command->add_option("--seed", arguments->stress.first_seed, "The first seed")->capture_default_str();
-  command->footer(kExample);
+  command->footer(kStressExample);
   command->callback(
       [arguments, &exit_code] { exit_code = runMeasurements(stressMeasurements(arguments->stress), arguments->measure, "stress"); });
 }

@@ -9,7 +9,7 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr const char* kExample = R"(
+constexpr const char* kVerifyExample = R"(
 Runs named scenes whose exact answer is known, and compares: closed forms, or fine integrations of the exact equations (docs/accuracy.md).
 Exit code 1 if a bound isn't kept.
 
@@ -24,7 +24,7 @@ void addVerifyCommand(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<MeasureOptions>();
   CLI::App* command = app.add_subcommand("verify", "The accuracy suite: scenes with exact answers");
   addMeasureOptions(*command, *options);
-  command->footer(kExample);
+  command->footer(kVerifyExample);
   command->callback([options, &exit_code] { exit_code = runMeasurements(verifyMeasurements(), *options, "verify"); });
 }
 

@@ -20,7 +20,7 @@ using contact::Mesh;
 using contact::SmoothMesh;
 using contact::TriangleMesh;
 
-constexpr double kPressed = 0.002;          // [m]
+constexpr double kPressDepth = 0.002;       // [m]
 constexpr double kStep = 0.1 * kBenchTick;  // [m] per tick at 100 mm/s
 
 Mesh meshOf(const TriangleMesh& mesh) { return {SmoothMesh::build(mesh)}; }
@@ -37,7 +37,7 @@ struct Round {
 };
 Round runAround(int n) {
   const SweepPlane plane{Vec3(0.3, -0.2, 1).normalized(), 0};
-  const FingerPath path = circleAround(plane, 0.04 + kBenchFinger - kPressed);
+  const FingerPath path = circleAround(plane, 0.04 + kBenchFinger - kPressDepth);
   FingerScene scene(meshOf(contact::geodesicSphere(0.04, n)), {0, 0}, 1.1 * path.centres.front());
   scene.leadTo(path.centres.front());
   const Mat3 frame = frameFromNormal(plane.axis);
@@ -71,7 +71,7 @@ std::vector<Record> sphereRows(MeasureContext&) {
 // 12 facets of 30 degrees, shaded: around at 2 mm under the surface.
 std::vector<Record> facetedCylinder(MeasureContext&) {
   const SweepPlane plane{Vec3::UnitZ(), 0.003};
-  const FingerPath path = circleAround(plane, 0.025 + kBenchFinger - kPressed);
+  const FingerPath path = circleAround(plane, 0.025 + kBenchFinger - kPressDepth);
   FingerScene scene(meshOf(contact::cylinder(0.025, 0.03, 12, 6)), {0, 0}, path.centres.front() + Vec3(0.005, 0, 0));
   scene.leadTo(path.centres.front());
   double sum = 0, sum2 = 0, low = std::numeric_limits<double>::infinity(), high = 0, n = 0;
@@ -95,7 +95,7 @@ std::vector<Record> edgeWithSharedVertices(MeasureContext&) {
   const Vec3 half(0.03, 0.03, 0.03);
   const auto mesh = SmoothMesh::build(contact::box(half));
   BenchFinger finger;
-  const double h = kBenchFinger - kPressed;
+  const double h = kBenchFinger - kPressDepth;
   double direction = 0, depth = 0;
   for (double s = -0.01; s < 0.01 + h * M_PI / 2; s += kStep) {  // along the top, around the edge, down the side
     const double a = std::clamp(s / h, 0.0, M_PI / 2);
@@ -103,10 +103,10 @@ std::vector<Record> edgeWithSharedVertices(MeasureContext&) {
     const Vec3 S(half.x() + std::min(s, 0.0), 0.004, half.z() - std::max(s - h * M_PI / 2, 0.0));
     const contact::SurfaceContact c = finger.on(*mesh, S + h * n).main();
     direction = std::max(direction, angleBetween(c.n_B, n));
-    depth = std::max(depth, std::abs(c.phi + kPressed));
+    depth = std::max(depth, std::abs(c.phi + kPressDepth));
   }
   return {atMost("direction error", direction / kDegree, "deg", 1e-4),
-          atMost("force error, of its mean", 100 * depth / kPressed, "%", 1e-4)};
+          atMost("force error, of its mean", 100 * depth / kPressDepth, "%", 1e-4)};
 }
 
 // A plate of small triangles: press for 50 ms, then drag along x.
@@ -116,7 +116,7 @@ struct Dragged {
 Dragged dragOverPlate(double mu) {
   FingerScene scene(meshOf(contact::gridBox({0.06, 0.03, 0.005}, 24)), {mu, mu}, {-0.04, 0.001, 0.02});
   Dragged dragged;
-  const Vec3 down(-0.04, 0.001, 0.005 + kBenchFinger - kPressed);
+  const Vec3 down(-0.04, 0.001, 0.005 + kBenchFinger - kPressDepth);
   scene.leadTo(down);
   for (int i = 0; i < 700; ++i) {
     const grasp::FingerReport& felt = scene.tick(down + Vec3(i * kStep, 0, 0));
@@ -151,9 +151,9 @@ std::vector<Record> dragOverPart(const TriangleMesh& triangles, MeasureContext& 
     n = felt.touching ? felt.n_W : Vec3(slippery.proxy().normalized());  // off the part: back towards its middle
     heading += 0.03 * randomDirection(random);
     heading = (heading - heading.dot(n) * n).normalized();
-    const Vec3 wanted = slippery.proxy() - kPressed * n + kStep * heading;
+    const Vec3 wanted = slippery.proxy() - kPressDepth * n + kStep * heading;
     device += std::min(1.0, 2 * kStep / (wanted - device).norm()) * (wanted - device);
-    snagged = with > 2 * std::sqrt(1 + kMu * kMu) * 1000 * kPressed ? snagged + 1 : 0;
+    snagged = with > 2 * std::sqrt(1 + kMu * kMu) * 1000 * kPressDepth ? snagged + 1 : 0;
     longest = std::max(longest, snagged);
     largest = std::max(largest, with);
     context.progress(static_cast<double>(i) / kTicks);

@@ -9,7 +9,7 @@ namespace pincer::tasks {
 namespace {
 
 constexpr double kSpeed = 0.1;  // [m/s]
-constexpr double kStep = kSpeed * kBenchTick;
+constexpr double kSweepStep = kSpeed * kBenchTick;
 
 }  // namespace
 
@@ -18,12 +18,12 @@ FingerPath sweepAround(const contact::SmoothMesh& mesh, const SweepPlane& plane,
   const auto inPlane = [&](const Vec3& p) -> Vec3 { return p + (plane.offset - p.dot(plane.axis)) * plane.axis; };
   contact::SurfaceContact touch = finger.on(mesh, inPlane(2 * mesh.boundingRadius() * start)).main();
   Vec3 C = inPlane(touch.p_BS + (kBenchFinger - depth) * touch.n_B);
-  FingerPath path{{}, static_cast<int>(length / kStep)};
+  FingerPath path{{}, static_cast<int>(length / kSweepStep)};
   for (int i = 0; i < path.restart_every; ++i) {
     touch = finger.on(mesh, C).main();
     path.centres.push_back(C);
     const Vec3 up = (touch.n_B - touch.n_B.dot(plane.axis) * plane.axis).normalized();
-    C += kStep * plane.axis.cross(up) + std::clamp(-depth - touch.phi, -kStep, kStep) * up;
+    C += kSweepStep * plane.axis.cross(up) + std::clamp(-depth - touch.phi, -kSweepStep, kSweepStep) * up;
     C = inPlane(C);
   }
   return path;
@@ -31,9 +31,9 @@ FingerPath sweepAround(const contact::SmoothMesh& mesh, const SweepPlane& plane,
 
 FingerPath circleAround(const SweepPlane& plane, double R) {
   const Mat3 frame = frameFromNormal(plane.axis);
-  FingerPath path{{}, static_cast<int>(2 * M_PI * R / kStep)};
+  FingerPath path{{}, static_cast<int>(2 * M_PI * R / kSweepStep)};
   for (int i = 0; i < path.restart_every; ++i) {
-    const double a = i * kStep / R;
+    const double a = i * kSweepStep / R;
     path.centres.push_back(plane.offset * plane.axis + R * (std::cos(a) * frame.col(0) + std::sin(a) * frame.col(1)));
   }
   return path;

@@ -11,7 +11,7 @@ namespace pincer::tasks {
 
 namespace {
 
-constexpr int kTouching = 1, kSliding = 2;
+constexpr int kTouchingLevel = 1, kSlidingLevel = 2;
 struct EventStyle {
   const char *kind, *label, *colour;
   int mark;  // gnuplot's point type
@@ -35,7 +35,7 @@ std::string samplesCsv(const TrialTrace& trace) {
       table.add(f.normal_force);
       table.add(f.tangential_force);
       table.add(trace.trial.mu_s * f.normal_force);
-      table.add((f.flags & kSliding) && (f.flags & kTouching) ? 1 : 0);
+      table.add((f.flags & kSlidingLevel) && (f.flags & kTouchingLevel) ? 1 : 0);
     }
     table.endRow();
   }

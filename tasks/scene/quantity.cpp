@@ -75,9 +75,4 @@ std::span<const QuantityKind> worldQuantities() { return kWorld; }
 std::span<const QuantityKind> bodyQuantities() { return kBody; }
 std::span<const QuantityKind> fingerQuantities() { return kFinger; }
 
-double angleBetween(const Quat& a, const Quat& b) {
-  const Quat d = a.conjugate() * b;
-  return 2 * std::atan2(d.vec().norm(), std::abs(d.w()));  // atan2 also resolves angles that acos(w) rounds to zero
-}
-
 }  // namespace pincer::tasks

@@ -38,7 +38,4 @@ std::span<const QuantityKind> worldQuantities();
 std::span<const QuantityKind> bodyQuantities();
 std::span<const QuantityKind> fingerQuantities();
 
-// Angle of the rotation that turns `a` into `b` [rad], 0 .. pi.
-double angleBetween(const Quat& a, const Quat& b);
-
 }  // namespace pincer::tasks

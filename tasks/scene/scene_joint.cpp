@@ -7,7 +7,7 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr NumberRule kDamping = {.min = 0, .max = 1e6, .remedy = "In N m s/rad for a pivot, N s/m for a slider."};
+constexpr NumberRule kJointDamping = {.min = 0, .max = 1e6, .remedy = "In N m s/rad for a pivot, N s/m for a slider."};
 constexpr NumberRule kAxis = {.min = -1e6, .max = 1e6, .remedy = "A direction, of any length but 0."};
 
 int bodyNamed(const JsonValue& json, const Scene& scene) {
@@ -46,7 +46,7 @@ engine::JointModel readJoint(const JsonValue& json, const Scene& scene) {
     joint.X_BJ = start(joint.b).inverse() * X_WJ;
   }
   if (const JsonValue* v = json.find("damping")) {
-    joint.damping = v->number(kDamping);
+    joint.damping = v->number(kJointDamping);
     const bool has_axis = joint.kind == engine::JointKind::kPivot || joint.kind == engine::JointKind::kSlider;
     if (!has_axis) v->reject("doesn't go with this type: only pivots and sliders have a free axis to damp. Remove the key.");
   }

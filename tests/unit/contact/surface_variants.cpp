@@ -44,7 +44,7 @@ Jumps slideAroundCylinder(SurfaceVariant variant, double step) {
   SurfaceTracker tracker;
   Jumps worst;
   SurfaceContact last;
-  Vec3 last_place;
+  Vec3 last_place = Vec3::Zero();
   for (int i = 0; i * step < 60 * kDegree * h; ++i) {
     const double a = i * step / h;
     const Vec3 C(h * std::cos(a), h * std::sin(a), 0.0021);
