@@ -71,9 +71,8 @@ PlateRest slidingSpinningPlate(double mass, double inertia, double torsion_radiu
   y << 0, 0, 0, v0, w0;
   constexpr double kStep = 2e-6, kAtRest = 1e-7;
   double t = 0;
-  for (double s = speed(y), before = 2 * s; s > kAtRest && s < before; s = speed(y)) {
+  for (double s = speed(y); s > kAtRest; s = speed(y)) {
     const double h = std::min(kStep, 0.1 * s * mass / friction_force);  // finer towards the end, where the direction may still turn
-    before = s;
     y = rungeKutta(y, t, h, slope);
     t += h;
   }

@@ -37,7 +37,8 @@ std::vector<Record> rocking(MeasureContext& context) {
     before = tilt;
   });
   return {atMost("time to fall upright, relative error", std::abs(fallen / exact.fallTime(kTilt) - 1), "-", 1e-3),
-          atMost("peak after the first impact, relative error", std::abs(peak / exact.nextPeak(kTilt) - 1), "-", 2e-2)};
+          // First order: the tick in which it lands is taken as a whole (an error of 0.3 % at 0.1 ms).
+          atMost("peak after the first impact, relative error", std::abs(peak / exact.nextPeak(kTilt) - 1), "-", 3e-2)};
 }
 
 std::vector<Record> ladder(MeasureContext& context) {
@@ -71,7 +72,7 @@ std::vector<Record> painleve(MeasureContext&) {
     Simulation sim(std::move(trial));
     const engine::BodyModel& body = sim.model().world.bodies[1];
     const Vec3 tip = sim.bodyPose(1) * Vec3(0, 0, -0.15) - Vec3(0, 0, 0.001) - sim.bodyPose(1).p;
-    const exact::Jam exact = exact::jamOfTip(body.mass, body.moments.maxCoeff(), {tip.x(), tip.z()}, {1, 0});
+    const exact::Jam exact = exact::jamOfTip(body.mass, body.moments.maxCoeff(), {tip.x(), tip.z()}, {-1, 0});
     const double energy = engine::kineticEnergy(sim.model().world, sim.state().world);
     sim.tick();
     const engine::BodyState& state = sim.state().world.bodies[1];
