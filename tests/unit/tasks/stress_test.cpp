@@ -1,0 +1,47 @@
+// A few hostile worlds of each class hold what stress.h promises; `pincer stress` runs thousands.
+#include "tasks/stress/stress.h"
+
+#include <gtest/gtest.h>
+
+#include "tasks/stress/checks.h"
+
+namespace pincer::tasks {
+namespace {
+
+TEST(Stress, AFewWorldsOfEachClassHold) {
+  for (const Measurement& measurement : stressMeasurements({.first_seed = 1, .seeds = 3})) {
+    MeasureContext context;
+    for (const Record& record : measurement.run(context)) EXPECT_TRUE(record.ok) << measurement.name << ": " << record.metric;
+  }
+}
+
+// The checks see what they are there for.
+TEST(Stress, ChecksNameAContactThatPullsOrSlipsOutOfItsCone) {
+  engine::WorldBuilder builder(engine::WorldOptions{});
+  builder.addBody({"ball", contact::Sphere{0.02}, true, 0.1, {}});
+  const engine::WorldModel model = builder.build();
+  engine::WorldScratch scratch(model);
+  engine::Contact* const c = engine::addContact(scratch, 0);
+  c->mu = 0.5;
+  c->r = {0.5, 0, 1, 0};
+  EXPECT_EQ(faultOfCones(scratch), "");
+  c->r = {0.51, 0, 1, 0};
+  EXPECT_NE(faultOfCones(scratch), "");
+  c->r = {0, 0, -1, 0};
+  EXPECT_NE(faultOfCones(scratch), "");
+}
+
+TEST(Stress, ChecksNameABodyBelowTheFloorOrNotFinite) {
+  engine::WorldBuilder builder(engine::WorldOptions{});
+  builder.addBody({"ball", contact::Sphere{0.02}, true, 0.1, {}});
+  const engine::WorldModel model = builder.build();
+  engine::WorldState state = engine::makeState(model, {{{Quat::Identity(), {0, 0, 0.02}}, Vec3::Zero(), Vec3::Zero()}}, {});
+  EXPECT_EQ(faultOfState(model, state), "");
+  state.bodies[0].X_WI.p.z() = -0.001;
+  EXPECT_NE(faultOfState(model, state), "");
+  state.bodies[0].X_WI.p.z() = std::nan("");
+  EXPECT_NE(faultOfState(model, state), "");
+}
+
+}  // namespace
+}  // namespace pincer::tasks
