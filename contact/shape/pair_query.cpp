@@ -80,6 +80,13 @@ bool pairIsSupported(const Shape& a, const Shape& b) {
   return !(isMesh(a) && isMesh(b)) && !isFlatCylinder(a) && !isFlatCylinder(b);
 }
 
+void preparePair(const Shape& a, const Shape& b) {
+  const bool flat = !isSphere(a) && !isSphere(b) && !isSupport(a) && !isSupport(b);
+  for (const Shape* shape : {&a, &b}) {
+    if (flat && isMesh(*shape)) std::get<Mesh>(*shape).surface->features();
+  }
+}
+
 void collideShapes(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin, PatchCache& cache, PairPoints& out) {
   out.count = 0;
   if (!pairIsSupported(a, b)) return;

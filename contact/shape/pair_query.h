@@ -38,6 +38,9 @@ struct PairPoints {
 // Whether collideShapes answers for this pair; two supports (half-space, dish) are both static and never a pair.
 bool pairIsSupported(const Shape& a, const Shape& b);
 
+// Builds now what collideShapes would build at the first touch (a mesh's flat features), so that no tick allocates.
+void preparePair(const Shape& a, const Shape& b);
+
 // The points of a and b that are closer than `margin` >= 0 [m], written to `out` (sorted by feature). Of more than four
 // candidates up to four are kept: the deepest, then those on which the solid would land first if it rocked (point_choice.h). Unsupported pairs give no
 // point. Convex pairs of one kind of shape, and two meshes, are symmetric in a and b to round-off; all others exactly.

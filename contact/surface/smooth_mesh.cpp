@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <mutex>
+
 #include "contact/mesh/mesh_report.h"
 #include "contact/surface/contact_slots.h"
 #include "contact/surface/convex_hull.h"
@@ -46,14 +48,14 @@ struct SmoothMesh::Data {
       : net(std::move(mesh), options.crease_angle, options.use_file_normals, options.variant),
         search(net, inspector, part(options.progress, kNetBuilt, kSearchBuilt)),
         variant(options.variant),
-        features(net.mesh(), findNeighbours(net.mesh())),
         hull(hullOf(net.mesh())),
         findings(inspector.findings()) {}
 
   SurfaceNet net;
   SurfaceSearch search;
   SurfaceVariant variant;
-  MeshFeatures features;
+  mutable std::once_flag features_wanted;
+  mutable std::unique_ptr<const MeshFeatures> features;  // null until wanted
   std::vector<Vec3> hull;
   NetFindings findings;
 };
@@ -80,9 +82,14 @@ SurfaceContacts SmoothMesh::querySphere(const Vec3& p_BC, double r, double margi
 const std::vector<Vec3>& SmoothMesh::hullVertices() const { return data_->hull; }
 double SmoothMesh::boundingRadius() const { return data_->findings.bounding_radius; }
 std::size_t SmoothMesh::memoryBytes() const {
-  return data_->net.memoryBytes() + data_->search.memoryBytes() + data_->hull.capacity() * sizeof(Vec3) + data_->features.memoryBytes();
+  return data_->net.memoryBytes() + data_->search.memoryBytes() + data_->hull.capacity() * sizeof(Vec3) +
+         (data_->features ? data_->features->memoryBytes() : 0);
 }
-const MeshFeatures& SmoothMesh::features() const { return data_->features; }
+const MeshFeatures& SmoothMesh::features() const {
+  const Data& d = *data_;
+  std::call_once(d.features_wanted, [&] { d.features = std::make_unique<const MeshFeatures>(d.net.mesh(), findNeighbours(d.net.mesh())); });
+  return *d.features;
+}
 const TriangleMesh& SmoothMesh::triangles() const { return data_->net.mesh(); }
 SurfaceVariant SmoothMesh::variant() const { return data_->variant; }
 const std::vector<std::int32_t>& SmoothMesh::foldedTriangles() const { return data_->findings.folded; }

@@ -53,7 +53,8 @@ class SmoothMesh {
   std::size_t memoryBytes() const;                // of all that is kept of it
 
   SurfaceVariant variant() const;
-  const MeshFeatures& features() const;  // of the flat triangles
+  const MeshFeatures& features()
+      const;  // of the flat triangles, for other bodies; built (and memory taken) by the first call, from any thread
 
   const std::vector<std::int32_t>& foldedTriangles() const;  // whose patch folds over: contact there may be held (kQueryHeldDirection)
   double tightestConcaveRadius() const;                      // of the surface [m]; infinity where it is convex

@@ -237,6 +237,7 @@ WorldModel WorldBuilder::build() const {
             "bodies \"{}\" and \"{}\": this pair of shapes has no contact routine. Exclude the pair, or use a sphere for one of them.",
             A.name, B.name));
       }
+      contact::preparePair(A.shape, B.shape);
       if (!model.has_broad_phase) model.pairs.push_back({a, b, materialOf(model, a, b)});
       A.may_touch = B.may_touch = true;
     }
