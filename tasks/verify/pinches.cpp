@@ -115,11 +115,14 @@ std::vector<Record> slidingSpinningPlate(MeasureContext& context) {
     if (engine::bodyAngularVelocity(sim.model().world, sim.state().world, 0).norm() > 1e-7) spun_until = sim.time();
   });
   const Pose rest = sim.bodyPose(0);
-  const Quat exact_q(Eigen::AngleAxisd(exact.angle, Vec3::UnitX()));
-  return {atMost("place of rest, error over way", (Vec2(rest.p.y(), rest.p.z()) - exact.p).norm() / exact.p.norm(), "-", 1e-3),
-          atMost("angle at rest, error over angle", angleBetween(exact_q, rest.q) / exact.angle, "-", 1e-3),
-          atMost("sliding ends before or after spinning by", 1e3 * std::abs(slid_until - spun_until), "ms", 1.0001),
-          atMost("time of rest, error", 1e3 * std::abs(slid_until - exact.time), "ms", 1.0001)};
+  const double angle = 2 * std::atan2(rest.q.x(), rest.q.w());
+  // First order in the tick while the friction turns (it has the direction of the tick's end): over 14 rad of turning the angle lags by 0.1,
+  // and the place, which goes round with it, by as much; a tenth of that at 0.1 ms.
+  return {atMost("place of rest, error over way", (Vec2(rest.p.y(), rest.p.z()) - exact.p).norm() / exact.p.norm(), "-", 0.15),
+          atMost("angle at rest, error over angle", std::abs(std::remainder(exact.angle - angle, 2 * std::numbers::pi)) / exact.angle, "-",
+                 1e-2),
+          atMost("sliding ends before or after spinning by", 1e3 * std::abs(slid_until - spun_until), "ms", 4),
+          atMost("time of rest, relative error", std::abs(slid_until / exact.time - 1), "-", 1e-2)};
 }
 
 std::vector<Record> handover(MeasureContext& context) {
