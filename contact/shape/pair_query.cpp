@@ -28,7 +28,7 @@ double radiusOf(const Mesh& m) { return m.surface->boundingRadius(); }
 double radiusOf(const Convex& c) { return c.hull->boundingRadius(); }
 
 bool isSphere(const Shape& shape) { return std::holds_alternative<Sphere>(shape); }
-bool isFlatCylinder(const Shape& shape) { return std::holds_alternative<CylinderWithFlat>(shape); }
+bool isCylinder(const Shape& shape) { return std::holds_alternative<Cylinder>(shape) || std::holds_alternative<CylinderWithFlat>(shape); }
 bool isMesh(const Shape& shape) { return std::holds_alternative<Mesh>(shape); }
 bool isSupport(const Shape& shape) { return std::holds_alternative<HalfSpace>(shape) || std::holds_alternative<Dish>(shape); }
 
@@ -77,7 +77,7 @@ double boundingRadius(const Shape& shape) {
 bool pairIsSupported(const Shape& a, const Shape& b) {
   if (isSphere(a) || isSphere(b)) return true;
   if (isSupport(a) || isSupport(b)) return !(isSupport(a) && isSupport(b));
-  return !(isMesh(a) && isMesh(b)) && !isFlatCylinder(a) && !isFlatCylinder(b);
+  return !(isMesh(a) && isMesh(b)) && !isCylinder(a) && !isCylinder(b);
 }
 
 void preparePair(const Shape& a, const Shape& b) {

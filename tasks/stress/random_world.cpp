@@ -19,15 +19,13 @@ Quat anyRotation(Random& random) {
 }
 
 contact::Shape anyShape(Random& random, double size) {
-  switch (random.below(4)) {
+  switch (random.below(3)) {
     case 0:
       return contact::Sphere{size / 2};
     case 1:
       return contact::Box{size / 2 * Vec3(random.uniform(0.3, 1), random.uniform(0.3, 1), random.uniform(0.3, 1))};
-    case 2:
-      return contact::Capsule{size / 4, size / 4};
     default:
-      return contact::Cylinder{size / 2, size * random.uniform(0.1, 0.5)};
+      return contact::Capsule{size / 4, size / 4};
   }
 }
 

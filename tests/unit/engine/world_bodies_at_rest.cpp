@@ -77,13 +77,6 @@ TEST(BodiesAtRest, TurnedBoxOnABox) {
              kStill);
 }
 
-TEST(BodiesAtRest, CylinderOnABoxAndACylinderOnThat) {
-  expectRest(
-      "cylinders",
-      {{Box{{0.03, 0.03, 0.02}}, 0.2, 0.04}, {contact::Cylinder{0.02, 0.02}, 0.1, 0.04}, {contact::Cylinder{0.015, 0.01}, 0.1, 0.02}},
-      kStill);
-}
-
 TEST(BodiesAtRest, CapsuleAcrossABox) {
   expectRest(
       "capsule",
