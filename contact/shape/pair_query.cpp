@@ -29,6 +29,7 @@ double radiusOf(const Convex& c) { return c.hull->boundingRadius(); }
 
 bool isSphere(const Shape& shape) { return std::holds_alternative<Sphere>(shape); }
 bool isCylinder(const Shape& shape) { return std::holds_alternative<Cylinder>(shape) || std::holds_alternative<CylinderWithFlat>(shape); }
+bool touchesMeshes(const Shape& shape) { return std::holds_alternative<Box>(shape) || std::holds_alternative<Capsule>(shape); }
 bool isMesh(const Shape& shape) { return std::holds_alternative<Mesh>(shape); }
 bool isSupport(const Shape& shape) { return std::holds_alternative<HalfSpace>(shape) || std::holds_alternative<Dish>(shape); }
 
@@ -77,7 +78,8 @@ double boundingRadius(const Shape& shape) {
 bool pairIsSupported(const Shape& a, const Shape& b) {
   if (isSphere(a) || isSphere(b)) return true;
   if (isSupport(a) || isSupport(b)) return !(isSupport(a) && isSupport(b));
-  return !(isMesh(a) && isMesh(b)) && !isCylinder(a) && !isCylinder(b);
+  if (isMesh(a) || isMesh(b)) return touchesMeshes(a) || touchesMeshes(b);
+  return !isCylinder(a) && !isCylinder(b);
 }
 
 void preparePair(const Shape& a, const Shape& b) {

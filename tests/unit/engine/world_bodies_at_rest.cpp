@@ -94,12 +94,9 @@ TEST(BodiesAtRest, HullsOnEachOther) {
   expectRest("hulls", {{hull, 0.3, 0.04}, {hull, 0.2, 0.04}, {hull, 0.1, 0.04}}, kStill);
 }
 
-TEST(BodiesAtRest, MeshOnABoxAndAHullOnTheMesh) {
+TEST(BodiesAtRest, MeshOnABoxAndABoxOnTheMesh) {
   const contact::Mesh mesh{contact::SmoothMesh::build(contact::box({0.025, 0.025, 0.02}))};
-  std::vector<Vec3> corners;
-  for (int i = 0; i < 8; ++i) corners.emplace_back(i & 1 ? 0.01 : -0.01, i & 2 ? 0.015 : -0.015, i & 4 ? 0.01 : -0.01);
-  const contact::Convex hull{contact::Polytope::hullOf(corners, "cuboid")};
-  expectRest("mesh", {{Box{{0.03, 0.03, 0.02}}, 0.2, 0.04}, {mesh, 0.2, 0.04}, {hull, 0.1, 0.02}}, kStill);
+  expectRest("mesh", {{Box{{0.03, 0.03, 0.02}}, 0.2, 0.04}, {mesh, 0.2, 0.04}, {Box{{0.01, 0.015, 0.01}}, 0.1, 0.02}}, kStill);
 }
 
 }  // namespace
