@@ -1,10 +1,11 @@
-// mesh_pairs: contact points of a mesh, also a concave one, with a convex solid.
+// mesh_pairs: contact points of a mesh, also a concave one, with a convex solid. pair_query.h lets boxes and capsules through: a hull's
+// contacts were missed in places, and a cylinder's nearest points are not exact where its rim meets an edge.
 //
 // Triangles near the other body are found through the mesh's tree; then the closest features decide, each with the direction that its
 // geometry gives:
 //   corner of the mesh on the solid     the solid's nearest point and normal there (closed_forms.h)
 //   corner of the solid on a triangle   the triangle's plane, where the corner lies over the triangle; which corners: those of the solid's
-//                                       facet that faces the triangle (convex_features.h), so a cylinder stands on its rim
+//                                       facet that faces the triangle (convex_features.h)
 //   edge on edge                        across both edges, where that direction lies between the normals on either side of both; against a
 //                                       solid the edge is a segment, and separation.h gives the direction
 // All are local, so that the depth of shallow overlap is right also in hollows; a feature that is deeper than kDeepest of the smaller body
