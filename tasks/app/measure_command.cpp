@@ -73,6 +73,7 @@ int runMeasurements(const std::vector<Measurement>& measurements, const MeasureO
   {
     Progress progress(title, kSteps * static_cast<std::int64_t>(chosen.size()));
     MeasureContext context;
+    context.thorough = options.thorough;
     context.interrupted = [&] { return flag.load(std::memory_order_relaxed); };
     for (; done < chosen.size() && !context.interrupted(); ++done) {
       const auto before = kSteps * static_cast<std::int64_t>(done);

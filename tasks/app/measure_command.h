@@ -14,6 +14,7 @@ namespace pincer::tasks {
 struct MeasureOptions {
   bool json = false;
   bool list = false;
+  bool thorough = false;  // see MeasureContext
   std::string only = {};  // a pattern (matches()); empty: all
 };
 

@@ -16,6 +16,7 @@ Exit code 1 if a bound isn't kept.
 Examples:
   pincer verify                     all of it, in about a minute
   pincer verify --only 'pinch/*'    what begins so
+  pincer verify --long              where a minute stands for ten, ten
   pincer verify --json              as records)";
 
 }  // namespace
@@ -24,6 +25,7 @@ void addVerifyCommand(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<MeasureOptions>();
   CLI::App* command = app.add_subcommand("verify", "The accuracy suite: scenes with exact answers");
   addMeasureOptions(*command, *options);
+  command->add_flag("--long", options->thorough, "Long versions where there are any: the stack for ten minutes of its time");
   command->footer(kVerifyExample);
   command->callback([options, &exit_code] { exit_code = runMeasurements(verifyMeasurements(), *options, "verify"); });
 }

@@ -22,4 +22,8 @@ double RollingIncline::acceleration() const {
 
 double RollingIncline::surfaceAcceleration() const { return rolls() ? acceleration() : 2.5 * mu * g * std::cos(theta); }
 
+RolledBall rolledBetweenPlates(double radius, const Vec3& way1, const Vec3& way2) {
+  return {0.5 * (way1 + way2), Vec3::UnitZ().cross(way2 - way1) / (2 * radius)};
+}
+
 }  // namespace pincer::exact

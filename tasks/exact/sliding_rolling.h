@@ -1,5 +1,6 @@
 // sliding_rolling: closed forms of boxes and spheres on floors and slopes. SI units; none shares code with the engine.
 #pragma once
+#include "contact/math.h"
 
 namespace pincer::exact {
 
@@ -47,6 +48,16 @@ struct RollingIncline {
   double acceleration() const;         // downhill [m/s^2]
   double surfaceAcceleration() const;  // r w' [m/s^2]
 };
+
+// --- Sphere rolled between two plates -----------------------------------------------------------------------------------------------------
+// Without slip on either, at its lowest and its highest point: v + w x (-R z) = v_1, v + w x (R z) = v_2, so
+//   v = (v_1 + v_2)/2,   w = z x (v_2 - v_1)/(2 R)   (none about z: points don't turn it)
+// Ways in place of velocities if both plates keep their directions.
+// Source: D. J. Montana, Int. J. Robotics Research 7(3) (1988) 17-32 (kinematics of rolling contact).
+struct RolledBall {
+  Vec3 way, turn;  // [m], rotation vector [rad]
+};
+RolledBall rolledBetweenPlates(double radius, const Vec3& way1, const Vec3& way2);
 
 // --- Sphere that spins on the spot --------------------------------------------------------------------------------------------------------
 // (2/5) m r^2 w' = -mu e m g, e the torsion radius: it stops after 2 r^2 w0/(5 mu e g).

@@ -18,6 +18,7 @@ namespace pincer::tasks {
 struct MeasureContext {
   std::function<void(double share)> progress = [](double) {};  // done of this measurement, 0 to 1
   std::function<bool()> interrupted = [] { return false; };
+  bool thorough = false;  // wanted: the long version, where there is one
 };
 
 struct Measurement {

@@ -78,10 +78,29 @@ std::vector<Record> eulersDisk(MeasureContext& context) {
           atMost("centre moved, over the radius", moved / 0.05, "-", 6e-2), atMost("energy gained, relative", energy_error, "-", 1e-6)};
 }
 
+// A ball between two plates that move past each other: at every tick half of their ways together, turned by half of their difference.
+std::vector<Record> betweenPlates(MeasureContext& context) {
+  Simulation sim(readBuiltinScene("ball_between_plates"));
+  const Vec3 start1 = sim.bodyPose(0).p, start2 = sim.bodyPose(3).p, start = sim.bodyPose(1).p;
+  double way_error = 0, turn_error = 0;
+  const RunCount run = runThrough(sim, context, [&] {
+    const exact::RolledBall exact = exact::rolledBetweenPlates(0.02, sim.bodyPose(0).p - start1, sim.bodyPose(3).p - start2);
+    way_error = std::max(way_error, (sim.bodyPose(1).p - start - exact.way).norm());
+    turn_error = std::max(turn_error, angleBetween(quatFromRotationVector(exact.turn), sim.bodyPose(1).q));
+  });
+  // Second order in the tick: the plates' way in a tick isn't quite the mean of their velocities at its ends. All is undone when they rest.
+  return {atMost("way, largest error", 1e6 * way_error, "um", 2e-2), atMost("turn, largest error", turn_error, "rad", 1e-6),
+          exactly("flagged ticks", static_cast<double>(run.flagged), "-", 0)};
+}
+
 }  // namespace
 
 std::vector<Measurement> verifyRolling() {
-  return {{"roll/slide-to-roll", slideToRoll}, {"roll/incline", incline}, {"roll/spin-down", spinDown}, {"roll/eulers-disk", eulersDisk}};
+  return {{"roll/slide-to-roll", slideToRoll},
+          {"roll/incline", incline},
+          {"roll/between-plates", betweenPlates},
+          {"roll/spin-down", spinDown},
+          {"roll/eulers-disk", eulersDisk}};
 }
 
 }  // namespace pincer::tasks

@@ -16,6 +16,8 @@ std::vector<Measurement> verifySliding();
 std::vector<Measurement> verifyRolling();
 std::vector<Measurement> verifyFreeBodies();
 std::vector<Measurement> verifyToppling();
+std::vector<Measurement> verifyBouncing();
+std::vector<Measurement> verifyMasonry();
 std::vector<Measurement> verifyInvariance();
 
 }  // namespace pincer::tasks
