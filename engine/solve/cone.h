@@ -42,8 +42,8 @@ inline void setVector(double* v, int rows, double tangent_scale, const double* d
 inline void projectOntoCone(const double* y, int rows, double mu, double* p) {
   const double yT = std::sqrt(tangentNorm2(y, rows));
   const double yn = y[kNormalRow];
+  if (mu * yT <= -yn) return setVector(p, rows, 0, y, 0);  // in the polar cone; asked first: a pull without friction has yT = mu yn = 0
   if (yT <= mu * yn) return setVector(p, rows, 1, y, yn);  // inside
-  if (mu * yT <= -yn) return setVector(p, rows, 0, y, 0);  // in the polar cone
   const double normal = (yn + mu * yT) / (1 + mu * mu);    // yT > 0 here: the cases above cover yT = 0
   setVector(p, rows, mu * normal / yT, y, normal);
 }

@@ -15,8 +15,8 @@ double inverseMass(const engine::WorldModel& model, const engine::Side& side) {
 // Projection onto the cone |r_T| <= mu r_n, in the order (t1, t2, n).
 Vec3 ontoCone(const Vec3& r, double mu) {
   const double rT = r.head<2>().norm();
-  if (rT <= mu * r.z()) return r;
   if (mu * rT <= -r.z()) return Vec3::Zero();
+  if (rT <= mu * r.z()) return r;
   const double n = (r.z() + mu * rT) / (1 + mu * mu);
   return {mu * n * r.x() / rT, mu * n * r.y() / rT, n};
 }

@@ -42,6 +42,13 @@ RC_GTEST_PROP(Cone, SplitsAnyVectorIntoOrthogonalParts, (unsigned seed)) {
   RC_ASSERT(std::abs(p.dot(rest)) <= 8 * kRoundOff * s.size() * s.size());
 }
 
+// Without friction |y_T| = mu y_n = 0 holds for a pull too; it isn't in the cone.
+TEST(Cone, LetsGoOfAPullWithoutFriction) {
+  Vec4 p = Vec4::Ones();
+  projectOntoCone(Vec4(0, 0, -1e-12, 0).data(), 4, 0, p.data());
+  EXPECT_EQ(p, Vec4::Zero());
+}
+
 // Brute force: no point of the cone is closer.
 RC_GTEST_PROP(Cone, ProjectsOntoTheClosestPoint, (unsigned seed)) {
   tests::RandomScenes random(seed);
