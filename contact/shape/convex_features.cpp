@@ -65,6 +65,7 @@ void facet(const Capsule& c, const Vec3& d, Facet& f) {
   const double z = signOf(d.z()) * c.half_length;
   f.add({0, 0, z}, z < 0, 0);
   if (c.half_length > 0 && std::abs(d.z()) < kUpended * d.norm()) f.add({0, 0, -z}, z >= 0, 0);
+  f.line_radius = c.radius;
 }
 void strata(const Capsule& c, const Vec3&, Strata& s) {
   if (c.half_length > 0) s.addEdge(Vec3::UnitZ());
@@ -114,6 +115,8 @@ void addLine(const Vec2& p, double half_length, const Vec3& d, int name, Facet& 
   f.add({p.x(), p.y(), -z}, name + (z >= 0), name);
 }
 
+constexpr int kFlatEdge = 17;  // of an end, see above
+
 struct OutlinePoint {
   Vec2 p;
   int name;  // of the point; of the edge to the next as well
@@ -139,7 +142,11 @@ Vec3 inset(const Cylinder& c, const Vec3& d) {
 }
 void facet(const Cylinder& c, const Vec3& d, Facet& f) {
   Vec2 p = c.radius * unitOr(d.head<2>(), Vec2::UnitX());
-  if (!facesEnd(d)) return addLine(p, c.half_length, d, 64, f);
+  if (!facesEnd(d)) {
+    f.line_radius = c.radius;
+    return addLine(p, c.half_length, d, 64, f);
+  }
+  f.rim_radius = c.radius;
   std::array<OutlinePoint, kRimCorners> outline;
   for (int k = 0; k < kRimCorners; ++k, p = nextOnRim(p)) outline[static_cast<std::size_t>(k)] = {p, k};
   addEnd(outline, kRimCorners, c.half_length, d.z() > 0, f);
@@ -182,6 +189,7 @@ void cutEnd(const CylinderWithFlat& c, const Vec3& d, Facet& f) {
     if (rim[k].x() < c.flat_distance) outline[static_cast<std::size_t>(count++)] = {rim[k], static_cast<int>(k)};
   }
   outline[static_cast<std::size_t>(count++)] = {{c.flat_distance, -w}, 17};
+  f.rim_radius = c.radius;
   addEnd(outline, count, c.half_length, d.z() > 0, f);
 }
 
@@ -189,7 +197,10 @@ void cutWall(const CylinderWithFlat& c, const Vec3& d, Facet& f) {
   const double w = halfChord(c.radius, c.flat_distance);
   const double cosine = c.flat_distance / c.radius;  // of the flat's half angle
   const Vec2 u = unitOr(d.head<2>(), Vec2::UnitX());
-  if (u.x() <= cosine) return addLine(c.radius * u, c.half_length, d, 64, f);
+  if (u.x() <= cosine) {
+    f.line_radius = c.radius;
+    return addLine(c.radius * u, c.half_length, d, 64, f);
+  }
   if (u.x() < std::sqrt(0.5 * (1 + cosine))) return addLine({c.flat_distance, signOf(u.y()) * w}, c.half_length, d, u.y() < 0 ? 66 : 68, f);
   f.n = Vec3::UnitX();
   constexpr std::array<std::array<int, 2>, 4> loop = {{{1, 1}, {-1, 1}, {-1, -1}, {1, -1}}};
@@ -267,6 +278,38 @@ void strata(const Convex& c, const Vec3& d, Strata& s) {
   }
 }
 
+// --- how far a ray runs; t of p + t d
+
+// On the infinite round wall about the z axis.
+double wallReach(double radius, const Vec3& p, const Vec3& d) {
+  const Vec2 u = d.head<2>(), q = p.head<2>();
+  const double uu = u.squaredNorm(), uq = u.dot(q);
+  if (!(uu > 0)) return kInfinity;
+  return (std::sqrt(std::max(0.0, uq * uq - uu * (q.squaredNorm() - radius * radius))) - uq) / uu;
+}
+double planeReach(double along, double rate) { return rate > 0 ? along / rate : kInfinity; }
+double ballReach(double radius, const Vec3& p, const Vec3& d) {
+  const double along = d.dot(p);
+  return std::sqrt(std::max(0.0, along * along - p.squaredNorm() + radius * radius)) - along;
+}
+
+template <class Solid>
+double reach(const Solid& s, const Vec3& p, const Vec3& d) {
+  return d.dot(support(s, d) - p) + rounding(s);
+}
+double reach(const Capsule& c, const Vec3& p, const Vec3& d) {
+  const double t = wallReach(c.radius, p, d);
+  const double z = p.z() + t * d.z();
+  if (std::abs(z) <= c.half_length) return t;
+  return ballReach(c.radius, p - (z < 0 ? -c.half_length : c.half_length) * Vec3::UnitZ(), d);
+}
+double reach(const Cylinder& c, const Vec3& p, const Vec3& d) {
+  return std::min(wallReach(c.radius, p, d), planeReach(c.half_length - signOf(d.z()) * p.z(), std::abs(d.z())));
+}
+double reach(const CylinderWithFlat& c, const Vec3& p, const Vec3& d) {
+  return std::min(reach(Cylinder{c.radius, c.half_length}, p, d), planeReach(c.flat_distance - p.x(), d.x()));
+}
+
 template <class Solid>
 constexpr bool kConvex = !std::is_same_v<Solid, HalfSpace> && !std::is_same_v<Solid, Dish> && !std::is_same_v<Solid, Mesh>;
 
@@ -302,7 +345,35 @@ Vec3 insetOf(const Shape& shape, const Vec3& d) {
 }
 void facetOf(const Shape& shape, const Vec3& d, Facet& f) {
   f.count = 0;
+  f.line_radius = f.rim_radius = 0;
   onConvex(shape, [&](const auto& s) -> void { facet(s, d, f); });
+}
+
+// A point of the circle lies outside of one side of a polygon in it, the one that spans it. The flat's side spans none.
+void addRimCorner(const Vec2& towards, Facet& f) {
+  const double length = towards.norm();
+  if (!(length > 0) || f.count + 1 > Facet::kMost) return;
+  const Vec2 rim = f.rim_radius / length * towards;
+  const double up = f.n.z();
+  for (int i = 0; i < f.count; ++i) {
+    const FacetCorner& from = f.corners[static_cast<std::size_t>(i)];
+    const FacetCorner& next = f.corners[static_cast<std::size_t>((i + 1) % f.count)];
+    const Vec2 p = from.p.head<2>(), q = next.p.head<2>(), side = q - p;
+    if (!(up * cross(side, rim - p) < 0)) continue;
+    const bool is_flat = (from.edge & 31) == kFlatEdge;
+    const bool is_there = (rim - p).norm() < kStanding * f.rim_radius || (rim - q).norm() < kStanding * f.rim_radius;
+    if (is_flat || is_there || !(up * cross(side, towards - p) < 0)) return;
+    const auto at = f.corners.begin() + i + 1;
+    std::copy_backward(at, f.corners.begin() + f.count, f.corners.begin() + f.count + 1);
+    const auto name = static_cast<std::uint16_t>((from.vertex & 32) + 18 + f.count % 8);
+    *at = {{rim.x(), rim.y(), from.p.z()}, name, name};
+    ++f.count;
+    return;
+  }
+}
+
+double reachOf(const Shape& shape, const Vec3& p, const Vec3& d) {
+  return onConvex(shape, [&](const auto& s) -> double { return reach(s, p, d); });
 }
 void strataOf(const Shape& shape, const Vec3& d, Strata& found) {
   found.normal_count = found.edge_count = 0;

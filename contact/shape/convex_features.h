@@ -11,7 +11,7 @@
 //   insetOf    the same as supportOf, for a solid whose faces lie further in
 //
 // All in the solid's own frame. A round rim enters facets as kRimCorners points, the first in the direction of d: exact for tilting and
-// rolling; between them the outline runs up to 2 % of the radius inside of the circle. A rim whose disc faces along d to within 1e-6 rad has
+// rolling; between them the outline runs up to 2 % of the radius inside of the circle, but for where addRimCorner adds one. A rim whose disc faces along d to within 1e-6 rad has
 // no first direction but noise: there the corners are fixed in the body, the first at +x.
 // Shapes that aren't convex (half-space, dish, mesh) have no features: isConvex is false, and the functions must not be called.
 #pragma once
@@ -36,6 +36,8 @@ struct Facet {
   std::array<FacetCorner, kMost> corners;  // counter-clockwise seen from outside
   int count = 0;
   Vec3 n = Vec3::UnitZ();  // of the plane of a polygon, out of the solid; otherwise unused
+  double line_radius = 0;  // of a segment: of the round wall that it is a line of, or of the rounding about it [m]; 0: a sharp edge
+  double rim_radius = 0;   // of a polygon that stands for the end of a cylinder [m]; otherwise 0
 
   void add(const Vec3& p, int vertex, int edge) {
     if (count < kMost)
@@ -61,6 +63,12 @@ double roundingOf(const Shape& shape);
 Vec3 supportOf(const Shape& shape, const Vec3& d);
 Vec3 insetOf(const Shape& shape, const Vec3& d);
 void facetOf(const Shape& shape, const Vec3& d, Facet& facet);
+// To the polygon that stands for the end of a cylinder (rim_radius > 0), the rim's point in the direction of `towards`, seen from the axis
+// [m]; unless `towards` is within the polygon.
+void addRimCorner(const Vec2& towards, Facet& facet);
+// How far the ray from `p` along the unit vector `d` runs until it leaves a capsule or cylinder [m]; where it misses the wall, until it is
+// nearest to the axis. Of other solids, until the plane across d through their furthest point.
+double reachOf(const Shape& shape, const Vec3& p, const Vec3& d);
 void strataOf(const Shape& shape, const Vec3& d, Strata& strata);
 Mat3 bendOf(const Shape& shape, const Vec3& d);
 bool isRound(const Shape& shape);  // bendOf isn't always zero

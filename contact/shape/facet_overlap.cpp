@@ -24,19 +24,11 @@ struct FlatFacet {
   int count = 0;
   Vec2 x0 = Vec2::Zero(), slope = Vec2::Zero();
   double z0 = 0;
-  double line_radius = 0;  // of a segment: how far its solid is rounded about it
+  double line_radius = 0;  // as Facet's
 
   const FlatCorner& corner(int i) const { return corners[static_cast<std::size_t>(i)]; }
   double height(const Vec2& x) const { return z0 + slope.dot(x - x0); }
 };
-
-double crossOf(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
-
-double lineRadius(const Shape& shape) {
-  if (const auto* cylinder = std::get_if<Cylinder>(&shape)) return cylinder->radius;
-  if (const auto* cut = std::get_if<CylinderWithFlat>(&shape)) return cut->radius;
-  return roundingOf(shape);
-}
 
 struct View {
   Mat3 R;  // columns t1, t2, n
@@ -55,11 +47,8 @@ void makePoint(const Vec3& p, const View& view, FlatCorner named, FlatFacet& out
 
 // `sign` is the side of n that the facet faces: -1 for a's. Facets too steep to have a height over each place are reduced to their corner or
 // edge that reaches furthest.
-void flatten(const PosedSolid& solid, double sign, const View& view, std::uint32_t kind, double size, FlatFacet& out) {
+void flatten(const PosedSolid& solid, const Facet& facet, double sign, const View& view, std::uint32_t kind, double size, FlatFacet& out) {
   constexpr double kSteepest = 0.05;  // cosine between n and the facet's
-  Facet facet;
-  const Vec3 d = solid.inwards(sign * view.R.col(2));
-  facetOf(solid.shape, d, facet);
   const auto corner = [&](int i) -> const FacetCorner& { return facet.corners[static_cast<std::size_t>(i)]; };
   const auto named = [&](int i, int edge) -> FlatCorner {
     const std::uint32_t name = corner(i).vertex;
@@ -83,7 +72,7 @@ void flatten(const PosedSolid& solid, double sign, const View& view, std::uint32
     return;
   }
   makePoint(placeOf(0), view, named(0, 0), out);
-  out.line_radius = lineRadius(solid.shape);
+  out.line_radius = facet.line_radius;
   if (facet.count < 2) return;
   FlatCorner end = named(1, 0);
   end.x = view.across(placeOf(1));
@@ -97,7 +86,6 @@ void flatten(const PosedSolid& solid, double sign, const View& view, std::uint32
 struct Corner {
   Vec2 x;
   std::uint32_t feature;
-  double extra;  // gap beyond that of the facets' heights [m]
 };
 
 // At most: the corners of one facet, and two for each edge of the other.
@@ -106,27 +94,17 @@ struct Shared {
   std::array<Corner, kMostShared> corners;
   int count = 0;
 
-  void add(const Vec2& x, std::uint32_t feature, double extra = 0) {
-    if (count < kMostShared) corners[static_cast<std::size_t>(count++)] = {x, feature, extra};
+  void add(const Vec2& x, std::uint32_t feature) {
+    if (count < kMostShared) corners[static_cast<std::size_t>(count++)] = {x, feature};
   }
 };
-
-// Without roundings.
-double leastGap(const Shared& shared, const FlatFacet& fa, const FlatFacet& fb) {
-  double least = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < shared.count; ++i) {
-    const Corner& c = shared.corners[static_cast<std::size_t>(i)];
-    least = std::min(least, fa.height(c.x) - fb.height(c.x) + c.extra);
-  }
-  return least;
-}
 
 // How far `x` is to the left of the edge that begins at corner j of `f` [m].
 double leftOf(const FlatFacet& f, int j, const Vec2& x) {
   const Vec2& from = f.corner(j).x;
   const Vec2 edge = f.corner((j + 1) % f.count).x - from;
   const double length = edge.norm();
-  return length > 0 ? crossOf(edge, x - from) / length : 0;
+  return length > 0 ? cross(edge, x - from) / length : 0;
 }
 
 // A polygon being clipped: each edge belongs to the facet that is clipped, or lies on an edge of the clipping one.
@@ -192,27 +170,29 @@ void overlapSegments(const FlatFacet& fa, const FlatFacet& fb, double tolerance,
   constexpr double kParallel = 1e-6, kNearlyParallel = 0.3;  // sine
   const Vec2 a0 = fa.corner(0).x, b0 = fb.corner(0).x;
   const Vec2 a = fa.corner(1).x - a0, b = fb.corner(1).x - b0;
-  const double cross = crossOf(a, b), lengths = a.norm() * b.norm();
-  if (std::abs(cross) > kParallel * lengths) {
-    const double s = crossOf(b0 - a0, b) / cross, t = crossOf(b0 - a0, a) / cross;
+  const double sine = cross(a, b), lengths = a.norm() * b.norm();
+  if (std::abs(sine) > kParallel * lengths) {
+    const double s = cross(b0 - a0, b) / sine, t = cross(b0 - a0, a) / sine;
     const double slack_a = tolerance / a.norm(), slack_b = tolerance / b.norm();
     if (s >= -slack_a && s <= 1 + slack_a && t >= -slack_b && t <= 1 + slack_b)
       out.add(a0 + std::clamp(s, 0.0, 1.0) * a, featureOf(kCrossing, fa.corner(0).edge, fb.corner(0).edge));
   }
-  if (std::abs(cross) > kNearlyParallel * lengths) return;
-  const double curve = 2 * (fa.line_radius + fb.line_radius);
-  const auto addEnd = [&](const FlatCorner& end, const Vec2& from, const Vec2& line) {
+  if (std::abs(sine) > kNearlyParallel * lengths) return;
+  const double radii = fa.line_radius + fb.line_radius;
+  // `share`: of the way to the other line after which the two walls are as steep as each other.
+  const auto addEnd = [&](const FlatCorner& end, const Vec2& from, const Vec2& line, double share) {
     const double at = (end.x - from).dot(line) / line.squaredNorm();
     const double slack = tolerance / line.norm();
     if (at < -slack || at > 1 + slack) return;
-    const double beside = (end.x - from - at * line).norm();
-    const auto isSame = [&](const Corner& other) { return (other.x - end.x).norm() <= tolerance; };
-    if (beside > tolerance && !(curve > 0)) return;
-    if (std::none_of(out.corners.begin(), out.corners.begin() + out.count, isSame))
-      out.add(end.x, end.feature, curve > 0 ? beside * beside / curve : 0);
+    const Vec2 beside = from + at * line - end.x;
+    if (beside.norm() > tolerance + radii) return;
+    const Vec2 x = end.x + share * beside;
+    const auto isSame = [&](const Corner& other) { return (other.x - x).norm() <= tolerance; };
+    if (std::none_of(out.corners.begin(), out.corners.begin() + out.count, isSame)) out.add(x, end.feature);
   };
-  for (int i = 0; i < 2; ++i) addEnd(fa.corner(i), b0, b);
-  for (int i = 0; i < 2; ++i) addEnd(fb.corner(i), a0, a);
+  const double share_a = radii > 0 ? fa.line_radius / radii : 0.5;
+  for (int i = 0; i < 2; ++i) addEnd(fa.corner(i), b0, b, share_a);
+  for (int i = 0; i < 2; ++i) addEnd(fb.corner(i), a0, a, 1 - share_a);
 }
 
 void share(const FlatFacet& fa, const FlatFacet& fb, double tolerance, Shared& out) {
@@ -236,38 +216,91 @@ class KnownGaps {
   Vec3 n_;
 };
 
+// Heights of the two surfaces over a place: of polygons the plane's, over lines of round walls where the ray along n leaves the solid.
+class Surfaces {
+ public:
+  Surfaces(const PosedSolid& a, const PosedSolid& b, const FlatFacet& fa, const FlatFacet& fb, const View& view)
+      : a_(a), b_(b), fa_(fa), fb_(fb), view_(view) {}
+  double top(const Vec2& x) const { return height(a_, fa_, -1, x); }
+  double bottom(const Vec2& x) const { return height(b_, fb_, 1, x); }
+  double gap(const Vec2& x) const { return top(x) - bottom(x); }
+  Vec3 place(const Vec2& x, double z) const { return x.x() * view_.R.col(0) + x.y() * view_.R.col(1) + z * view_.R.col(2); }
+
+ private:
+  double height(const PosedSolid& solid, const FlatFacet& f, double sign, const Vec2& x) const {
+    const double z = f.height(x);
+    if (!(f.line_radius > 0)) return z + sign * roundingOf(solid.shape);
+    return z + sign * reachOf(solid.shape, solid.inwards(place(x, z) - solid.p), solid.inwards(sign * view_.R.col(2)));
+  }
+
+  const PosedSolid& a_;
+  const PosedSolid& b_;
+  const FlatFacet& fa_;
+  const FlatFacet& fb_;
+  const View& view_;
+};
+
+// Where what faces the end of a cylinder comes near the rim between two of its corners, one more is added.
+void reachOut(const PosedSolid& cylinder, const PosedSolid& other, const Facet& faced, const Vec3& d_W, Facet& end) {
+  if (!(end.rim_radius > 0)) return;
+  const auto seen = [&](const Vec3& p) -> Vec2 { return cylinder.inwards(p - cylinder.p).head<2>(); };
+  const Vec2 furthest = seen(other.support(d_W));
+  if (furthest.norm() < end.rim_radius) addRimCorner(furthest, end);
+  if (faced.rim_radius > 0) return addRimCorner(seen(other.p), end);
+  Vec2 nearest = Vec2::Constant(kInfinity);
+  for (int i = 0; i < faced.count; ++i) {
+    const Vec2 from = seen(other.place(faced.corners[static_cast<std::size_t>(i)].p));
+    const Vec2 side = seen(other.place(faced.corners[static_cast<std::size_t>((i + 1) % faced.count)].p)) - from;
+    const double t = side.squaredNorm() > 0 ? std::clamp(-from.dot(side) / side.squaredNorm(), 0.0, 1.0) : 0;
+    const Vec2 q = from + t * side;
+    if (q.squaredNorm() < nearest.squaredNorm()) nearest = q;
+  }
+  addRimCorner(nearest, end);
+}
+
+double leastGap(const Shared& shared, const Surfaces& surfaces) {
+  double least = kInfinity;
+  for (int i = 0; i < shared.count; ++i) least = std::min(least, surfaces.gap(shared.corners[static_cast<std::size_t>(i)].x));
+  return least;
+}
+
 }  // namespace
 
 bool overlapFacets(const PosedSolid& a, const PosedSolid& b, const Separation& along, double size, double margin, PairPoints& out) {
   const Vec3& n = along.n;
   const View view{frameFromNormal(n)};
+  Facet facet_a, facet_b;
+  facetOf(a.shape, a.inwards(-n), facet_a);
+  facetOf(b.shape, b.inwards(n), facet_b);
+  reachOut(a, b, facet_b, n, facet_a);
+  reachOut(b, a, facet_a, -n, facet_b);
   FlatFacet fa, fb;
-  flatten(a, -1, view, kCornerOfA, size, fa);
-  flatten(b, 1, view, kCornerOfB, size, fb);
+  flatten(a, facet_a, -1, view, kCornerOfA, size, fa);
+  flatten(b, facet_b, 1, view, kCornerOfB, size, fb);
+  const Surfaces surfaces(a, b, fa, fb, view);
+  const double least = along.gap - roundingOf(a.shape) - roundingOf(b.shape);
   Shared shared;
   bool found = false, exactly = false;
   for (double slack = kSame; slack < 2e-4 && !found; slack *= 10) {  // the direction may be right to round-off only
     shared.count = 0;
     share(fa, fb, slack * size, shared);
-    found = leastGap(shared, fa, fb) < along.gap + slack * size;
+    found = leastGap(shared, surfaces) < least + slack * size;
     exactly = exactly || (found && slack == kSame);
   }
   if (!found) {
-    const Vec2 xa = view.across(a.support(-n)), xb = view.across(b.support(n));
     shared.count = 0;
-    shared.add(0.5 * (xa + xb), featureOf(kSupports, 0, 0), along.gap - fa.height(0.5 * (xa + xb)) + fb.height(0.5 * (xa + xb)));
+    shared.add(view.across(0.5 * (a.support(-n) + b.support(n))), featureOf(kSupports, 0, 0));
   }
 
-  const double rounding_a = roundingOf(a.shape), rounding_b = roundingOf(b.shape);
   std::array<Vec3, kMostShared> points;
   std::array<double, kMostShared> gaps;
   std::array<std::uint32_t, kMostShared> features;
   for (int i = 0; i < shared.count; ++i) {
     const auto at = static_cast<std::size_t>(i);
     const Corner& c = shared.corners[at];
-    const double top = fa.height(c.x) - rounding_a, bottom = fb.height(c.x) + rounding_b;
-    gaps[at] = std::max(top - bottom + c.extra, along.gap - rounding_a - rounding_b);  // less is an effect of the slack
-    points[at] = c.x.x() * view.R.col(0) + c.x.y() * view.R.col(1) + 0.5 * (top + bottom) * n;
+    const double top = surfaces.top(c.x), bottom = surfaces.bottom(c.x);
+    gaps[at] = found ? std::max(top - bottom, least) : least;  // less is an effect of the slack
+    points[at] = surfaces.place(c.x, 0.5 * (top + bottom));
     features[at] = c.feature;
   }
   const auto count = static_cast<std::size_t>(shared.count);

@@ -3,11 +3,12 @@
 // The facet of A that faces along -n and that of B that faces along n, each a polygon, a segment or a point, are laid over each other along
 // n. What they share is a polygon again, whose corners are corners of A's facet, corners of B's, and crossings of their edges:
 //
-//   gap(x) = z_A(x) - z_B(x) - rounding_A - rounding_B     z  height along n of the facets' planes over the point x across n [m]
+//   gap(x) = z_A(x) - z_B(x)      z  height along n of the surfaces over the point x across n [m]
 //
-// This holds face on face, edge on face, edge on edge and corner on face alike; nothing is remembered from tick to tick. Two segments that
-// cross at a small angle, as cylinders side by side do, touch at the crossing, and at the ends of what they share when these are near:
-//   gap(end) = gap + l^2 / 2 (R_A + R_B)                   l  distance of the two lines across n [m], R radius of curvature [m]
+// where z is the plane of a polygon, and over a line of a round wall (capsules, cylinders) the wall itself: all points lie on both surfaces.
+// This holds face on face, edge on face, edge on edge and corner on face alike; nothing is remembered from tick to tick. Two walls side by
+// side whose lines cross at a small angle touch at the crossing, and near the ends of what they share, there where one is as steep as the
+// other. The end of a cylinder is a polygon of 16 corners, with more where the other body comes near the rim between two of them.
 // Of more than four points up to four are kept (point_choice.h). A point's feature is made of the names of corners and edges
 // (convex_features.h), so it stays while these touch. A corner of A counts as within B's facet up to kSame of the size outside of it: so
 // the corners of equal boxes on each other keep their names.

@@ -131,7 +131,7 @@ class MeshOnSolid {
     const Shape segment = Capsule{0, 0.5 * length};
     const PosedSolid edge{segment, frameFromNormal(e), middle};
     const double size = std::min(size_, length);
-    const Separation s = separate(edge, solid_, size);
+    const Separation s = separate(edge, solid_, size, nullptr);
     const double phi = s.gap - rounding_;
     if (!(phi < margin_ && phi > deepest_) || !EdgeSides(triangle, i).lieAbove(s.n)) return;
     PairPoints found;

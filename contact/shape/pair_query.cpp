@@ -28,7 +28,6 @@ double radiusOf(const Mesh& m) { return m.surface->boundingRadius(); }
 double radiusOf(const Convex& c) { return c.hull->boundingRadius(); }
 
 bool isSphere(const Shape& shape) { return std::holds_alternative<Sphere>(shape); }
-bool isCylinder(const Shape& shape) { return std::holds_alternative<Cylinder>(shape) || std::holds_alternative<CylinderWithFlat>(shape); }
 bool touchesMeshes(const Shape& shape) { return std::holds_alternative<Box>(shape) || std::holds_alternative<Capsule>(shape); }
 bool isMesh(const Shape& shape) { return std::holds_alternative<Mesh>(shape); }
 bool isSupport(const Shape& shape) { return std::holds_alternative<HalfSpace>(shape) || std::holds_alternative<Dish>(shape); }
@@ -79,7 +78,7 @@ bool pairIsSupported(const Shape& a, const Shape& b) {
   if (isSphere(a) || isSphere(b)) return true;
   if (isSupport(a) || isSupport(b)) return !(isSupport(a) && isSupport(b));
   if (isMesh(a) || isMesh(b)) return touchesMeshes(a) || touchesMeshes(b);
-  return !isCylinder(a) && !isCylinder(b);
+  return true;
 }
 
 void preparePair(const Shape& a, const Shape& b) {

@@ -6,10 +6,9 @@
 // |---|---|---|
 // | sphere and anything | nearest point; on a mesh, the smooth surface | closed_forms.h, smooth_mesh.h |
 // | solid and half-space or dish | extreme points; of a mesh, the corners of its hull | extreme_points.h |
-// | box, capsule, convex hull with each other | least overlap, then facets laid over each other | separation.h, facet_overlap.h |
+// | box, capsule, cylinder, hull with each other | least overlap, then facets laid over each other | separation.h, facet_overlap.h |
 // | mesh and box or capsule | closest features of its flat triangles | mesh_pairs.h |
-// Not yet: a mesh and a mesh or hull (a contact was missed in 1 of 20 random places), and cylinders against anything but spheres and
-// supports (where a rim meets an edge, 1 in 200 of their points was found off the surfaces).
+// Not yet: a mesh and a mesh, hull or cylinder (a contact was missed in 1 of 20 random places).
 // But for spheres, a mesh is felt by other bodies as its flat triangles: the bulge of its smooth surface between the corners, about e^2 k / 8
 // for edge length e [m] and curvature k [1/m], is not seen. (A sphere of 20 mm radius with edges of 5 mm sinks up to 0.16 mm deeper than its
 // smooth surface.)

@@ -14,6 +14,7 @@ struct PosedSolid {
   Vec3 inwards(const Vec3& v) const { return {R.col(0).dot(v), R.col(1).dot(v), R.col(2).dot(v)}; }
   Vec3 place(const Vec3& p_B) const { return p + outwards(p_B); }
   Vec3 support(const Vec3& d) const { return place(supportOf(shape, inwards(d))); }
+  Vec3 inset(const Vec3& d) const { return place(insetOf(shape, inwards(d))); }
 };
 
 }  // namespace pincer::contact

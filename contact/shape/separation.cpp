@@ -3,13 +3,18 @@
 #include <algorithm>
 #include <limits>
 
+#include "contact/shape/core_distance.h"
 #include "contact/shape/direction.h"
 
 namespace pincer::contact {
 namespace {
 
-constexpr double kEqual = 1e-12;  // of the size: a gap must be larger by this to win over an earlier candidate
+constexpr double kSameGap = 1e-13;    // of the size: round-off
+constexpr double kApart = 1e-8;       // of the size: solids that are apart by more have nearest points to trust
+constexpr double kMovedApart = 1e-2;  // of the size
+constexpr double kShallow = 1e-4;     // of the size: overlap out of which hardly more than one way leads
 
+// Kinks of gap: normals of faces, edges.
 struct Kinks {
   std::array<Vec3, 2 * Strata::kMost> normals;
   std::array<Vec3, Strata::kMost> edges_a, edges_b;
@@ -18,77 +23,112 @@ struct Kinks {
 
 class Search {
  public:
-  Search(const PosedSolid& a, const PosedSolid& b, double size)
-      : a_(a), b_(b), same_(kEqual * size), round_(isRound(a.shape) || isRound(b.shape)) {}
+  Search(const PosedSolid& a, const PosedSolid& b, double size) : a_(a), b_(b), size_(size), round_(isRound(a.shape) || isRound(b.shape)) {}
 
-  void start(const Vec3& n) { best_ = {n, gapAlong(a_, b_, n)}; }
-  void run() {
-    constexpr int kMostPasses = 3;  // each from what the last one found
-    if (needsClimbing()) climb();   // from the start itself: the kinks may lead to another hill
-    for (int pass = 0; pass < kMostPasses; ++pass) {
-      const double before = best_.gap;
-      tryKinks();
-      if (needsClimbing()) climb();
-      if (!(best_.gap > before)) break;
-    }
+  const Separation& best() const { return best_; }
+  bool isApart() const { return best_.gap > kApart * size_; }
+
+  void offer(const Vec3& n) {
+    const double gap = gapAlong(a_, b_, n);
+    if (gap > best_.gap) best_ = {n, gap};
   }
-  // Deep overlap has many ways out, of which EPA may find a long one: the centres' and the axes' are tried as well.
-  void tryAxes() {
+  // Whether the solids are apart; then the best is the greatest distance, but for rims.
+  bool tryNearestPoints() {
+    const Vec3 start = directionOf<Vec3>(a_.p - b_.p, Vec3::UnitZ()).n;
+    const CoreDistance d = distanceOfCores(a_, b_, Vec3::Zero(), start, size_);
+    if (d.apart) offer(d.v.normalized());
+    return d.apart && isApart();
+  }
+  void tryWaysOut() {
     offerBoth(directionOf<Vec3>(a_.p - b_.p, Vec3::UnitZ()).n);
     for (int i = 0; i < 3; ++i) {
       offerBoth(a_.R.col(i));
       offerBoth(b_.R.col(i));
     }
+    const CoreDistance inner = distanceOfInsets(a_, b_, best_.n, size_);
+    if (inner.apart) offer(inner.v.normalized());
+    improve();
+    if (best_.gap > -kShallow * size_) return;
+    const DirectionGuess way_out = guessWayOut(a_, b_, size_);
+    if (way_out.found) offer(way_out.n);
   }
-  void tryKinks() {
-    const Kinks kinks = kinksNear(best_.n);
-    for (int i = 0; i < kinks.normal_count; ++i) offer(kinks.normals[static_cast<std::size_t>(i)]);
-    for (int i = 0; i < kinks.edge_count_a; ++i) {
-      for (int j = 0; j < kinks.edge_count_b; ++j) {
-        offerAcross(kinks.edges_a[static_cast<std::size_t>(i)], kinks.edges_b[static_cast<std::size_t>(j)]);
-      }
+  void improve() {
+    constexpr int kMostSteps = 12;
+    for (int i = 0; i < kMostSteps; ++i) {
+      const bool apart = isApart();
+      const Vec3 shift = apart ? Vec3(Vec3::Zero()) : Vec3((kMovedApart * size_ - best_.gap) * best_.n);
+      const CoreDistance d = distanceOfCores(a_, b_, shift, best_.n, size_);
+      if (!d.apart) break;
+      const double before = best_.gap;
+      offer(d.v.normalized());
+      if (apart || !(best_.gap > before + (round_ ? kRoughly : kSameGap) * size_)) break;
     }
+    snapToFaces();
+    if (round_) polish();
   }
-  void climb() {
-    const Kinks kinks = kinksNear(best_.n);
-    climbFrom(best_.n, nullptr);
-    for (int i = 0; i < kinks.edge_count_a; ++i) climbFrom(best_.n, &kinks.edges_a[static_cast<std::size_t>(i)]);
-    for (int j = 0; j < kinks.edge_count_b; ++j) climbFrom(best_.n, &kinks.edges_b[static_cast<std::size_t>(j)]);
-  }
-  bool needsClimbing() const { return round_ || best_.gap > same_; }
-  const Separation& best() const { return best_; }
 
  private:
-  void offer(const Vec3& n) {
-    const double gap = gapAlong(a_, b_, n);
-    if (gap > best_.gap + same_) best_ = {n, gap};
-  }
+  static constexpr double kRoughly = 1e-6;
 
   void offerBoth(const Vec3& n) {
     offer(n);
     offer(-n);
   }
 
-  void offerAcross(const Vec3& e, const Vec3& f) {
+  // Wins over a direction that is better by round-off only: what lies flat on a face has the face's normal, to the last bit.
+  void prefer(const Vec3& n) {
+    const double gap = gapAlong(a_, b_, n);
+    if (gap > best_.gap - kSameGap * size_) best_ = {n, gap};
+  }
+
+  void snapToFaces() {
+    constexpr double kNear = 1e-4;  // [rad]
+    const Kinks kinks = kinksNear(best_.n, kNear, 0);
+    for (int i = 0; i < kinks.normal_count; ++i) prefer(kinks.normals[static_cast<std::size_t>(i)]);
+  }
+
+  void polish() {
+    constexpr double kNear = 0.02;  // [rad]
+    const Kinks kinks = kinksNear(best_.n, kNear, kNear);
+    for (int i = 0; i < kinks.normal_count; ++i) prefer(kinks.normals[static_cast<std::size_t>(i)]);
+    climbFrom(best_.n, nullptr);
+    for (int i = 0; i < kinks.edge_count_a; ++i) climbBeside(kinks.edges_a[static_cast<std::size_t>(i)]);
+    for (int j = 0; j < kinks.edge_count_b; ++j) climbBeside(kinks.edges_b[static_cast<std::size_t>(j)]);
+    for (int i = 0; i < kinks.edge_count_a; ++i) {
+      for (int j = 0; j < kinks.edge_count_b; ++j) {
+        preferAcross(kinks.edges_a[static_cast<std::size_t>(i)], kinks.edges_b[static_cast<std::size_t>(j)]);
+      }
+    }
+  }
+
+  // On the circle across an edge, and to both sides of it, where one or the other end of the edge decides.
+  void climbBeside(const Vec3& edge) {
+    constexpr double kBeside = 1e-4;  // [rad]
+    climbFrom(best_.n, &edge);
+    const Vec3 n = best_.n;
+    for (const double side : {-kBeside, kBeside}) climbFrom((n + side * edge).normalized(), nullptr);
+  }
+
+  void preferAcross(const Vec3& e, const Vec3& f) {
     constexpr double kParallel = 1e-6;  // sine
     const Vec3 n = e.cross(f);
     const double length = n.norm();
-    if (length > kParallel) offer(n.dot(best_.n) < 0 ? Vec3(n / -length) : Vec3(n / length));
+    if (length > kParallel) prefer(n.dot(best_.n) < 0 ? Vec3(n / -length) : Vec3(n / length));
   }
 
-  Kinks kinksNear(const Vec3& n) const {
-    constexpr double kNear = 0.5;  // cosine
+  // Faces whose normal, and edges whose circle is within these angles of n [rad].
+  Kinks kinksNear(const Vec3& n, double to_normal, double to_circle) const {
     Kinks kinks;
     Strata strata;
     const auto collect = [&](const PosedSolid& solid, double sign, std::array<Vec3, Strata::kMost>& edges, int& edge_count) {
       strataOf(solid.shape, solid.inwards(sign * n), strata);
       for (int i = 0; i < strata.normal_count; ++i) {
         const Vec3 normal = sign * solid.outwards(strata.normals[static_cast<std::size_t>(i)]);
-        if (normal.dot(n) > kNear) kinks.normals[static_cast<std::size_t>(kinks.normal_count++)] = normal;
+        if ((normal - n).squaredNorm() < to_normal * to_normal) kinks.normals[static_cast<std::size_t>(kinks.normal_count++)] = normal;
       }
       for (int i = 0; i < strata.edge_count; ++i) {
         const Vec3 edge = solid.outwards(strata.edges[static_cast<std::size_t>(i)]);
-        if (std::abs(edge.dot(n)) < 1 - kNear) edges[static_cast<std::size_t>(edge_count++)] = edge;
+        if (std::abs(edge.dot(n)) < to_circle) edges[static_cast<std::size_t>(edge_count++)] = edge;
       }
     };
     collect(b_, 1, kinks.edges_b, kinks.edge_count_b);
@@ -100,27 +140,26 @@ class Search {
     return isRound(s.shape) ? Mat3(s.R * bendOf(s.shape, s.inwards(d)) * s.R.transpose()) : Mat3(Mat3::Zero());
   }
 
-  // Newton on the sphere (edge: null) or on the circle across an edge; leaves where the gap has no maximum of that kind.
+  // Newton on the sphere (edge: null) or on the circle across an edge; leaves where the gap has no maximum of that kind. The gap tells the
+  // direction to the root of round-off only, so that the last steps are judged by their length.
   void climbFrom(Vec3 n, const Vec3* edge) {
-    constexpr int kMostSteps = 12;
-    constexpr double kSmallest = 1e-9, kLargest = 0.3;  // [rad]
+    constexpr int kMostSteps = 20;
+    constexpr double kSmallest = 1e-14, kLargest = 0.1;  // [rad]
     if (edge) n = (n - edge->dot(n) * *edge).normalized();
     double gap = gapAlong(a_, b_, n);
+    double last = std::numeric_limits<double>::infinity();
     for (int i = 0; i < kMostSteps; ++i) {
       const Vec3 step = newtonStep(n, gap, edge);
       const double length = step.norm();
-      if (!(length > kSmallest)) break;
-      Vec3 next = (n + std::min(1.0, kLargest / length) * step).normalized();
-      double next_gap = gapAlong(a_, b_, next);
-      for (int halving = 0; halving < 3 && !(next_gap > gap); ++halving) {
-        next = (n + next).normalized();
-        next_gap = gapAlong(a_, b_, next);
-      }
-      if (!(next_gap > gap)) break;
+      if (!(length > kSmallest && length < 0.9 * last)) break;
+      const Vec3 next = (n + std::min(1.0, kLargest / length) * step).normalized();
+      const double next_gap = gapAlong(a_, b_, next);
+      if (!(next_gap > gap - kSameGap * size_)) break;
       n = next;
       gap = next_gap;
+      last = length;
     }
-    if (gap > best_.gap + same_) best_ = {n, gap};
+    if (gap > best_.gap - kSameGap * size_) best_ = {n, gap};
   }
 
   // Zero where the gap isn't concave.
@@ -142,30 +181,27 @@ class Search {
 
   const PosedSolid& a_;
   const PosedSolid& b_;
-  double same_;
+  double size_;
   bool round_;
-  Separation best_;
+  Separation best_{Vec3::UnitZ(), -std::numeric_limits<double>::infinity()};
 };
 
 }  // namespace
 
 double gapAlong(const PosedSolid& a, const PosedSolid& b, const Vec3& n) { return n.dot(a.support(-n)) - n.dot(b.support(n)); }
 
-Separation separate(const PosedSolid& a, const PosedSolid& b, double size) {
-  constexpr double kApart = 1e-5, kOverlap = 1e-4;  // of the size, see the header
+Separation separate(const PosedSolid& a, const PosedSolid& b, double size, const Vec3* guess) {
+  constexpr double kDeep = 1e-2;  // of the size: overlap in which a guess may lead the wrong way
+  if (guess) {
+    Search search(a, b, size);
+    search.offer(*guess);
+    search.improve();
+    if (search.best().gap > -kDeep * size) return search.best();
+  }
   Search search(a, b, size);
-  const DirectionGuess first = guessDirection(a, b, size, Guess::kInset);
-  search.start(first.found ? first.n : directionOf<Vec3>(a.p - b.p, Vec3::UnitZ()).n);
-  if (!first.found) search.tryAxes();
-  search.run();
-  const double gap = search.best().gap;
-  if (gap < kApart * size && gap > -kOverlap * size) return search.best();
-  const DirectionGuess second = guessDirection(a, b, size, gap > 0 ? Guess::kApart : Guess::kOverlap);
-  if (!second.found) return search.best();
-  Search again(a, b, size);
-  again.start(second.n);
-  again.run();
-  return again.best().gap > gap ? again.best() : search.best();
+  if (!search.tryNearestPoints()) search.tryWaysOut();
+  search.improve();
+  return search.best();
 }
 
 // Half widths along each axis are sums of |R_ij| half_j; edges nearly parallel add no direction of their own.

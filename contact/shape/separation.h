@@ -4,17 +4,23 @@
 //
 // phi is the signed distance of the two: their distance where they are apart, the negative of the shortest way out where they overlap
 // (S. Cameron, R. Culley, ICRA 1986). gap(n) is a lower bound of it in every direction, so that of several candidates the largest is right
-// whoever proposed them. The maximum lies on a kink of gap in most contacts (a flat face: a point of the sphere of directions; a straight
-// edge: the circle across it) or, with round rims, where gap is smooth.
+// whoever proposed them.
 //
-// First Bullet's GJK on inset solids, which stay apart while the overlap is shallow (5 % of the least half width each): their direction is
-// right where flat faces meet, and to some tenths of a radian near edges and rims. The kinks near it are tried and, from the best, Newton's
-// method on the sphere and along the circles:
+// From a direction n0 one step leads to a better one: a is moved along n0 until the two are apart by a hundredth of their size, and
+//
+//   n1 = direction of the nearest points of the two (core_distance.h):   gap(n1) >= gap(n0), equal only where no small turn improves it
+//
+// (the nearest points of the moved solids are apart by d >= the hundredth = gap(n0) + t, so gap(n1) = d - t n0 . n1 >= gap(n0); it is the
+// convex-concave procedure of A. Yuille, A. Rangarajan, Neural Computation 15, 2003). Where flat faces or straight edges meet one step is
+// exact; solids that are apart aren't moved, and one step finds the greatest distance of all. The touching and overlapping, for which others need cores and
+// margins, are thereby no special case.
+// At round rims gap is smooth, and Newton's method ends the search, on the sphere and on the circles across straight edges:
 //   g = a - b, tangential part;  Hessian = -(h_A'' + h_B'') - gap 1;     h'' from bendOf (convex_features.h)
-// Solids that turn out to be apart by more than 1e-5 of their size are asked again by GJK as they are, those that overlap by more than 1e-4 by
-// EPA, and the search goes on from there. Between the two, where bodies rest, one of several ways out may be taken that is longer than the
-// shortest, by less than the overlap.
-// Error: round-off at kinks, the square of 1e-6 rad times the size where smooth.
+//
+// Without a guess the search begins from the nearest points, of solids that overlap from the best of: the nearest points of the solids inset
+// by 5 % of the least half width, the axes of both, the line of their origins, and Bullet's EPA. Deep overlap may end on one of several ways out that is longer than the
+// shortest.
+// Error: round-off.
 #pragma once
 #include "contact/shape/posed_solid.h"
 
@@ -28,21 +34,19 @@ struct Separation {
 // gap(n) for a unit `n`.
 double gapAlong(const PosedSolid& a, const PosedSolid& b, const Vec3& n);
 
-// The largest gap. `size` [m] is the order of magnitude of both. Allocates nothing, always ends; deep overlap gives a direction that leads
+// The largest gap. `size` [m] is the order of magnitude of both; `guess`: where to begin, or null. Allocates nothing, always ends; deep overlap gives a direction that leads
 // out, if not the shortest.
-Separation separate(const PosedSolid& a, const PosedSolid& b, double size);
+Separation separate(const PosedSolid& a, const PosedSolid& b, double size, const Vec3* guess);
 
 // The same for two boxes by trying all 15 kinks: exact where they overlap, and where a face or a pair of edges is nearest.
 // Source: S. Gottschalk, M. Lin, D. Manocha, "OBBTree", SIGGRAPH 1996, sec. 5.
 Separation separateBoxes(const PosedSolid& a, const PosedSolid& b);
 
-// What Bullet says: GJK on the inset solids or on the solids themselves, where they are apart; EPA where they overlap. `found` is false where
-// it has no answer.
-enum class Guess { kInset, kApart, kOverlap };
+// What Bullet's EPA says of solids that overlap. `found` is false where it has no answer.
 struct DirectionGuess {
   Vec3 n = Vec3::UnitZ();
   bool found = false;
 };
-DirectionGuess guessDirection(const PosedSolid& a, const PosedSolid& b, double size, Guess kind);
+DirectionGuess guessWayOut(const PosedSolid& a, const PosedSolid& b, double size);
 
 }  // namespace pincer::contact

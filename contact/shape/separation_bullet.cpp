@@ -1,4 +1,4 @@
-// Bullet's GJK and EPA, double precision, in units of the solids' size: its tolerances are absolute.
+// Bullet's EPA, double precision, in units of the solids' size: its tolerances are absolute.
 #include <BulletCollision/CollisionShapes/btConvexInternalShape.h>
 #include <BulletCollision/NarrowPhaseCollision/btGjkEpa2.h>
 
@@ -11,13 +11,13 @@ static_assert(sizeof(btScalar) == sizeof(double));
 
 class CoreShape final : public btConvexInternalShape {
  public:
-  CoreShape(const Shape& shape, double size, bool inset) : shape_(shape), per_size_(1 / size), inset_(inset) {
+  CoreShape(const Shape& shape, double size) : shape_(shape), per_size_(1 / size) {
     m_shapeType = CUSTOM_CONVEX_SHAPE_TYPE;
     m_collisionMargin = 0;
   }
   btVector3 localGetSupportingVertexWithoutMargin(const btVector3& d) const override {
     const Vec3 direction(d.x(), d.y(), d.z());
-    const Vec3 p = per_size_ * (inset_ ? insetOf(shape_, direction) : supportOf(shape_, direction));
+    const Vec3 p = per_size_ * supportOf(shape_, direction);
     return {p.x(), p.y(), p.z()};
   }
   btVector3 localGetSupportingVertex(const btVector3& d) const override { return localGetSupportingVertexWithoutMargin(d); }
@@ -30,7 +30,6 @@ class CoreShape final : public btConvexInternalShape {
  private:
   const Shape& shape_;
   double per_size_;
-  bool inset_;
 };
 
 btTransform transformOf(const PosedSolid& s, double size) {
@@ -44,16 +43,12 @@ Vec3 vectorOf(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
 
 }  // namespace
 
-DirectionGuess guessDirection(const PosedSolid& a, const PosedSolid& b, double size, Guess kind) {
-  constexpr double kApart = 1e-9;  // of the size: nearer than that a direction is noise
-  const btTransform X_a = transformOf(a, size), X_b = transformOf(b, size);
+DirectionGuess guessWayOut(const PosedSolid& a, const PosedSolid& b, double size) {
   const Vec3 between = a.inwards(a.p - b.p) / size;
   const btVector3 start(between.x(), between.y(), between.z());  // start and answer are in the frame of a
-  const CoreShape core_a(a.shape, size, kind == Guess::kInset), core_b(b.shape, size, kind == Guess::kInset);
+  const CoreShape core_a(a.shape, size), core_b(b.shape, size);
   btGjkEpaSolver2::sResults results;
-  const bool found = kind == Guess::kOverlap
-                         ? btGjkEpaSolver2::Penetration(&core_a, X_a, &core_b, X_b, start, results, false)
-                         : btGjkEpaSolver2::Distance(&core_a, X_a, &core_b, X_b, start, results) && results.distance > kApart;
+  const bool found = btGjkEpaSolver2::Penetration(&core_a, transformOf(a, size), &core_b, transformOf(b, size), start, results, false);
   const Vec3 n = vectorOf(results.normal);
   if (!found || !n.allFinite() || !(n.squaredNorm() > 0.5)) return {};
   return {a.outwards(n.normalized()), true};

@@ -73,7 +73,7 @@ Pose around(RandomNumbers& random, const Shape& a, const Shape& b, double gap) {
   Pose X_BA{rotation(random), 0.1 * direction(random)};
   for (int i = 0; i < 8; ++i) {
     const PosedSolid A{a, X_BA.q.toRotationMatrix(), X_BA.p}, B{b, Mat3::Identity(), Vec3::Zero()};
-    const Separation s = separate(A, B, 0.03);
+    const Separation s = separate(A, B, 0.03, nullptr);
     X_BA.p += (gap - s.gap + roundingOf(a) + roundingOf(b)) * s.n;
   }
   return X_BA;
@@ -115,7 +115,7 @@ TEST(ConvexPairs, NoDirectionPartsThemBetter) {
         const Pose X_BA = around(random, a.shape, b.shape, -random.uniform(1e-5, i < 4 ? 0.001 : 0.003));
         const PosedSolid A{a.shape, X_BA.q.toRotationMatrix(), X_BA.p}, B{b.shape, Mat3::Identity(), Vec3::Zero()};
         const bool boxes = std::holds_alternative<Box>(a.shape) && std::holds_alternative<Box>(b.shape);
-        const Separation s = boxes ? separateBoxes(A, B) : separate(A, B, 0.03);
+        const Separation s = boxes ? separateBoxes(A, B) : separate(A, B, 0.03, nullptr);
         double best = -1;
         for (int k = 0; k < 400; ++k) best = std::max(best, gapAlong(A, B, direction(random)));
         for (double reach = 0.3; reach > 1e-7; reach /= 2) {
@@ -127,10 +127,11 @@ TEST(ConvexPairs, NoDirectionPartsThemBetter) {
   }
 }
 
-// Each contact point lies midway between a point of a's surface and one of b's. Lines of round walls that nearly touch sideways are known
-// to second order in their distance only.
+// Each contact point lies midway between a point of a's surface and one of b's. But a corner beside the other's facet by less than 1e-6 of
+// the size counts as over it: that happens to 1 of some thousand.
 TEST(ConvexPairs, PointsLieBetweenTheTwoSurfaces) {
   RandomNumbers random(3);
+  int points_seen = 0, beside = 0;
   for (const NamedShape& a : solids()) {
     for (const NamedShape& b : solids()) {
       for (int i = 0; i < 20; ++i) {
@@ -139,12 +140,16 @@ TEST(ConvexPairs, PointsLieBetweenTheTwoSurfaces) {
         ASSERT_GE(points.count, 1) << a.name << " at " << b.name;
         for (int k = 0; k < points.count; ++k) {
           const PairPoint& p = points.points[static_cast<std::size_t>(k)];
-          ASSERT_LE(nearest(a.shape, X_BA.inverse() * (p.p_W + 0.5 * p.phi * p.n_W)), 1e-4) << a.name << " at " << b.name;
-          ASSERT_LE(nearest(b.shape, p.p_W - 0.5 * p.phi * p.n_W), 1e-4) << a.name << " at " << b.name;
+          const double off = std::max(std::abs(nearest(a.shape, X_BA.inverse() * (p.p_W + 0.5 * p.phi * p.n_W))),
+                                      std::abs(nearest(b.shape, p.p_W - 0.5 * p.phi * p.n_W)));
+          ++points_seen;
+          if (off > 1e-9) ++beside;
+          ASSERT_LE(off, 5e-8) << a.name << " at " << b.name;
         }
       }
     }
   }
+  EXPECT_LE(beside, points_seen / 1000);
 }
 
 // What may differ: an answer that is one of several equally good ones. So gaps are compared, and that the normals part as well.
@@ -208,7 +213,7 @@ TEST(ConvexPairs, HullsOfACubesCornersTouchAsCubes) {
 }
 
 TEST(ConvexPairs, ParallelRoundsTouchAtBothEndsOfTheirLine) {
-  for (const Shape& s : {Shape(Capsule{0.02, 0.03})}) {
+  for (const Shape& s : {Shape(Capsule{0.02, 0.03}), Shape(Cylinder{0.02, 0.03})}) {
     const PairPoints beside = collide(s, {Quat::Identity(), {0.04, 0, 0.01}}, s, Pose{}, 1e-3);
     ASSERT_EQ(beside.count, 2);
     EXPECT_NEAR((beside.points[0].p_W - beside.points[1].p_W).norm(), 0.05, 1e-15);

@@ -53,7 +53,7 @@ Pose around(RandomNumbers& random, const Shape& a, const Shape& b, double gap) {
   Pose X_BA{rotation(random), 0.1 * direction(random)};
   for (int i = 0; i < 8; ++i) {
     const PosedSolid A{a, X_BA.q.toRotationMatrix(), X_BA.p}, B{b, Mat3::Identity(), Vec3::Zero()};
-    const Separation s = separate(A, B, 0.03);
+    const Separation s = separate(A, B, 0.03, nullptr);
     X_BA.p += (gap - s.gap + roundingOf(a) + roundingOf(b)) * s.n;
   }
   return X_BA;

@@ -196,7 +196,8 @@ TEST(PairQuery, KnowsItsPairs) {
   for (const NamedShape& solid : sampleConvexSolids()) EXPECT_TRUE(pairIsSupported(HalfSpace{}, solid.shape)) << solid.name;
   for (const NamedShape& solid : sampleConvexSolids()) EXPECT_TRUE(pairIsSupported(solid.shape, Dish{0.1})) << solid.name;
   EXPECT_TRUE(pairIsSupported(Box{{1, 1, 1}}, Capsule{1, 1}));
-  EXPECT_FALSE(pairIsSupported(Box{{1, 1, 1}}, Cylinder{1, 1}));
+  EXPECT_TRUE(pairIsSupported(Box{{1, 1, 1}}, Cylinder{1, 1}));
+  EXPECT_TRUE(pairIsSupported(CylinderWithFlat{1, 1, 0.5}, Cylinder{1, 1}));
   EXPECT_FALSE(pairIsSupported(HalfSpace{}, Dish{0.1}));
   EXPECT_FALSE(pairIsSupported(HalfSpace{}, HalfSpace{}));
   EXPECT_EQ(collide(HalfSpace{}, Pose{}, Dish{0.1}, Pose{}).count, 0);

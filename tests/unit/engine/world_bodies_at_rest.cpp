@@ -84,6 +84,15 @@ TEST(BodiesAtRest, CapsuleAcrossABox) {
       kStill);
 }
 
+TEST(BodiesAtRest, CylindersStandingAndLying) {
+  const contact::Cylinder can{0.02, 0.02}, lid{0.03, 0.005};
+  const Quat lying(Eigen::AngleAxisd(M_PI / 2, Vec3::UnitY()));
+  expectRest("standing", {{can, 0.2, 0.04}, {lid, 0.1, 0.01}, {Box{{0.02, 0.03, 0.01}}, 0.1, 0.02}, {can, 0.1, 0.04}}, kStill);
+  expectRest("lying", {{Box{{0.03, 0.03, 0.02}}, 0.2, 0.04}, {contact::Cylinder{0.01, 0.02}, 0.05, 0.02, lying}}, kStill);
+  const contact::CylinderWithFlat cut{0.02, 0.015, 0.012};
+  expectRest("on its flat", {{cut, 0.2, 0.032, Quat(Eigen::AngleAxisd(M_PI / 2, Vec3::UnitY()))}}, kStill);
+}
+
 TEST(BodiesAtRest, HullsOnEachOther) {
   std::vector<Vec3> stone;
   for (const double y : {-0.02, 0.02}) {

@@ -1,0 +1,25 @@
+// core_distance: the nearest points of two convex solids' cores, by the method of Gilbert, Johnson and Keerthi.
+//
+//   v = argmin |x|,  x in (A + shift) - B        from b's nearest point to a's [m], in the axes of the world
+//
+// Source: E. Gilbert, D. Johnson, S. Keerthi, IEEE J. Robotics Automat. 4(2), 1988; nearest points of simplices after C. Ericson, Real-Time
+// Collision Detection (2005), sec. 5.1. Departure: of a triangle's inner points v is taken along the triangle's normal, which is exact to
+// round-off however slim it is. Solids made of corners end after finitely many steps with v exact to round-off; round ones when a step can
+// shorten v by no more than 1e-9 of it.
+#pragma once
+#include "contact/shape/posed_solid.h"
+
+namespace pincer::contact {
+
+struct CoreDistance {
+  Vec3 v = Vec3::Zero();
+  bool apart = false;  // false: the cores overlap, or are nearer than 1e-13 of `size`, and v says nothing
+};
+
+// `start`: a direction from b to a to begin with, unit. `size` [m] is the order of magnitude of both. Allocates nothing.
+CoreDistance distanceOfCores(const PosedSolid& a, const PosedSolid& b, const Vec3& shift, const Vec3& start, double size);
+
+// The same of the solids whose faces lie further in (insetOf).
+CoreDistance distanceOfInsets(const PosedSolid& a, const PosedSolid& b, const Vec3& start, double size);
+
+}  // namespace pincer::contact
