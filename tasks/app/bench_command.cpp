@@ -7,6 +7,7 @@
 #include "tasks/app/commands.h"
 #include "tasks/app/measure_command.h"
 #include "tasks/bench/contact_bench.h"
+#include "tasks/bench/engine/engine_bench.h"
 
 namespace pincer::tasks {
 namespace {
@@ -21,19 +22,24 @@ Examples:
   pincer bench contact --only stroke/creased --queries 1000000
   pincer bench contact --only shading --out out/bench)";
 
+constexpr const char* kEngineExample = R"(
+Scenes with exact answers, each at several steps: how far off, and what it costs (docs/benchmarks.md). Exit code 1 if a promise isn't kept.
+With --peers other engines run the same scenes in the same run, and each scene's records end with the ratios to the best of them.
+
+Examples:
+  pincer bench engine
+  pincer bench engine --only s4
+  pincer bench engine --peers --out out/bench
+  pincer bench engine --peers --long --only capsule)";
+
 struct BenchArguments {
   MeasureOptions measure;
   ContactBenchOptions contact;
+  EngineBenchOptions engine;
 };
 
-}  // namespace
-
-void addBenchCommand(CLI::App& app, int& exit_code) {
-  auto arguments = std::make_shared<BenchArguments>();
-  CLI::App* bench = app.add_subcommand("bench", "Measure costs and quality against what pincer promises");
-  bench->require_subcommand(1);
-  bench->footer("\nExample:\n  pincer bench contact --only cost");
-  CLI::App* contact = bench->add_subcommand("contact", "A finger on meshes: iterations, failures, continuity, errors, nanoseconds");
+void addContactBench(CLI::App& bench, const std::shared_ptr<BenchArguments>& arguments, int& exit_code) {
+  CLI::App* contact = bench.add_subcommand("contact", "A finger on meshes: iterations, failures, continuity, errors, nanoseconds");
   addMeasureOptions(*contact, arguments->measure);
   contact->add_option("--queries", arguments->contact.queries, "Queries per object")
       ->check(CLI::Range(1000, 100'000'000))
@@ -45,6 +51,31 @@ void addBenchCommand(CLI::App& app, int& exit_code) {
   contact->callback([arguments, &exit_code] {
     exit_code = runMeasurements(contactMeasurements(arguments->contact), arguments->measure, "bench contact");
   });
+}
+
+void addEngineBench(CLI::App& bench, const std::shared_ptr<BenchArguments>& arguments, int& exit_code) {
+  CLI::App* engine = bench.add_subcommand("engine", "Bodies with exact answers: error against cost, beside other engines");
+  addMeasureOptions(*engine, arguments->measure);
+  engine->add_option("--out", arguments->engine.out, "Directory for runs.csv, ratios.csv and a work-precision diagram per scene");
+  engine->add_flag("--peers", arguments->engine.peers, "Run other engines too (built with -DPINCER_PEERS=ON)");
+  engine->add_flag("--long", arguments->engine.whole, "Scenes of a minute last a minute, and 1000 spheres fall");
+  engine->add_option("--rounds", arguments->engine.race.rounds, "Rounds of timing; the least of them counts")
+      ->check(CLI::Range(1, 100))
+      ->capture_default_str();
+  engine->footer(kEngineExample);
+  engine->callback(
+      [arguments, &exit_code] { exit_code = runMeasurements(engineMeasurements(arguments->engine), arguments->measure, "bench engine"); });
+}
+
+}  // namespace
+
+void addBenchCommand(CLI::App& app, int& exit_code) {
+  auto arguments = std::make_shared<BenchArguments>();
+  CLI::App* bench = app.add_subcommand("bench", "Measure costs and quality against what pincer promises");
+  bench->require_subcommand(1);
+  bench->footer("\nExample:\n  pincer bench contact --only cost");
+  addContactBench(*bench, arguments, exit_code);
+  addEngineBench(*bench, arguments, exit_code);
 }
 
 }  // namespace pincer::tasks

@@ -51,6 +51,7 @@ TEST(CommandLine, HelpsEverywhereWithAnExample) {
                                                                                        {"plan"},
                                                                                        {"bench"},
                                                                                        {"bench", "contact"},
+                                                                                       {"bench", "engine"},
                                                                                        {"mesh"},
                                                                                        {"mesh", "info"},
                                                                                        {"mesh", "check"},
@@ -192,6 +193,27 @@ TEST(MeshCommand, MeasuresATetrahedron) {
   std::string program = "pincer", command = "sim", scene = kScenes + "s4_pinch.json";
   std::array<char*, 3> argv = {program.data(), command.data(), scene.data()};
   std::exit(runApp(3, argv.data()));
+}
+
+// Figures of the exact scene hold, whatever its times are here; files are written, one row per run.
+TEST(BenchEngine, MeasuresASceneAndWritesItsTables) {
+  const tests::TemporaryDirectory directory;
+  const Result r = run({"bench", "engine", "--only", "s2", "--rounds", "1", "--json", "--out", directory.path()});
+  const JsonValue records = parseJson(r.out, "stdout");
+  const JsonValue& error = records.array().at(0);
+  EXPECT_EQ(error.at("name").text(), "s2/slide-to-roll");
+  EXPECT_EQ(error.at("metric").text(), "pincer at 1 ms: position at 1 s, error");
+  EXPECT_TRUE(error.at("ok").boolean()) << r.out;
+  EXPECT_EQ(linesOf(tests::readFile(directory / "runs.csv")), 1 + 6 + 3);  // a ladder of six steps, three tolerances
+  EXPECT_TRUE(std::filesystem::exists(directory / "s2_slide-to-roll.png"));
+}
+
+TEST(BenchEngine, ListsItsScenes) {
+  const Result r = run({"bench", "engine", "--list"});
+  EXPECT_EQ(r.exit_code, kExitOk);
+  for (const char* name : {"s1/tumbling-box\n", "s6/mass-ratio-1e4\n", "s9/latency\n", "more/capsule-pinch-20x\n"}) {
+    EXPECT_TRUE(contains(r.out, name)) << r.out;
+  }
 }
 
 TEST(Interrupt, EndsARunCleanlyWithItsOwnExitCode) { EXPECT_EXIT(interruptARun(), ::testing::ExitedWithCode(kExitInterrupted), ""); }
