@@ -8,9 +8,6 @@
 namespace pincer::devices::premium {
 namespace {
 
-constexpr double l1 = kUpperLink;
-constexpr double l2 = kForeLink;
-
 // Table 2 of the source. Segments: a fore link, c the parallelogram's push rod, be and df the two driven capstan sectors with motors and
 // counterweights. Principal moments at each segment's centre [kg m^2].
 struct Segment {

@@ -6,9 +6,6 @@
 namespace pincer::devices::premium {
 namespace {
 
-constexpr double l1 = kUpperLink;
-constexpr double l2 = kForeLink;
-
 double reach(const Vec3& q) { return l1 * std::cos(q[1]) + l2 * std::sin(q[2]); }
 
 }  // namespace

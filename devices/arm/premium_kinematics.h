@@ -17,8 +17,8 @@
 
 namespace pincer::devices::premium {
 
-inline constexpr double kUpperLink = 0.215;  // l1 [m]
-inline constexpr double kForeLink = 0.170;   // l2 [m]
+inline constexpr double l1 = 0.215;  // upper link [m]
+inline constexpr double l2 = 0.170;  // fore link [m]
 
 // Stops of the joints [rad]. Their places are ours (the maker publishes only the workspace); they keep clear of the singular postures.
 struct JointLimits {

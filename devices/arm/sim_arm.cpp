@@ -5,29 +5,25 @@
 #include <limits>
 #include <stdexcept>
 
+#include "devices/sim_settings.h"
+
 namespace pincer::devices {
 namespace {
 
 using namespace premium;
 
-constexpr double kLongestStep = 0.5e-3;                // [s]
-constexpr double kRounding = 1e-9;                     // of sums of time steps [s]
-const Vec3 kLever(kUpperLink, kUpperLink, kForeLink);  // of each joint on the tip at the reset place [m]
-
-void require(bool ok, const char* field, double value, const char* range) {
-  if (ok) return;
-  throw std::invalid_argument(std::string("simulated arm: ") + field + " = " + std::to_string(value) + " is out of range " + range +
-                              ". Leave it out for the default.");
-}
+constexpr double kLongestStep = 0.5e-3;  // [s]
+const Vec3 kLever(l1, l1, l2);           // of each joint on the tip at the reset place [m]
 
 void check(const SimArmSettings& s) {
-  require(s.payload >= 0 && s.payload < 1, "payload", s.payload, "[0, 1) kg");
-  require(s.coulomb_friction >= 0 && s.coulomb_friction < 10, "coulomb_friction", s.coulomb_friction, "[0, 10) N");
-  require(s.viscous_friction >= 0 && s.viscous_friction < 100, "viscous_friction", s.viscous_friction, "[0, 100) N s/m");
-  require(s.encoder_step > 0 && s.encoder_step < 0.1, "encoder_step", s.encoder_step, "(0, 0.1) rad");
-  require(s.peak_force > 0 && s.peak_force < 1000, "peak_force", s.peak_force, "(0, 1000) N");
-  require(s.force_slew > 0 && std::isfinite(s.force_slew), "force_slew", s.force_slew, "(0, inf) N/s");
-  require(s.delay >= 0 && s.delay <= 4e-3, "delay", s.delay, "[0, 0.004] s");
+  requireSetting("simulated arm", s.payload >= 0 && s.payload < 1, "payload", s.payload, "[0, 1) kg");
+  requireSetting("simulated arm", s.coulomb_friction >= 0 && s.coulomb_friction < 10, "coulomb_friction", s.coulomb_friction, "[0, 10) N");
+  requireSetting("simulated arm", s.viscous_friction >= 0 && s.viscous_friction < 100, "viscous_friction", s.viscous_friction,
+                 "[0, 100) N s/m");
+  requireSetting("simulated arm", s.encoder_step > 0 && s.encoder_step < 0.1, "encoder_step", s.encoder_step, "(0, 0.1) rad");
+  requireSetting("simulated arm", s.peak_force > 0 && s.peak_force < 1000, "peak_force", s.peak_force, "(0, 1000) N");
+  requireSetting("simulated arm", s.force_slew > 0 && std::isfinite(s.force_slew), "force_slew", s.force_slew, "(0, inf) N/s");
+  requireSetting("simulated arm", s.delay >= 0 && s.delay <= 4e-3, "delay", s.delay, "[0, 0.004] s");
 }
 
 Vec3 startAngles(const SimArmSettings& s) {
@@ -80,7 +76,7 @@ SimArm::SimArm(const SimArmSettings& settings) : settings_(settings) {
   q_ = startAngles(settings);
   capabilities_.peak_force = settings.peak_force;
   capabilities_.continuous_force = 1.4;
-  capabilities_.resolution = settings.encoder_step * kUpperLink;
+  capabilities_.resolution = settings.encoder_step * l1;
   capabilities_.stiffness_limit = 3500;
   capabilities_.workspace_min_D = kWorkspaceMin_D;
   capabilities_.workspace_max_D = kWorkspaceMax_D;
@@ -104,7 +100,7 @@ void SimArm::commandForce(const Vec3& f_D) {
 }
 
 void SimArm::advance(double dt) {
-  const int steps = std::max(1, static_cast<int>(std::ceil(dt / kLongestStep - kRounding)));
+  const int steps = std::max(1, static_cast<int>(std::ceil(dt / kLongestStep - kTimeRounding)));
   for (int i = 0; i < steps; ++i) step(dt / steps);
   time_ += dt;
   takeSample();
@@ -157,7 +153,7 @@ void SimArm::step(double h) {
 
 void SimArm::driveMotors(double h) {
   int due = 0;
-  while (due < pending_count_ && pending_[due].wait <= kRounding) tau_wanted_ = pending_[due++].tau;
+  while (due < pending_count_ && pending_[due].wait <= kTimeRounding) tau_wanted_ = pending_[due++].tau;
   for (int i = due; i < pending_count_; ++i) pending_[i - due] = {pending_[i].tau, pending_[i].wait - h};
   pending_count_ -= due;
   const Vec3 most = settings_.force_slew * h * kLever;

@@ -31,15 +31,15 @@ struct HandPull {
 };
 
 struct SimArmSettings {
-  std::string serial = "sim";                        // tells two arms apart
-  Vec3 start_D = Vec3::Zero();                       // where the tip is at time 0 [m], within reach
-  double payload = 0.045;                            // carried at the tip [kg]: a 2-DOF contact location display (Doxon 2014, ch. 4)
-  double coulomb_friction = 0.04;                    // at the reset place [N], per axis
-  double viscous_friction = 0.05;                    // at the reset place [N s/m] (ours)
-  double encoder_step = 3e-5 / premium::kUpperLink;  // of a joint angle [rad]: 0.03 mm at the tip
-  double peak_force = 8.5;                           // at the reset place [N]
-  double force_slew = 20000;                         // at the reset place [N/s]: 8.5 N in 0.4 ms, the motors' inductance (ours)
-  double delay = 0.5e-3;                             // of a command [s], 0..4 ms (ours)
+  std::string serial = "sim";                // tells two arms apart
+  Vec3 start_D = Vec3::Zero();               // where the tip is at time 0 [m], within reach
+  double payload = 0.045;                    // carried at the tip [kg]: a 2-DOF contact location display (Doxon 2014, ch. 4)
+  double coulomb_friction = 0.04;            // at the reset place [N], per axis
+  double viscous_friction = 0.05;            // at the reset place [N s/m] (ours)
+  double encoder_step = 3e-5 / premium::l1;  // of a joint angle [rad]: 0.03 mm at the tip
+  double peak_force = 8.5;                   // at the reset place [N]
+  double force_slew = 20000;                 // at the reset place [N/s]: 8.5 N in 0.4 ms, the motors' inductance (ours)
+  double delay = 0.5e-3;                     // of a command [s], 0..4 ms (ours)
   premium::JointLimits limits = {};
 };
 

@@ -6,27 +6,23 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "devices/sim_settings.h"
+
 namespace pincer::devices {
 namespace {
 
-constexpr double kTick = 0.5e-3;    // of the firmware [s]
-constexpr int kTicksPerFrame = 4;   // commands at 500 Hz
-constexpr double kRounding = 1e-9;  // of sums of time steps [s]
-
-void require(bool ok, const char* field, double value, const char* range) {
-  if (ok) return;
-  throw std::invalid_argument(std::string("simulated CLD: ") + field + " = " + std::to_string(value) + " is out of range " + range +
-                              ". Leave it out for the default.");
-}
+constexpr double kTick = 0.5e-3;   // of the firmware [s]
+constexpr int kTicksPerFrame = 4;  // commands at 500 Hz
 
 void check(const SimCldSettings& s) {
-  require(s.reach.minCoeff() > 0 && s.reach.maxCoeff() < 0.1, "reach", s.reach.minCoeff(), "(0, 0.1) m");
-  require(s.speed > 0 && s.speed < 10, "speed", s.speed, "(0, 10) m/s");
-  require(s.natural_frequency > 0 && s.natural_frequency < 500, "natural_frequency", s.natural_frequency, "(0, 500) Hz");
-  require(s.damping_ratio > 0 && s.damping_ratio < 1, "damping_ratio", s.damping_ratio, "(0, 1)");
-  require(s.play.minCoeff() >= 0 && s.play.maxCoeff() < 0.1, "play", s.play.minCoeff(), "[0, 0.1) m");
-  require(s.resolution > 0 && s.resolution < 0.01, "resolution", s.resolution, "(0, 0.01) m");
-  require(s.delay >= 0 && s.delay <= kTick * kTicksPerFrame, "delay", s.delay, "[0, 0.002] s");
+  requireSetting("simulated CLD", s.reach.minCoeff() > 0 && s.reach.maxCoeff() < 0.1, "reach", s.reach.minCoeff(), "(0, 0.1) m");
+  requireSetting("simulated CLD", s.speed > 0 && s.speed < 10, "speed", s.speed, "(0, 10) m/s");
+  requireSetting("simulated CLD", s.natural_frequency > 0 && s.natural_frequency < 500, "natural_frequency", s.natural_frequency,
+                 "(0, 500) Hz");
+  requireSetting("simulated CLD", s.damping_ratio > 0 && s.damping_ratio < 1, "damping_ratio", s.damping_ratio, "(0, 1)");
+  requireSetting("simulated CLD", s.play.minCoeff() >= 0 && s.play.maxCoeff() < 0.1, "play", s.play.minCoeff(), "[0, 0.1) m");
+  requireSetting("simulated CLD", s.resolution > 0 && s.resolution < 0.01, "resolution", s.resolution, "(0, 0.01) m");
+  requireSetting("simulated CLD", s.delay >= 0 && s.delay <= kTick * kTicksPerFrame, "delay", s.delay, "[0, 0.002] s");
 }
 
 double rounded(double value, double step) { return std::floor(value / step + 0.5) * step; }
@@ -64,7 +60,7 @@ bool SimCld::command(const TactileCommand& command) {
 void SimCld::advance(double dt) {
   time_ += dt;
   owed_ += dt;
-  while (owed_ >= kTick - kRounding) {
+  while (owed_ >= kTick - kTimeRounding) {
     tick();
     owed_ -= kTick;
   }

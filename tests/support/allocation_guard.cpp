@@ -16,7 +16,7 @@
 #define PINCER_COUNTS_ALLOCATIONS 1
 #endif
 
-namespace pincer::testing {
+namespace pincer::tests {
 namespace {
 thread_local std::int64_t count = 0;
 }
@@ -28,7 +28,7 @@ bool allocationsAreCounted() { return PINCER_COUNTS_ALLOCATIONS != 0; }
 namespace {
 void countOne() { ++count; }
 }  // namespace
-}  // namespace pincer::testing
+}  // namespace pincer::tests
 
 // The C library lets a program replace its allocator; these count and pass on. operator new calls malloc.
 extern "C" {
@@ -38,27 +38,27 @@ void* __libc_realloc(void*, std::size_t);
 void* __libc_memalign(std::size_t, std::size_t);
 
 void* malloc(std::size_t size) {
-  pincer::testing::countOne();
+  pincer::tests::countOne();
   return __libc_malloc(size);
 }
 void* calloc(std::size_t n, std::size_t size) {
-  pincer::testing::countOne();
+  pincer::tests::countOne();
   return __libc_calloc(n, size);
 }
 void* realloc(void* p, std::size_t size) {
-  pincer::testing::countOne();
+  pincer::tests::countOne();
   return __libc_realloc(p, size);
 }
 void* aligned_alloc(std::size_t alignment, std::size_t size) {
-  pincer::testing::countOne();
+  pincer::tests::countOne();
   return __libc_memalign(alignment, size);
 }
 int posix_memalign(void** p, std::size_t alignment, std::size_t size) {
-  pincer::testing::countOne();
+  pincer::tests::countOne();
   *p = __libc_memalign(alignment, size);
   return *p ? 0 : ENOMEM;
 }
 }
-namespace pincer::testing {
+namespace pincer::tests {
 #endif
-}  // namespace pincer::testing
+}  // namespace pincer::tests

@@ -2,7 +2,7 @@
 #pragma once
 #include <cstdint>
 
-namespace pincer::testing {
+namespace pincer::tests {
 
 // Allocations by this thread since it started. Always 0 under AddressSanitizer and ThreadSanitizer, which own the allocator.
 std::int64_t allocationCount();
@@ -10,4 +10,4 @@ std::int64_t allocationCount();
 // Whether this build can count.
 bool allocationsAreCounted();
 
-}  // namespace pincer::testing
+}  // namespace pincer::tests

@@ -5,7 +5,7 @@
 
 #include "tasks/experiments/record_sink.h"
 
-namespace pincer::testing {
+namespace pincer::tests {
 
 struct MemorySink final : tasks::RecordSink {
   explicit MemorySink(std::size_t samples_to_expect = 0) { samples.reserve(samples_to_expect); }
@@ -25,4 +25,4 @@ struct MemorySink final : tasks::RecordSink {
   std::vector<tasks::TrialRecord> trials;
 };
 
-}  // namespace pincer::testing
+}  // namespace pincer::tests

@@ -4,7 +4,7 @@
 
 #include "grasp/step.h"
 
-namespace pincer::testing {
+namespace pincer::tests {
 
 inline engine::BodyStart startAt(const Vec3& p_WB, const Vec3& v_W = Vec3::Zero(), const Vec3& w_W = Vec3::Zero()) {
   return {{Quat::Identity(), p_WB}, v_W, w_W};
@@ -41,4 +41,4 @@ inline std::vector<grasp::FingerInput> squeezing(double squeeze, double lift = 0
   return inputs;
 }
 
-}  // namespace pincer::testing
+}  // namespace pincer::tests

@@ -13,9 +13,9 @@ namespace {
 
 using tests::RandomNumbers;
 
-constexpr double kFinger = 0.02;  // [m] of the discrimination experiment
-constexpr double kRadius = 0.1;   // [m] of its arc
-const SurfaceVariant kVariants[] = {SurfaceVariant::smooth, SurfaceVariant::facet, SurfaceVariant::force};
+constexpr double kCurveFinger = 0.02;  // [m] of the discrimination experiment
+constexpr double kArcRadius = 0.1;     // [m] of its arc
+const SurfaceVariant kCurveVariants[] = {SurfaceVariant::smooth, SurfaceVariant::facet, SurfaceVariant::force};
 
 Vec2 onCircle(double radius, double angle) { return radius * Vec2(-std::sin(angle), std::cos(angle)); }  // counter-clockwise from +y
 double angleOf(const Vec2& p) { return std::atan2(-p.x(), p.y()); }
@@ -55,17 +55,17 @@ struct Sweep {
 // between tan(b)/b cos(b) and tan(b)/b / cos(b); the former is exact at the segments' middles and off by 1e-7 R between.
 TEST(Curve, FiveSegmentsOnAnArcAreThatArc) {
   const double b = 0.09;
-  const Curve curve(arcPolygon(kRadius, 2 * b, 0.9), SurfaceVariant::smooth);
+  const Curve curve(arcPolygon(kArcRadius, 2 * b, 0.9), SurfaceVariant::smooth);
   Sweep radius, curvature;
   const int n = 2000;
   const double reach = 0.9 / 2 - b;  // the outer halves of the outer segments are straight
   CurveContact last;
   for (int i = 0; i <= n; ++i) {
-    const CurveContact c = queryFresh(curve, onCircle(kRadius + kFinger - 0.002, reach * (2.0 * i / n - 1)), kFinger);
-    radius.add(c.p_BS.norm() / kRadius - 1);
+    const CurveContact c = queryFresh(curve, onCircle(kArcRadius + kCurveFinger - 0.002, reach * (2.0 * i / n - 1)), kCurveFinger);
+    radius.add(c.p_BS.norm() / kArcRadius - 1);
     if (i > 0) {
       const double turned = angleOf(c.n_B) - angleOf(last.n_B), moved = (c.p_BS - last.p_BS).norm();
-      curvature.add(turned / moved * kRadius - 1);
+      curvature.add(turned / moved * kArcRadius - 1);
     }
     last = c;
   }
@@ -79,11 +79,11 @@ TEST(Curve, FiveSegmentsOnAnArcAreThatArc) {
 }
 
 TEST(Curve, AStraightPathIsItsLine) {
-  for (const SurfaceVariant variant : kVariants) {
+  for (const SurfaceVariant variant : kCurveVariants) {
     const Curve curve({{{0.05, 0}, {0.03, 0}, {-0.01, 0}, {-0.02, 0}, {-0.06, 0}}, false}, variant);
     for (int i = 0; i <= 100; ++i) {
       const Vec2 C(-0.06 + 0.0011 * i, 0.017);
-      const CurveContact c = queryFresh(curve, C, kFinger);
+      const CurveContact c = queryFresh(curve, C, kCurveFinger);
       ASSERT_NEAR(c.p_BS.x(), C.x(), 1e-17);
       ASSERT_NEAR(c.p_BS.y(), 0, 1e-17);
       ASSERT_NEAR(c.phi, -0.003, 1e-17);
@@ -102,7 +102,7 @@ TEST(Curve, ConvergesToAnEllipse) {
     for (int i = 0; i < 500; ++i) {
       const double s = 2 * M_PI * i / 500;
       const Vec2 p(a * std::cos(s), b * std::sin(s)), out = Vec2(b * std::cos(s), a * std::sin(s)).normalized();
-      const CurveContact c = queryFresh(curve, p + h * out, kFinger);
+      const CurveContact c = queryFresh(curve, p + h * out, kCurveFinger);
       place = std::max(place, (c.p_BS - p).norm());
       normal = std::max(normal, (c.n_B - out).norm());
     }
@@ -125,8 +125,8 @@ TEST(Curve, TheTangentLineIsThatOfTheRadialParameter) {
   for (int i = 0; i < 1000; ++i) {
     CurveTracker tracker;
     const Vec2 C = random.uniform(0.1, 0.2) * Vec2(std::cos(0.003 * i), std::sin(0.003 * i));
-    const CurveContact c = curve.queryCircle(C, kFinger, tracker);
-    ASSERT_LT((C - c.p_BS - (c.phi + kFinger) * c.n_B).norm(), 1e-16);
+    const CurveContact c = curve.queryCircle(C, kCurveFinger, tracker);
+    ASSERT_LT((C - c.p_BS - (c.phi + kCurveFinger) * c.n_B).norm(), 1e-16);
     if (tracker.cell == 0 || tracker.cell == 4) continue;
     ++bends;
     const auto v = static_cast<std::size_t>(tracker.cell);
@@ -170,7 +170,7 @@ TEST(Curve, AnyFingerOnAnyBlobFindsAContact) {
   RandomNumbers random(9);
   for (int i = 0; i < 200; ++i) {
     const Polyline path = blob(random);
-    const SurfaceVariant variant = kVariants[i % 3];
+    const SurfaceVariant variant = kCurveVariants[i % 3];
     const Curve curve(path, variant);
     CurveTracker tracker;
     for (int k = 0; k < 100; ++k) {
@@ -194,7 +194,7 @@ TEST(Curve, AnyFingerOnAnyBlobFindsAContact) {
 // only, tactile shading both. Steps of 1 um.
 TEST(Curve, ShadingRemovesTheJumpOnTheFinger) {
   const double r = 0.008, theta = 15 * kDegree, h = r - 0.001;
-  for (const SurfaceVariant variant : kVariants) {
+  for (const SurfaceVariant variant : kCurveVariants) {
     const Curve curve(arcPolygon(0.025, theta, 90 * kDegree), variant);
     CurveTracker tracker;
     double location = 0, direction = 0, depth = 0;
@@ -226,12 +226,12 @@ TEST(Curve, ShadingRemovesTheJumpOnTheFinger) {
 // Morgenbesser & Srinivasan: at a quarter of a segment the direction is a quarter of the way between its vertices' normals.
 TEST(Curve, ForceShadingInterpolatesTheNormal) {
   const double theta = 10 * kDegree;
-  const Polyline arc = arcPolygon(kRadius, theta, 50 * kDegree);
+  const Polyline arc = arcPolygon(kArcRadius, theta, 50 * kDegree);
   const Curve curve(arc, SurfaceVariant::force);
   const Vec2 a = arc.vertices[2], b = arc.vertices[3], n = (a + b).normalized();
   for (const double s : {0.0, 0.25, 0.5, 0.9}) {
     const Vec2 foot = (1 - s) * a + s * b;
-    const CurveContact c = queryFresh(curve, foot + 0.019 * n, kFinger);
+    const CurveContact c = queryFresh(curve, foot + 0.019 * n, kCurveFinger);
     EXPECT_LT((c.p_BS - foot).norm(), 1e-15);
     EXPECT_NEAR(c.phi, -0.001, 1e-15) << "depth of the flat segment";
     EXPECT_LT((c.n_B - ((1 - s) * a + s * b).normalized()).norm(), 1e-14) << "the vertices' normals are radial here";
@@ -277,7 +277,7 @@ TEST(Curve, KnowsNoPlaceDirectionOrScale) {
   RandomNumbers random(4);
   for (int i = 0; i < 300; ++i) {
     const Polyline path = blob(random);
-    const SurfaceVariant variant = kVariants[i % 3];
+    const SurfaceVariant variant = kCurveVariants[i % 3];
     const double angle = random.uniform(0, 6.28), scale = std::pow(10.0, random.uniform(-3, 3));
     const Eigen::Rotation2Dd R(angle);
     const Vec2 shift = 0.1 * Vec2(random.uniform(-1, 1), random.uniform(-1, 1));
@@ -326,12 +326,12 @@ TEST(Curve, RefusesTheVariantThatExistsForMeshesOnly) {
 }
 
 TEST(Curve, AllocatesNothing) {
-  if (!pincer::testing::allocationsAreCounted()) GTEST_SKIP() << "this build can't count allocations";
+  if (!pincer::tests::allocationsAreCounted()) GTEST_SKIP() << "this build can't count allocations";
   const Curve curve(ellipse(0.05, 0.03, 40), SurfaceVariant::smooth);
   CurveTracker tracker;
-  const std::int64_t before = pincer::testing::allocationCount();
+  const std::int64_t before = pincer::tests::allocationCount();
   for (int i = 0; i < 200; ++i) curve.queryCircle(0.06 * Vec2(std::cos(i), std::sin(i)), 0.02, tracker);
-  EXPECT_EQ(pincer::testing::allocationCount(), before);
+  EXPECT_EQ(pincer::tests::allocationCount(), before);
 }
 
 }  // namespace

@@ -1,12 +1,13 @@
 #include <gtest/gtest.h>
 
 #include "contact/mesh/connectivity.h"
+#include "tests/support/constants.h"
 #include "tests/support/mesh_generators.h"
 
 namespace pincer::contact {
 namespace {
 
-constexpr double kCreaseAngle = 0.7;
+using tests::kCreaseAngle;
 
 TEST(Connectivity, NeighboursAgree) {
   const TriangleMesh mesh = torus(0.03, 0.012, 12, 8);

@@ -8,10 +8,13 @@
 
 #include "contact/mesh/mesh_reader.h"
 #include "contact/mesh/mesh_report.h"
+#include "tests/support/inside_out.h"
 #include "tests/support/mesh_generators.h"
 
 namespace pincer::contact {
 namespace {
+
+using tests::insideOut;
 
 int countOf(const RepairedMesh& repaired, const std::string& name) {
   for (const MeshChange& change : repaired.changes) {
@@ -55,11 +58,6 @@ void append(TriangleMesh& mesh, const TriangleMesh& other, const Vec3& offset) {
     for (auto& v : t) v += first;
     mesh.triangles.push_back(t);
   }
-}
-
-TriangleMesh insideOut(TriangleMesh mesh) {
-  for (auto& t : mesh.triangles) std::swap(t[0], t[1]);
-  return mesh;
 }
 
 void expectClosedLike(const TriangleMesh& original, const RepairedMesh& repaired) {

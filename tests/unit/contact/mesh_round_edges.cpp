@@ -7,12 +7,15 @@
 #include "contact/mesh/round_edges.h"
 #include "contact/surface/smooth_mesh.h"
 #include "contact/surface/surface_net.h"
+#include "tests/support/inside_out.h"
 #include "tests/support/mesh_generators.h"
 
 namespace pincer::contact {
 namespace {
 
-constexpr double kRadius = 1.5e-3;
+using tests::insideOut;
+
+constexpr double kEdgeRadius = 1.5e-3;
 constexpr double kHalfCube = 0.0283;  // the dissertation's cube of 56.6 mm
 
 // The solid over a convex polygon, counter-clockwise in the plane z = 0, from z = -half_height to half_height.
@@ -67,11 +70,6 @@ TriangleMesh tetrahedron(double edge) {
   mesh.source = "tetrahedron";
   mesh.vertices = {{h, h, h}, {h, -h, -h}, {-h, h, -h}, {-h, -h, h}};
   mesh.triangles = {{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}};
-  return mesh;
-}
-
-TriangleMesh insideOut(TriangleMesh mesh) {
-  for (auto& t : mesh.triangles) std::swap(t[0], t[1]);
   return mesh;
 }
 
@@ -143,12 +141,12 @@ void expectSound(const RoundedMesh& rounded) {
 // Vertices are exact. Between them the patches over a corner's 16 triangles leave the ball by a thousandth of its radius.
 TEST(RoundEdges, ACubeBecomesTheRoundedBox) {
   const Vec3 half = Vec3::Constant(kHalfCube);
-  const RoundedMesh rounded = roundEdges(box(half), {.radius = kRadius});
+  const RoundedMesh rounded = roundEdges(box(half), {.radius = kEdgeRadius});
   EXPECT_EQ(rounded.creases, 12);
   EXPECT_EQ(rounded.corners, 8);
   EXPECT_EQ(rounded.mesh.triangles.size(), 12u + 12 * 2 * 4 + 8 * 16);
   expectSound(rounded);
-  const auto distance = [&](const Vec3& p) { return roundedBoxDistance(p, half, kRadius); };
+  const auto distance = [&](const Vec3& p) { return roundedBoxDistance(p, half, kEdgeRadius); };
   for (const Vec3& v : rounded.mesh.vertices) EXPECT_NEAR(distance(v), 0, 1e-16);  // closed forms on both sides
   const Deviation deviation = deviationOf(rounded.mesh, distance);
   EXPECT_LE(deviation.place, 2e-6);
@@ -157,20 +155,21 @@ TEST(RoundEdges, ACubeBecomesTheRoundedBox) {
 
 TEST(RoundEdges, FinerArcsComeCloser) {
   const Vec3 half = Vec3::Constant(kHalfCube);
-  const auto distance = [&](const Vec3& p) { return roundedBoxDistance(p, half, kRadius); };
-  const double coarse = deviationOf(roundEdges(box(half), {.radius = kRadius, .segments = 3}).mesh, distance).place;
-  const double fine = deviationOf(roundEdges(box(half), {.radius = kRadius, .segments = 6}).mesh, distance).place;
+  const auto distance = [&](const Vec3& p) { return roundedBoxDistance(p, half, kEdgeRadius); };
+  const double coarse = deviationOf(roundEdges(box(half), {.radius = kEdgeRadius, .segments = 3}).mesh, distance).place;
+  const double fine = deviationOf(roundEdges(box(half), {.radius = kEdgeRadius, .segments = 6}).mesh, distance).place;
   EXPECT_LT(fine, coarse / 6) << "at least third order in the angle";
 }
 
 TEST(RoundEdges, ACylinderGetsRimsOfATorus) {
   const double R = 0.025, H = 0.03;
-  const RoundedMesh rounded = roundEdges(cylinder(R, H, 48, 2), {.radius = kRadius});
+  const RoundedMesh rounded = roundEdges(cylinder(R, H, 48, 2), {.radius = kEdgeRadius});
   EXPECT_EQ(rounded.creases, 96);
   EXPECT_EQ(rounded.corners, 0);
   expectSound(rounded);
-  const std::vector<Vec2> inset = {{-R, -H + kRadius}, {R - kRadius, -H + kRadius}, {R - kRadius, H - kRadius}, {-R, H - kRadius}};
-  const Deviation deviation = deviationOf(rounded.mesh, [&](const Vec3& p) { return roundedProfileDistance(inset, p, kRadius); });
+  const std::vector<Vec2> inset = {
+      {-R, -H + kEdgeRadius}, {R - kEdgeRadius, -H + kEdgeRadius}, {R - kEdgeRadius, H - kEdgeRadius}, {-R, H - kEdgeRadius}};
+  const Deviation deviation = deviationOf(rounded.mesh, [&](const Vec3& p) { return roundedProfileDistance(inset, p, kEdgeRadius); });
   // The strip begins at a chord of the cap's circle, whose sagitta is 50 um: 1/30 of the radius, so much its normal is off too.
   EXPECT_LE(deviation.place, 3e-6);
   EXPECT_LE(deviation.normal, 0.04);
@@ -178,15 +177,15 @@ TEST(RoundEdges, ACylinderGetsRimsOfATorus) {
 
 TEST(RoundEdges, AConeGetsARimAndACap) {
   const double R = 0.025, H = 0.05;
-  const RoundedMesh rounded = roundEdges(pyramid(96, R, H), {.radius = kRadius});
+  const RoundedMesh rounded = roundEdges(pyramid(96, R, H), {.radius = kEdgeRadius});
   EXPECT_EQ(rounded.creases, 96);
   EXPECT_EQ(rounded.tips, 1);
   expectSound(rounded);
   // The cone moved inwards: its base by the radius, its lines by the radius across them.
   const double slant = std::hypot(R, H);
-  const double tip = H - kRadius * slant / R, base = (tip - kRadius) * R / H;
-  const std::vector<Vec2> inset = {{-base, kRadius}, {base, kRadius}, {0, tip}};
-  const Deviation deviation = deviationOf(rounded.mesh, [&](const Vec3& p) { return roundedProfileDistance(inset, p, kRadius); });
+  const double tip = H - kEdgeRadius * slant / R, base = (tip - kEdgeRadius) * R / H;
+  const std::vector<Vec2> inset = {{-base, kEdgeRadius}, {base, kEdgeRadius}, {0, tip}};
+  const Deviation deviation = deviationOf(rounded.mesh, [&](const Vec3& p) { return roundedProfileDistance(inset, p, kEdgeRadius); });
   // The lateral side, one facet long, is what is off: by less than its sagitta, R (1 - cos 1.9 degrees) = 13 um at the base.
   EXPECT_LE(deviation.place, 7e-6);
   EXPECT_LE(deviation.normal, 0.04);
@@ -202,20 +201,20 @@ void expectRoundedPolytope(const TriangleMesh& sharp, const RoundedMesh& rounded
     offsets.push_back(normals.back().dot(p(0)));
   }
   for (std::size_t v = 0; v < rounded.mesh.vertices.size(); ++v) {
-    const Vec3 centre = rounded.mesh.vertices[v] - kRadius * rounded.mesh.normals[v];
+    const Vec3 centre = rounded.mesh.vertices[v] - kEdgeRadius * rounded.mesh.normals[v];
     double room = 1;
     for (std::size_t k = 0; k < normals.size(); ++k) {
       ASSERT_LE(normals[k].dot(rounded.mesh.vertices[v]), offsets[k] + 1e-15) << "nothing sticks out";
       room = std::min(room, offsets[k] - normals[k].dot(centre));
     }
-    ASSERT_NEAR(room, kRadius, 1e-15) << "the ball that made this vertex touches a face and crosses none";
+    ASSERT_NEAR(room, kEdgeRadius, 1e-15) << "the ball that made this vertex touches a face and crosses none";
   }
 }
 
 TEST(RoundEdges, RoundsTheShapesOfShapeIdentification) {
   const double edge = 0.0566;
   for (const TriangleMesh& sharp : {tetrahedron(edge), regularPrism(3, 0.03, 0.02), regularPrism(8, 0.03, 0.02)}) {
-    const RoundedMesh rounded = roundEdges(sharp, {.radius = kRadius});
+    const RoundedMesh rounded = roundEdges(sharp, {.radius = kEdgeRadius});
     expectSound(rounded);
     EXPECT_EQ(rounded.corners, static_cast<int>(sharp.vertices.size())) << sharp.source;
     expectRoundedPolytope(sharp, rounded);
@@ -224,7 +223,7 @@ TEST(RoundEdges, RoundsTheShapesOfShapeIdentification) {
 
 TEST(RoundEdges, RoundsACornerOfManyFacesThatOneBallTouches) {
   const TriangleMesh sharp = pyramid(4, 0.03, 0.03);
-  const RoundedMesh rounded = roundEdges(sharp, {.radius = kRadius});
+  const RoundedMesh rounded = roundEdges(sharp, {.radius = kEdgeRadius});
   EXPECT_EQ(rounded.corners, 5);
   expectSound(rounded);
   expectRoundedPolytope(sharp, rounded);
@@ -232,12 +231,12 @@ TEST(RoundEdges, RoundsACornerOfManyFacesThatOneBallTouches) {
 
 TEST(RoundEdges, RoundsConcaveEdges) {
   const double cavity = 0.02;
-  const RoundedMesh rounded = roundEdges(hollowCube(0.03, cavity), {.radius = kRadius});
+  const RoundedMesh rounded = roundEdges(hollowCube(0.03, cavity), {.radius = kEdgeRadius});
   EXPECT_EQ(rounded.creases, 24);
   expectSound(rounded);
   const Deviation deviation = deviationOf(rounded.mesh, [&](const Vec3& p) {
-    const double outer = roundedBoxDistance(p, Vec3::Constant(0.03), kRadius);
-    return std::max(outer, -roundedBoxDistance(p, Vec3::Constant(cavity), kRadius));
+    const double outer = roundedBoxDistance(p, Vec3::Constant(0.03), kEdgeRadius);
+    return std::max(outer, -roundedBoxDistance(p, Vec3::Constant(cavity), kEdgeRadius));
   });
   EXPECT_LE(deviation.place, 2e-6);
 }

@@ -8,22 +8,17 @@
 #include "contact/shape/convex_features.h"
 #include "contact/shape/polytope.h"
 #include "tests/support/random_numbers.h"
+#include "tests/support/random_poses.h"
 #include "tests/support/sampled_surface.h"
 
 namespace pincer::contact {
 namespace {
 
+using tests::direction;
 using tests::NamedShape;
 using tests::RandomNumbers;
 using tests::sampleConvexSolids;
 using tests::SampledSurface;
-
-Vec3 direction(RandomNumbers& random) {
-  Vec3 d;
-  do d = Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
-  while (d.norm() > 1 || d.norm() < 0.1);
-  return d.normalized();
-}
 
 TEST(ConvexFeatures, SupportIsTheOracles) {
   RandomNumbers random(1);

@@ -12,18 +12,27 @@
 #include "contact/shape/polytope.h"
 #include "contact/shape/separation.h"
 #include "tests/support/allocation_guard.h"
+#include "tests/support/constants.h"
+#include "tests/support/pairs.h"
 #include "tests/support/random_numbers.h"
+#include "tests/support/random_poses.h"
 #include "tests/support/sampled_surface.h"
 
 namespace pincer::contact {
 namespace {
 
+using tests::about;
+using tests::around;
+using tests::collide;
+using tests::direction;
+using tests::featuresOf;
+using tests::kEverything;
+using tests::kPi;
+using tests::leastGap;
 using tests::NamedShape;
 using tests::RandomNumbers;
+using tests::rotation;
 using tests::SampledSurface;
-
-constexpr double kPi = std::numbers::pi;
-constexpr double kEverything = 1;  // [m] a margin that holds any gap here
 
 std::vector<NamedShape> solids() {
   std::vector<NamedShape> all;
@@ -31,52 +40,6 @@ std::vector<NamedShape> solids() {
     if (!std::holds_alternative<Sphere>(s.shape) && pairIsSupported(s.shape, s.shape)) all.push_back(s);
   }
   return all;
-}
-
-Vec3 direction(RandomNumbers& random) {
-  Vec3 d;
-  do d = Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
-  while (d.norm() > 1 || d.norm() < 0.1);
-  return d.normalized();
-}
-
-Quat rotation(RandomNumbers& random) {
-  Quat q;
-  do q.coeffs() << random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1);
-  while (q.norm() > 1 || q.norm() < 0.1);
-  return q.normalized();
-}
-
-Quat about(const Vec3& axis, double angle) { return Quat(Eigen::AngleAxisd(angle, axis.normalized())); }
-
-PairPoints collide(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin = kEverything) {
-  PatchCache cache(16);
-  PairPoints out;
-  collideShapes(a, X_WA, b, X_WB, margin, cache, out);
-  return out;
-}
-
-double leastGap(const PairPoints& p) {
-  double least = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < p.count; ++i) least = std::min(least, p.points[static_cast<std::size_t>(i)].phi);
-  return least;
-}
-
-std::set<std::uint32_t> featuresOf(const PairPoints& p) {
-  std::set<std::uint32_t> features;
-  for (int i = 0; i < p.count; ++i) features.insert(p.points[static_cast<std::size_t>(i)].feature);
-  return features;
-}
-
-// b at the origin, a somewhere around it, about `gap` from it (negative: overlapping by so much).
-Pose around(RandomNumbers& random, const Shape& a, const Shape& b, double gap) {
-  Pose X_BA{rotation(random), 0.1 * direction(random)};
-  for (int i = 0; i < 8; ++i) {
-    const PosedSolid A{a, X_BA.q.toRotationMatrix(), X_BA.p}, B{b, Mat3::Identity(), Vec3::Zero()};
-    const Separation s = separate(A, B, 0.03, nullptr);
-    X_BA.p += (gap - s.gap + roundingOf(a) + roundingOf(b)) * s.n;
-  }
-  return X_BA;
 }
 
 double nearest(const Shape& shape, const Vec3& p) {
@@ -255,9 +218,9 @@ TEST(ConvexPairs, AllocateNothing) {
     for (const NamedShape& b : solids()) {
       for (int i = 0; i < 10; ++i) {
         const Pose X_BA = around(random, a.shape, b.shape, random.uniform(-0.01, 0.001));
-        const std::int64_t before = testing::allocationCount();
+        const std::int64_t before = tests::allocationCount();
         collideShapes(a.shape, X_BA, b.shape, Pose{}, 1e-3, cache, out);
-        ASSERT_EQ(testing::allocationCount(), before) << a.name << " at " << b.name;
+        ASSERT_EQ(tests::allocationCount(), before) << a.name << " at " << b.name;
       }
     }
   }

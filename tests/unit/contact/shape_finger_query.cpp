@@ -7,18 +7,19 @@
 
 #include "contact/shape/finger_query.h"
 #include "contact/shape/pair_query.h"
+#include "tests/support/constants.h"
 #include "tests/support/sampled_surface.h"
 
 namespace pincer::contact {
 namespace {
 
+using tests::kRoundOff;
 using tests::NamedShape;
 using tests::sampleConvexSolids;
 using tests::SampledSurface;
 using tests::samplePrimitives;
 
-constexpr double kRoundOff = 1e-15;  // [m] a few ulp of 0.2 m, the largest coordinate here
-constexpr double kTip = 0.008;       // fingertip radius [m]
+constexpr double kTip = 0.008;  // fingertip radius [m]
 
 SurfaceContact query(const Shape& shape, const Vec3& p_BC, double r = kTip) {
   SurfaceTracker tracker;

@@ -4,9 +4,12 @@
 #include "contact/shape/finger_query.h"
 #include "contact/shape/pair_query.h"
 #include "contact/surface/smooth_mesh.h"
+#include "tests/support/pairs.h"
 
 namespace pincer::contact {
 namespace {
+
+using tests::collide;
 
 const Vec3 kHalf(0.03, 0.02, 0.01);
 
@@ -19,13 +22,6 @@ Mesh boxMesh() {
   return {SmoothMesh::build(std::move(m))};
 }
 
-PairPoints collide(const Shape& a, const Pose& X_WA, const Shape& b, double margin) {
-  PairPoints out;
-  PatchCache cache(64);
-  collideShapes(a, X_WA, b, Pose{}, margin, cache, out);
-  return out;
-}
-
 // The same solid as a mesh and as a box: the same points, but for the names of the corners.
 TEST(MeshAsABody, MeetsGroundAndDishLikeTheBoxItIs) {
   const Mesh mesh = boxMesh();
@@ -33,8 +29,8 @@ TEST(MeshAsABody, MeetsGroundAndDishLikeTheBoxItIs) {
     for (int i = 0; i < 100; ++i) {
       const Quat q = Quat(std::cos(i), std::sin(2 * i), std::cos(3 * i), std::sin(5 * i)).normalized();
       const Pose X_WA{q, {0.001 * i - 0.05, 0, 0.03}};
-      const PairPoints as_mesh = collide(mesh, X_WA, support, 0.01);
-      const PairPoints as_box = collide(Box{kHalf}, X_WA, support, 0.01);
+      const PairPoints as_mesh = collide(mesh, X_WA, support, Pose{}, 0.01);
+      const PairPoints as_box = collide(Box{kHalf}, X_WA, support, Pose{}, 0.01);
       ASSERT_EQ(as_mesh.count, as_box.count) << i;
       for (int k = 0; k < as_box.count; ++k) {
         double nearest = 1;
@@ -46,7 +42,7 @@ TEST(MeshAsABody, MeetsGroundAndDishLikeTheBoxItIs) {
 }
 
 TEST(MeshAsABody, RestsOnTheFourCornersOfItsFace) {
-  const PairPoints p = collide(boxMesh(), {Quat::Identity(), {0, 0, kHalf.z()}}, HalfSpace{}, 0.001);
+  const PairPoints p = collide(boxMesh(), {Quat::Identity(), {0, 0, kHalf.z()}}, HalfSpace{}, Pose{}, 0.001);
   ASSERT_EQ(p.count, 4);
   Vec3 centre = Vec3::Zero();
   for (int k = 0; k < 4; ++k) {
@@ -60,8 +56,8 @@ TEST(MeshAsABody, RestsOnTheFourCornersOfItsFace) {
 
 TEST(MeshAsABody, IsSkippedOutOfReach) {
   const Mesh mesh = boxMesh();
-  EXPECT_EQ(collide(mesh, {Quat::Identity(), {0, 0, 0.1}}, HalfSpace{}, 0.01).count, 0);
-  EXPECT_EQ(collide(Sphere{0.01}, {Quat::Identity(), {0, 0, 0.1}}, mesh, 0.01).count, 0);
+  EXPECT_EQ(collide(mesh, {Quat::Identity(), {0, 0, 0.1}}, HalfSpace{}, Pose{}, 0.01).count, 0);
+  EXPECT_EQ(collide(Sphere{0.01}, {Quat::Identity(), {0, 0, 0.1}}, mesh, Pose{}, 0.01).count, 0);
   EXPECT_GE(boundingRadius(mesh), kHalf.norm());
   EXPECT_LE(lowerBoundOfGap(mesh, {0, 0, 0.1}, 0.01), 0.1 - kHalf.z() - 0.01);
 }
@@ -76,7 +72,7 @@ TEST(MeshAsABody, FingertipAndBallMeetItsSurface) {
     const SurfaceContact on_box = querySphere(Box{kHalf}, p_BC, 0.008, 0, tracker, cache).main();
     EXPECT_NEAR(on_mesh.phi, on_box.phi, 1e-9);
     EXPECT_LE((on_mesh.p_BS - on_box.p_BS).norm(), 1e-9);
-    const PairPoints p = collide(Sphere{0.008}, {Quat::Identity(), p_BC}, mesh, 1);
+    const PairPoints p = collide(Sphere{0.008}, {Quat::Identity(), p_BC}, mesh, Pose{}, 1);
     ASSERT_EQ(p.count, 1);
     EXPECT_EQ(p.points[0].phi, on_mesh.phi);
   }

@@ -10,54 +10,25 @@
 #include "contact/shape/separation.h"
 #include "contact/surface/smooth_mesh.h"
 #include "tests/support/allocation_guard.h"
+#include "tests/support/pairs.h"
 #include "tests/support/random_numbers.h"
+#include "tests/support/random_poses.h"
 #include "tests/support/sampled_surface.h"
 
 namespace pincer::contact {
 namespace {
 
+using tests::around;
+using tests::collide;
+using tests::direction;
+using tests::leastGap;
 using tests::NamedShape;
 using tests::RandomNumbers;
+using tests::rotation;
 
-const Vec3 kHalf(0.031, 0.017, 0.023);
+const Vec3 kMeshHalf(0.031, 0.017, 0.023);
 
 Mesh boxMesh(const Vec3& half) { return {SmoothMesh::build(box(half))}; }
-
-Vec3 direction(RandomNumbers& random) {
-  Vec3 d;
-  do d = Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
-  while (d.norm() > 1 || d.norm() < 0.1);
-  return d.normalized();
-}
-
-Quat rotation(RandomNumbers& random) {
-  const Vec3 axis = direction(random);
-  return Quat(Eigen::AngleAxisd(random.uniform(-3, 3), axis));
-}
-
-PairPoints collide(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin) {
-  PatchCache cache(64);
-  PairPoints out;
-  collideShapes(a, X_WA, b, X_WB, margin, cache, out);
-  return out;
-}
-
-double leastGap(const PairPoints& p) {
-  double least = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < p.count; ++i) least = std::min(least, p.points[static_cast<std::size_t>(i)].phi);
-  return least;
-}
-
-// b at the origin, a somewhere around it, about `gap` from it.
-Pose around(RandomNumbers& random, const Shape& a, const Shape& b, double gap) {
-  Pose X_BA{rotation(random), 0.1 * direction(random)};
-  for (int i = 0; i < 8; ++i) {
-    const PosedSolid A{a, X_BA.q.toRotationMatrix(), X_BA.p}, B{b, Mat3::Identity(), Vec3::Zero()};
-    const Separation s = separate(A, B, 0.03, nullptr);
-    X_BA.p += (gap - s.gap + roundingOf(a) + roundingOf(b)) * s.n;
-  }
-  return X_BA;
-}
 
 // No contact is deeper than the two overlap along its own normal.
 void expectNoneTooDeep(const PairPoints& p, const Shape& a, const Pose& X_BA, const Shape& b) {
@@ -71,8 +42,8 @@ void expectNoneTooDeep(const PairPoints& p, const Shape& a, const Pose& X_BA, co
 // A box as 12 triangles against the box as a box. Apart, the gap is the distance.
 TEST(MeshPairs, MeshOfABoxTouchesSolidsAsTheBox) {
   RandomNumbers random(1);
-  const Box box{kHalf};
-  const Mesh mesh = boxMesh(kHalf);
+  const Box box{kMeshHalf};
+  const Mesh mesh = boxMesh(kMeshHalf);
   for (const NamedShape& b : tests::sampleConvexSolids()) {
     if (std::holds_alternative<Sphere>(b.shape) || !pairIsSupported(mesh, b.shape)) continue;
     for (int i = 0; i < 60; ++i) {
@@ -91,22 +62,22 @@ TEST(MeshPairs, MeshOfABoxTouchesSolidsAsTheBox) {
 
 TEST(MeshPairs, MeshOfABoxStandsOnABoxWithItsFourCorners) {
   const Box table{{0.05, 0.05, 0.02}};
-  const Pose X{Quat::Identity(), {0.002, 0.001, 0.02 + kHalf.z()}};
-  const PairPoints p = collide(boxMesh(kHalf), X, table, Pose{}, 1e-3);
+  const Pose X{Quat::Identity(), {0.002, 0.001, 0.02 + kMeshHalf.z()}};
+  const PairPoints p = collide(boxMesh(kMeshHalf), X, table, Pose{}, 1e-3);
   ASSERT_EQ(p.count, 4);
   for (int k = 0; k < 4; ++k) {
     const PairPoint& c = p.points[static_cast<std::size_t>(k)];
     EXPECT_NEAR(c.phi, 0, 1e-16);
     EXPECT_LE((c.n_W - Vec3::UnitZ()).norm(), 1e-15);
-    EXPECT_LE(((c.p_W - X.p).cwiseAbs() - kHalf).norm(), 1e-15);
+    EXPECT_LE(((c.p_W - X.p).cwiseAbs() - kMeshHalf).norm(), 1e-15);
   }
 }
 
 // Overhanging, the points are where the table's rim crosses the body's outline.
 TEST(MeshPairs, OverhangingMeshIsCarriedAtTheRim) {
   const Box table{{0.05, 0.05, 0.02}};
-  const Pose X{Quat::Identity(), {0.05, 0.001, 0.02 + kHalf.z()}};
-  const PairPoints p = collide(boxMesh(kHalf), X, table, Pose{}, 1e-3);
+  const Pose X{Quat::Identity(), {0.05, 0.001, 0.02 + kMeshHalf.z()}};
+  const PairPoints p = collide(boxMesh(kMeshHalf), X, table, Pose{}, 1e-3);
   ASSERT_EQ(p.count, 4);
   double furthest = 0, nearest = 1;
   for (int k = 0; k < 4; ++k) {
@@ -115,7 +86,7 @@ TEST(MeshPairs, OverhangingMeshIsCarriedAtTheRim) {
     EXPECT_NEAR(p.points[static_cast<std::size_t>(k)].phi, 0, 1e-15);
   }
   EXPECT_NEAR(furthest, 0.05, 1e-12);
-  EXPECT_NEAR(nearest, 0.05 - kHalf.x(), 1e-12);
+  EXPECT_NEAR(nearest, 0.05 - kMeshHalf.x(), 1e-12);
 }
 
 // A rod through a ring's hole touches nothing, though it is well inside of the ring's hull; moved sideways it touches where the tube does.
@@ -162,9 +133,9 @@ TEST(MeshPairs, AllocateNothing) {
     for (int i = 0; i < 5; ++i) {
       const Pose X{rotation(random), 0.04 * direction(random)};
       preparePair(mesh, b.shape);
-      const std::int64_t before = testing::allocationCount();
+      const std::int64_t before = tests::allocationCount();
       collideShapes(mesh, X, b.shape, Pose{}, 1e-3, cache, out);
-      ASSERT_EQ(testing::allocationCount(), before) << b.name;
+      ASSERT_EQ(tests::allocationCount(), before) << b.name;
     }
   }
 }

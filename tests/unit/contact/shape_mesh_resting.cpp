@@ -7,12 +7,15 @@
 
 #include "contact/shape/pair_query.h"
 #include "contact/surface/smooth_mesh.h"
+#include "tests/support/constants.h"
 #include "tests/support/mesh_generators.h"
+#include "tests/support/pairs.h"
 
 namespace pincer::contact {
 namespace {
 
-constexpr double kMargin = 1e-3;  // [m] what the engine asks with
+using tests::featuresOf;
+using tests::kMargin;
 
 // A facet of a hull, found by trying every triple of its vertices: all the others lie behind it.
 struct Facet {
@@ -56,12 +59,6 @@ PairPoints onGround(const Mesh& mesh, const Pose& X_WB) {
   PatchCache cache(64);
   collideShapes(mesh, X_WB, HalfSpace{}, Pose{}, kMargin, cache, out);
   return out;
-}
-
-std::set<std::uint32_t> featuresOf(const PairPoints& p) {
-  std::set<std::uint32_t> features;
-  for (int i = 0; i < p.count; ++i) features.insert(p.points[i].feature);
-  return features;
 }
 
 double distanceToNearest(const PairPoints& p, const Vec3& p_W) {

@@ -9,18 +9,21 @@
 #include "contact/shape/convex_features.h"
 #include "contact/shape/finger_query.h"
 #include "contact/shape/pair_query.h"
+#include "tests/support/constants.h"
+#include "tests/support/pairs.h"
 #include "tests/support/sampled_surface.h"
 
 namespace pincer::contact {
 namespace {
 
+using tests::collide;
+using tests::kEverything;
+using tests::kRoundOff;
+using tests::leastGap;
 using tests::NamedShape;
 using tests::sampleConvexSolids;
 using tests::SampledSurface;
 using tests::samplePrimitives;
-
-constexpr double kRoundOff = 1e-15;  // [m] a few ulp of 0.3 m, the largest coordinate here
-constexpr double kEverything = 1;    // [m] a margin that holds any gap here
 
 class Random {
  public:
@@ -33,19 +36,6 @@ class Random {
   std::mt19937_64 random_{19981998};
   std::normal_distribution<double> normal_;
 };
-
-PairPoints collide(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin = kEverything) {
-  PairPoints out;
-  PatchCache cache(64);
-  collideShapes(a, X_WA, b, X_WB, margin, cache, out);
-  return out;
-}
-
-double leastGap(const PairPoints& p) {
-  double least = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < p.count; ++i) least = std::min(least, p.points[i].phi);
-  return least;
-}
 
 std::vector<NamedShape> supports() { return {{"half-space", HalfSpace{}}, {"dish", Dish{0.15}}}; }
 

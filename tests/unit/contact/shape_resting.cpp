@@ -12,27 +12,24 @@
 #include "contact/shape/pair_query.h"
 #include "contact/shape/point_choice.h"
 #include "contact/shape/support.h"
+#include "tests/support/constants.h"
+#include "tests/support/pairs.h"
+#include "tests/support/random_poses.h"
 
 namespace pincer::contact {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kRoundOff = 1e-15;  // [m]
-constexpr double kMargin = 0.001;    // [m] smaller than any feature of the bodies below
+using tests::about;
+using tests::featuresOf;
+using tests::kMargin;
+using tests::kPi;
+using tests::kRoundOff;
 
 PairPoints onGround(const Shape& solid, const Pose& X_WA, double margin = kMargin) {
   PairPoints out;
   PatchCache cache(64);
   collideShapes(solid, X_WA, HalfSpace{}, Pose{}, margin, cache, out);
   return out;
-}
-
-Quat about(const Vec3& axis, double angle) { return Quat(Eigen::AngleAxisd(angle, axis)); }
-
-std::set<std::uint32_t> featuresOf(const PairPoints& p) {
-  std::set<std::uint32_t> features;
-  for (int i = 0; i < p.count; ++i) features.insert(p.points[i].feature);
-  return features;
 }
 
 using Features = std::set<std::uint32_t>;

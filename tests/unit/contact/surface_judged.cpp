@@ -5,23 +5,20 @@
 
 #include "contact/mesh/generated_meshes.h"
 #include "contact/surface/smooth_mesh.h"
+#include "tests/support/constants.h"
 #include "tests/support/random_numbers.h"
+#include "tests/support/random_poses.h"
 #include "tests/support/shell_oracle.h"
 
 namespace pincer::contact {
 namespace {
 
+using tests::direction;
+using tests::kFinger;
 using tests::RandomNumbers;
 using tests::ShellOracle;
 
-constexpr double kFinger = 0.008;  // [m]
-
 int budget(int queries) { return std::getenv("PINCER_LONG_TESTS") ? 50 * queries : queries; }
-
-Vec3 randomDirection(RandomNumbers& random) {
-  const double z = random.uniform(-1, 1), a = random.uniform(0, 2 * M_PI);
-  return {std::sqrt(1 - z * z) * std::cos(a), std::sqrt(1 - z * z) * std::sin(a), z};
-}
 
 struct Verdicts {
   int queries = 0, held = 0, wrong = 0;
@@ -55,15 +52,15 @@ Verdicts strokes(const TriangleMesh& mesh, double scale, int queries, std::uint6
   for (int i = 0; i < queries; ++i) {
     if (i % 40 == 0) {
       tracker = {};
-      C = object->boundingRadius() * random.uniform(1.2, 2) * randomDirection(random);
+      C = object->boundingRadius() * random.uniform(1.2, 2) * direction(random);
       const SurfaceContact c = object->querySphere(C, r, 0, tracker, cache).main();
       C = c.p_BS + (r - random.uniform(0, 0.005) * scale) * c.n_B;
-      heading = randomDirection(random);
+      heading = direction(random);
     }
     const SurfaceContacts answer = object->querySphere(C, r, 0.001 * scale, tracker, cache);
     judge(oracle, C, r, answer, verdicts);
     const Vec3 n = answer.main().n_B;
-    heading = (heading + 0.2 * randomDirection(random)).normalized();
+    heading = (heading + 0.2 * direction(random)).normalized();
     C += random.uniform(1e-6, 2e-4) * scale * (heading - heading.dot(n) * n).normalized();
   }
   return verdicts;
@@ -146,7 +143,7 @@ TEST(SurfaceJudged, InTheAirNothingIsNearer) {
     PatchCache cache;
     for (int i = 0; i < budget(100); ++i) {
       SurfaceTracker tracker;
-      const Vec3 C = random.uniform(1.3, 2.5) * object->boundingRadius() * randomDirection(random);
+      const Vec3 C = random.uniform(1.3, 2.5) * object->boundingRadius() * direction(random);
       const SurfaceContact c = object->querySphere(C, 0.002, 0, tracker, cache).main();
       ASSERT_NEAR(c.phi + 0.002, oracle.distance(C), kLean) << mesh.source << ' ' << C.transpose();
     }

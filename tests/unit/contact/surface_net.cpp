@@ -8,12 +8,13 @@
 #include "contact/mesh/mesh_report.h"
 #include "contact/surface/edge_cubic.h"
 #include "contact/surface/smooth_mesh.h"
+#include "tests/support/constants.h"
 #include "tests/support/mesh_generators.h"
 
 namespace pincer::contact {
 namespace {
 
-constexpr double kCreaseAngle = 0.7;
+using tests::kCreaseAngle;
 
 struct EdgePoint {
   Vec3 S, N;

@@ -11,11 +11,13 @@
 #include "contact/surface/surface_net.h"
 #include "tests/support/mesh_generators.h"
 #include "tests/support/random_numbers.h"
+#include "tests/support/random_poses.h"
 #include "tests/support/touch.h"
 
 namespace pincer::contact {
 namespace {
 
+using tests::direction;
 using tests::RandomNumbers;
 
 constexpr int kSamples = 12;  // per patch edge
@@ -31,11 +33,6 @@ std::vector<Vec3> samplePatches(const SurfaceNet& net) {
     }
   }
   return points;
-}
-
-Vec3 randomDirection(RandomNumbers& random) {
-  const double z = random.uniform(-1, 1), a = random.uniform(0, 2 * M_PI);
-  return {std::sqrt(1 - z * z) * std::cos(a), std::sqrt(1 - z * z) * std::sin(a), z};
 }
 
 struct Case {
@@ -56,7 +53,7 @@ TEST(SurfaceOracle, NoSampleOfTheSurfaceIsNearer) {
     RandomNumbers random(7);
     SurfaceTracker tracker;
     for (int i = 0; i < 300; ++i) {
-      const Vec3 C = random.uniform(0.045, 0.065) * randomDirection(random);
+      const Vec3 C = random.uniform(0.045, 0.065) * direction(random);
       const SurfaceContact contact = touch(*object, C, 0.004, tracker);
       double nearest = std::numeric_limits<double>::infinity(), beside = nearest;
       for (const Vec3& p : samples) {
@@ -75,7 +72,7 @@ TEST(SurfaceOracle, AFreshSearchAgreesWithAFollowedContact) {
   SurfaceTracker followed;
   Vec3 C(0.04, 0, 0), v = Vec3::Zero();
   for (int i = 0; i < 20000; ++i) {
-    v = 0.99 * v + 1e-5 * randomDirection(random);
+    v = 0.99 * v + 1e-5 * direction(random);
     C += v;
     if (C.norm() > 0.06) v -= 1e-4 * C.normalized();
     const SurfaceContact c = touch(*object, C, 0.008, followed);
@@ -148,7 +145,7 @@ TEST_P(RealMeshes, AreTouchedWithoutFailure) {
   int held = 0;
   const int ticks = 10000;
   for (int i = 0; i < ticks; ++i) {
-    along += 0.04 * randomDirection(random);
+    along += 0.04 * direction(random);
     along = (along - along.dot(c.n_B) * c.n_B).normalized();
     C += 1e-4 * along + std::clamp(-0.001 - c.phi, -2e-4, 2e-4) * c.n_B;
     c = touch(*object, C, r, tracker);

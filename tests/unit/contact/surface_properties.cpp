@@ -6,15 +6,16 @@
 
 #include "contact/mesh/generated_meshes.h"
 #include "contact/surface/smooth_mesh.h"
+#include "tests/support/constants.h"
 #include "tests/support/random_numbers.h"
 
 namespace pincer::contact {
 namespace {
 
+using tests::kFinger;
 using tests::RandomNumbers;
 
-constexpr double kFinger = 0.008;  // [m]
-constexpr double kSolved = 1e-8;   // [m] two solutions of 1e-9 m each, magnified where the surface's curvature is near the finger's
+constexpr double kSolved = 1e-8;  // [m] two solutions of 1e-9 m each, magnified where the surface's curvature is near the finger's
 
 std::vector<TriangleMesh> objects() {
   return {icosphere(0.02, 2), torus(0.03, 0.012, 24, 12), cylinderWithFlat(0.025, 0.03, 0.018, 18, 4), box({0.02, 0.015, 0.03}),

@@ -7,14 +7,16 @@
 #include "contact/mesh/mesh_writer.h"
 #include "contact/surface/smooth_mesh.h"
 #include "tests/support/allocation_guard.h"
+#include "tests/support/constants.h"
 #include "tests/support/mesh_generators.h"
 #include "tests/support/touch.h"
 
 namespace pincer::contact {
 namespace {
 
-constexpr double kFinger = 0.008;  // [m] radius
-constexpr double kTick = 100e-6;   // [m] a finger at 100 mm/s moves this far in 1 ms
+using tests::kFinger;
+
+constexpr double kTick = 100e-6;  // [m] a finger at 100 mm/s moves this far in 1 ms
 
 // Through the file format, in millimetres, as a user's object comes.
 std::shared_ptr<const SmoothMesh> asObject(const TriangleMesh& mesh) {
@@ -247,13 +249,13 @@ TEST(SurfaceQuery, RemembersNothingButTheTracker) {
 }
 
 TEST(SurfaceQuery, AllocatesNothing) {
-  if (!pincer::testing::allocationsAreCounted()) GTEST_SKIP() << "this build can't count allocations";
+  if (!pincer::tests::allocationsAreCounted()) GTEST_SKIP() << "this build can't count allocations";
   const auto object = asObject(cylinderWithFlat(0.025, 0.03, 0.018, 20, 6));
   SurfaceTracker tracker;
   touch(*object, {0.03, 0, 0}, kFinger, tracker);  // this thread's cache
-  const std::int64_t before = pincer::testing::allocationCount();
+  const std::int64_t before = pincer::tests::allocationCount();
   for (int i = 0; i < 500; ++i) touch(*object, (0.03 + 0.01 * (i % 3)) * onSphere(i, 500), kFinger, tracker);
-  EXPECT_EQ(pincer::testing::allocationCount(), before);
+  EXPECT_EQ(pincer::tests::allocationCount(), before);
 }
 
 TEST(SurfaceQuery, HoldsTheContactWhereThereIsNoAnswer) {

@@ -6,14 +6,14 @@
 #include <set>
 
 #include "contact/mesh/generated_meshes.h"
+#include "tests/support/constants.h"
 #include "tests/support/random_numbers.h"
 
 namespace pincer::contact {
 namespace {
 
+using tests::kCreaseAngle;
 using tests::RandomNumbers;
-
-constexpr double kCreaseAngle = 0.7;
 
 struct Searched {
   explicit Searched(const TriangleMesh& mesh) : net(mesh, kCreaseAngle, true), search(net, inspector, nullptr) {}

@@ -5,16 +5,17 @@
 
 #include "contact/mesh/generated_meshes.h"
 #include "contact/surface/smooth_mesh.h"
+#include "tests/support/constants.h"
 #include "tests/support/random_numbers.h"
 
 namespace pincer::contact {
 namespace {
 
+using tests::kFinger;
+using tests::kMargin;
 using tests::RandomNumbers;
 
-constexpr double kFinger = 0.008;  // [m] radius
-constexpr double kMargin = 0.001;  // [m]
-constexpr double kExact = 1e-9;    // [m] the solver's tolerance on objects of this size
+constexpr double kExact = 1e-9;  // [m] the solver's tolerance on objects of this size
 
 struct Finger {
   explicit Finger(const TriangleMesh& mesh) : surface(SmoothMesh::build(mesh)) {}

@@ -6,16 +6,19 @@
 #include "contact/surface/surface_net.h"
 #include "contact/surface/surface_variant.h"
 #include "tests/support/allocation_guard.h"
+#include "tests/support/constants.h"
 #include "tests/support/mesh_generators.h"
 #include "tests/support/random_numbers.h"
+#include "tests/support/random_poses.h"
 #include "tests/support/touch.h"
 
 namespace pincer::contact {
 namespace {
 
+using tests::direction;
+using tests::kFinger;
 using tests::RandomNumbers;
 
-constexpr double kFinger = 0.008;  // [m]
 constexpr SurfaceVariant kVariants[] = {SurfaceVariant::smooth, SurfaceVariant::facet, SurfaceVariant::force,
                                         SurfaceVariant::smooth_published};
 
@@ -26,11 +29,6 @@ std::shared_ptr<const SmoothMesh> asVariant(const TriangleMesh& mesh, SurfaceVar
 }
 
 Vec3 placeOnFinger(const SurfaceContact& c, const Vec3& C) { return (c.p_BS - C).normalized(); }
-
-Vec3 randomDirection(RandomNumbers& random) {
-  const double z = random.uniform(-1, 1), a = random.uniform(0, 2 * M_PI);
-  return {std::sqrt(1 - z * z) * std::cos(a), std::sqrt(1 - z * z) * std::sin(a), z};
-}
 
 struct Jumps {
   double location = 0, direction = 0;  // on the finger [m], of the normal [rad]
@@ -87,7 +85,7 @@ TEST(SurfaceVariants, FacetsAreTheHighestPlanesOfAConvexMesh) {
   SurfaceTracker tracker;
   int in_mitres = 0;
   for (int i = 0; i < 3000; ++i) {
-    const Vec3 C = random.uniform(0.0195, 0.028) * randomDirection(random);
+    const Vec3 C = random.uniform(0.0195, 0.028) * direction(random);
     double highest = -1;
     Vec3 normal = Vec3::Zero();
     for (const auto& [a, b, c] : mesh.triangles) {
@@ -155,7 +153,7 @@ Wandered wander(const TriangleMesh& mesh, SurfaceVariant variant) {
     counts.mean += found.cost.steps;
     counts.failed += !found.converged;
     foot = found.converged ? found.foot : truth;
-    along += 0.05 * randomDirection(random);
+    along += 0.05 * direction(random);
     along = (along - along.dot(ideal.n) * ideal.n).normalized();
     const double speed = 0.115 + 0.085 * std::sin(0.003 * i), depth = 0.0025 - 0.0025 * std::cos(0.0071 * i);
     C += speed * 1e-3 * along + std::clamp(kFinger - depth - ideal.h, -2e-5, 2e-5) * ideal.n;
@@ -190,14 +188,14 @@ TEST(SurfaceVariants, AnswerEverywhereWithoutAllocating) {
       RandomNumbers random(8);
       SurfaceTracker tracker;
       PatchCache cache(256);
-      const std::int64_t before = pincer::testing::allocationCount();
+      const std::int64_t before = pincer::tests::allocationCount();
       for (int i = 0; i < 1000; ++i) {
-        const Vec3 C = random.uniform(0, 0.06) * randomDirection(random);
+        const Vec3 C = random.uniform(0, 0.06) * direction(random);
         const SurfaceContacts found = object->querySphere(C, kFinger, 0, tracker, cache);
         ASSERT_TRUE(found.main().p_BS.allFinite() && std::isfinite(found.main().phi)) << mesh.source;
         ASSERT_NEAR(found.main().n_B.norm(), 1, 1e-14);
       }
-      EXPECT_TRUE(!pincer::testing::allocationsAreCounted() || pincer::testing::allocationCount() == before);
+      EXPECT_TRUE(!pincer::tests::allocationsAreCounted() || pincer::tests::allocationCount() == before);
     }
   }
 }

@@ -7,6 +7,7 @@
 
 #include "contact/error.h"
 #include "engine/motion/mass.h"
+#include "tests/support/constants.h"
 
 namespace pincer::engine {
 namespace {
@@ -18,8 +19,8 @@ using contact::CylinderWithFlat;
 using contact::Shape;
 using contact::Sphere;
 using contact::TriangleMesh;
+using tests::kPi;
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kMass = 0.25;  // [kg]
 
 bool contains(const Sphere& s, const Vec3& p) { return p.norm() <= s.radius; }
@@ -73,17 +74,17 @@ INSTANTIATE_TEST_SUITE_P(Shapes, Primitive,
                                          Shape(Capsule{0.02, 0}), Shape(Cylinder{0.025, 0.04}), Shape(CylinderWithFlat{0.025, 0.04, 0.01}),
                                          Shape(CylinderWithFlat{0.025, 0.01, 0.024}), Shape(CylinderWithFlat{0.025, 0.02, 0.001})));
 
-constexpr double kRoundOff = 1e-14;  // relative
+constexpr double kRelativeRoundOff = 1e-14;  // relative
 
 TEST(Mass, OfABallIsTwoFifths) {
   const double r = 0.02;
-  EXPECT_NEAR(massPropertiesOf(Sphere{r}, kMass).I_BBcm(0, 0), 0.4 * kMass * r * r, kRoundOff * kMass * r * r);
-  EXPECT_NEAR(volumeOf(Sphere{r}), 4.0 / 3 * kPi * r * r * r, kRoundOff);
+  EXPECT_NEAR(massPropertiesOf(Sphere{r}, kMass).I_BBcm(0, 0), 0.4 * kMass * r * r, kRelativeRoundOff * kMass * r * r);
+  EXPECT_NEAR(volumeOf(Sphere{r}), 4.0 / 3 * kPi * r * r * r, kRelativeRoundOff);
 }
 
 TEST(Mass, OfACapsuleWithoutLengthIsThatOfABall) {
   const Mat3 difference = massPropertiesOf(Capsule{0.02, 0}, kMass).I_BBcm - massPropertiesOf(Sphere{0.02}, kMass).I_BBcm;
-  EXPECT_LE(difference.norm(), kRoundOff * kMass * 4e-4);
+  EXPECT_LE(difference.norm(), kRelativeRoundOff * kMass * 4e-4);
 }
 
 // The segment's two limits: no cut, and half the cylinder, whose centre is 4 r / (3 pi) from the axis.
@@ -158,8 +159,8 @@ TEST(MeshMass, OfABoxIsTheBoxs) {
   const Vec3 half(0.01, 0.03, 0.04), centre(0.2, -0.3, 0.5);
   const TriangleMesh mesh = boxMesh(half, centre);
   const MassProperties m = massPropertiesOf(mesh, kMass);
-  EXPECT_NEAR(volumeOf(mesh), 8 * half.prod(), kRoundOff);
-  EXPECT_LE((m.p_BBcm - centre).norm(), kRoundOff);
+  EXPECT_NEAR(volumeOf(mesh), 8 * half.prod(), kRelativeRoundOff);
+  EXPECT_LE((m.p_BBcm - centre).norm(), kRelativeRoundOff);
   EXPECT_LE((m.I_BBcm - massPropertiesOf(Box{half}, kMass).I_BBcm).norm(), 1e-13 * m.I_BBcm.norm());
 }
 

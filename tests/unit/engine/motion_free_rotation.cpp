@@ -7,7 +7,7 @@
 namespace pincer::engine {
 namespace {
 
-constexpr double kStep = 1e-3;  // [s]
+constexpr double kRotationStep = 1e-3;  // [s]
 
 Vec3 boxMoments(double mass, const Vec3& edges) {
   const Vec3 sq = edges.cwiseAbs2();
@@ -64,7 +64,7 @@ TEST(FreeRotation, SortsBodiesByTheirSymmetry) {
 TEST(FreeRotation, TurnsABallAboutItsMomentum) {
   const double I = 1.6e-5;
   const Vec3 w(30, -20, 50);
-  const Quat q = advance(Vec3::Constant(I), I * w, kStep, 1000);
+  const Quat q = advance(Vec3::Constant(I), I * w, kRotationStep, 1000);
   EXPECT_LE(angleBetween(q, Quat(Eigen::AngleAxisd(w.norm(), w.normalized()))), 1e-12);  // 1000 round-offs of 1e-15
 }
 
@@ -87,7 +87,7 @@ TEST(FreeRotation, FollowsATumblingBox) {
   const Vec3 w(0.02, 20, 0.02), L = kBox.cwiseProduct(w);
   const Quat reference = rungeKutta(kBox, w, 2e-5, 50000);
   EXPECT_LE(angleBetween(reference, rungeKutta(kBox, w, 4e-5, 25000)), 1e-9);
-  EXPECT_LE(angleBetween(advance(kBox, L, kStep, 1000), reference), 1e-9);
+  EXPECT_LE(angleBetween(advance(kBox, L, kRotationStep, 1000), reference), 1e-9);
 }
 
 TEST(FreeRotation, ConvergesWithOrderFour) {
@@ -109,7 +109,7 @@ TEST(FreeRotation, OnlyTheMiddleAxisIsUnstable) {
     Quat q = Quat::Identity();
     double lowest = 1;
     for (int n = 0; n < 3000; ++n) {
-      rotateFreely(rotation, L, kStep, q);
+      rotateFreely(rotation, L, kRotationStep, q);
       lowest = std::min(lowest, (q.conjugate() * L)[axis] / L.norm());
     }
     if (axis == 1)
@@ -126,7 +126,7 @@ TEST(FreeRotation, KeepsEnergyForAMinute) {
   const double before = energy(rotation, q, L);
   double worst = 0;
   for (int n = 0; n < 60000; ++n) {
-    rotateFreely(rotation, L, kStep, q);
+    rotateFreely(rotation, L, kRotationStep, q);
     worst = std::max(worst, std::abs(energy(rotation, q, L) / before - 1));
   }
   EXPECT_LE(worst, 1e-11);  // a fourth-order ripple, no drift: the same after 1 s and after 60 s
@@ -135,7 +135,7 @@ TEST(FreeRotation, KeepsEnergyForAMinute) {
 TEST(FreeRotation, StaysAUnitQuaternionForAMillionSteps) {
   const FreeRotation rotation(kBox);
   Quat q = Quat::Identity();
-  for (int n = 0; n < 1000000; ++n) rotateFreely(rotation, kBox.cwiseProduct(Vec3(10, 7, 15)), kStep, q);
+  for (int n = 0; n < 1000000; ++n) rotateFreely(rotation, kBox.cwiseProduct(Vec3(10, 7, 15)), kRotationStep, q);
   EXPECT_NEAR(q.norm(), 1, 5e-16);
 }
 
@@ -143,8 +143,8 @@ TEST(FreeRotation, ReturnsWhenTimeRunsBack) {
   const Vec3 L = kBox.cwiseProduct(Vec3(10, 7, 15));
   const FreeRotation rotation(kBox);
   Quat q = Quat::Identity();
-  for (int n = 0; n < 1000; ++n) rotateFreely(rotation, L, kStep, q);
-  for (int n = 0; n < 1000; ++n) rotateFreely(rotation, L, -kStep, q);
+  for (int n = 0; n < 1000; ++n) rotateFreely(rotation, L, kRotationStep, q);
+  for (int n = 0; n < 1000; ++n) rotateFreely(rotation, L, -kRotationStep, q);
   EXPECT_LE(angleBetween(q, Quat::Identity()), 1e-12);
 }
 
@@ -156,15 +156,15 @@ RC_GTEST_PROP(FreeRotation, KnowsNoPreferredAxis, ()) {
   Mat3 turn;  // x -> y -> z -> x
   turn << 0, 0, 1, 1, 0, 0, 0, 1, 0;
   const Vec3 moments(a, b, c);
-  const Quat q = advance(moments, moments.cwiseProduct(w), kStep, 100);
-  const Quat turned = advance(turn * moments, turn * moments.cwiseProduct(w), kStep, 100);
+  const Quat q = advance(moments, moments.cwiseProduct(w), kRotationStep, 100);
+  const Quat turned = advance(turn * moments, turn * moments.cwiseProduct(w), kRotationStep, 100);
   RC_ASSERT(angleBetween(Quat(turn) * q * Quat(turn).conjugate(), turned) <= 1e-12);
 }
 
 TEST(FreeRotation, AngularVelocityIsThatOfTheMotion) {
   const Vec3 L = kBox.cwiseProduct(Vec3(10, 7, 15));
   const FreeRotation rotation(kBox);
-  Quat before = advance(kBox, L, kStep, 100), after = before;
+  Quat before = advance(kBox, L, kRotationStep, 100), after = before;
   const Vec3 w = angularVelocity(rotation, before, L);
   const double h = 1e-4;
   rotateFreely(rotation, L, -h, before);

@@ -4,19 +4,20 @@
 #include <limits>
 
 #include "engine/solve/cone.h"
+#include "tests/support/constants.h"
 #include "tests/support/contact_problems.h"
 
 namespace pincer::engine {
 namespace {
 
 using tests::ContactScene;
+using tests::kGravity;
 using tests::OwnedContactProblem;
 using tests::solve;
 using tests::Solved;
 
 constexpr double kTolerance = 1e-10;  // of the solver, relative to the problem's velocities
 constexpr double kStep = 1e-3;        // [s]
-constexpr double kGravity = 9.81;     // [m/s^2]
 constexpr double kFall = kGravity * kStep;
 
 // A ball on a plane: W = diag(1/m + R^2/I, 1/m + R^2/I, 1/m).

@@ -145,7 +145,7 @@ TEST(Solver, GaussSeidelIsExactForOneSoftContact) {
 
 // Every stage of the cascade works in the scratch it is given.
 TEST(Solver, AllocatesNothing) {
-  if (!pincer::testing::allocationsAreCounted()) GTEST_SKIP() << "the sanitizer owns the allocator";
+  if (!pincer::tests::allocationsAreCounted()) GTEST_SKIP() << "the sanitizer owns the allocator";
   RandomScenes random(18);
   SolverScratch scratch(28, 6);
   int methods[7] = {};
@@ -155,9 +155,9 @@ TEST(Solver, AllocatesNothing) {
     const ContactProblem view = p.view();
     Eigen::VectorXd r = Eigen::VectorXd::Zero(p.q.size()), u = r;
     const VectorMap r_map(r.data(), r.size()), u_map(u.data(), u.size());
-    const std::int64_t before = pincer::testing::allocationCount();
+    const std::int64_t before = pincer::tests::allocationCount();
     const SolveResult result = solveContacts(view, {}, scratch, r_map, u_map);
-    EXPECT_EQ(pincer::testing::allocationCount(), before);
+    EXPECT_EQ(pincer::tests::allocationCount(), before);
     ++methods[static_cast<int>(result.method)];
   }
   EXPECT_GT(methods[static_cast<int>(SolveMethod::kNewton)], 0);

@@ -6,14 +6,14 @@
 #include "contact/surface/smooth_mesh.h"
 #include "engine/world/state.h"
 #include "engine/world/step.h"
+#include "tests/support/constants.h"
 
 namespace pincer::engine {
 namespace {
 
 using contact::Box;
 using contact::Shape;
-
-constexpr double kGravity = 9.81;
+using tests::kGravity;
 
 struct Block {
   Shape shape;

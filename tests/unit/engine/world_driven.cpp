@@ -5,14 +5,14 @@
 #include <limits>
 
 #include "engine/world/step.h"
+#include "tests/support/constants.h"
 #include "tests/support/worlds.h"
 
 namespace pincer::engine {
 namespace {
 
-using testing::startAt;
-
-constexpr double kG = 9.81;
+using tests::kGravity;
+using tests::startAt;
 
 // A box of 40 x 40 x 20 mm on a driven plate whose upper side is at z = 0.
 struct Carried {
@@ -59,7 +59,7 @@ TEST(DrivenBody, PlateThatIsPulledAwayLeavesFrictionBehind) {
     const double t = 1e-3 * i;
     world.tick(moving(Vec3(0.5 * a * t * t, 0, -0.01), Vec3(a * t, 0, 0)));
   }
-  EXPECT_NEAR(world.state.bodies[1].v_W.x(), 0.1 * kG * 0.1, 1e-8);
+  EXPECT_NEAR(world.state.bodies[1].v_W.x(), 0.1 * kGravity * 0.1, 1e-8);
 }
 
 TEST(DrivenBody, PlateThatRisesLiftsAndOneThatDropsIsLeftBehind) {
@@ -74,7 +74,7 @@ TEST(DrivenBody, PlateThatRisesLiftsAndOneThatDropsIsLeftBehind) {
   EXPECT_LT(worst, 1e-7);  // the largest acceleration is 2 m/s^2: it never lifts off, and follows to second order
   const double drop = world.state.bodies[1].X_WI.p.z();
   for (int i = 1; i <= 100; ++i) world.tick(moving(Vec3(0, 0, -0.01 - 20 * 0.5e-6 * i * i), Vec3(0, 0, -20 * 1e-3 * i)));
-  EXPECT_NEAR(world.state.bodies[1].X_WI.p.z(), drop - 0.5 * kG * 0.01, 1e-6);
+  EXPECT_NEAR(world.state.bodies[1].X_WI.p.z(), drop - 0.5 * kGravity * 0.01, 1e-6);
 }
 
 TEST(DrivenBody, MotionThatIsNoNumberIsReportedAndRests) {

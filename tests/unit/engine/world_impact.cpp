@@ -5,16 +5,17 @@
 
 #include "engine/world/step.h"
 #include "tests/support/allocation_guard.h"
+#include "tests/support/constants.h"
 #include "tests/support/random_numbers.h"
 #include "tests/support/worlds.h"
 
 namespace pincer::engine {
 namespace {
 
-using testing::startAt;
+using tests::kGravity;
+using tests::startAt;
 
-constexpr double kG = 9.81;
-constexpr double kRadius = 0.02;
+constexpr double kBallRadius = 0.02;
 
 // A ball of 0.1 kg over a floor.
 struct Bouncing {
@@ -22,7 +23,7 @@ struct Bouncing {
   WorldState state;
   WorldScratch scratch;
 
-  Bouncing(double restitution, double mu, const BodyStart& start, double g = kG) : Bouncing(build(restitution, mu, g), start) {}
+  Bouncing(double restitution, double mu, const BodyStart& start, double g = kGravity) : Bouncing(build(restitution, mu, g), start) {}
   BodyState& ball() { return state.bodies[1]; }
   StepReport tick() { return step(model, state, scratch); }
 
@@ -35,7 +36,7 @@ struct Bouncing {
     WorldBuilder builder(options);
     const Material material{mu, mu, restitution, 0};
     builder.addBody({"floor", contact::HalfSpace{}, false, 0, material});
-    builder.addBody({"ball", contact::Sphere{kRadius}, true, 0.1, material});
+    builder.addBody({"ball", contact::Sphere{kBallRadius}, true, 0.1, material});
     return builder.build();
   }
 };
@@ -48,7 +49,7 @@ TEST(Impact, PeaksFallByTheSquareOfTheRestitution) {
     ASSERT_EQ(world.tick().status, kStepOk);
     const double v = world.ball().v_W.z();
     if (v_before > 0 && v <= 0) {
-      const double peak = world.ball().X_WI.p.z() - kRadius + v * v / (2 * kG);
+      const double peak = world.ball().X_WI.p.z() - kBallRadius + v * v / (2 * kGravity);
       // The hit is found to 1e-14 m of a fall of 50 mm or more; a thousand ticks of round-off are below that.
       EXPECT_NEAR(peak / (0.5 * std::pow(0.8, 2 * ++peaks)), 1, 1e-11);
     }
@@ -59,15 +60,15 @@ TEST(Impact, PeaksFallByTheSquareOfTheRestitution) {
 
 TEST(Impact, RestsWhenZenosBouncesAreOver) {
   for (double e : {0.5, 0.8, 0.95}) {
-    Bouncing world(e, 0, startAt(Vec3(0, 0, kRadius + 0.1)));
-    const double end = std::sqrt(2 * 0.1 / kG) * (1 + e) / (1 - e);
+    Bouncing world(e, 0, startAt(Vec3(0, 0, kBallRadius + 0.1)));
+    const double end = std::sqrt(2 * 0.1 / kGravity) * (1 + e) / (1 - e);
     // What comes after a hit is cut off once it is shorter than a tick, or its flights than a sixteenth of one: then 1/16 /(1 - e) ticks are left.
     const double early = 1e-3 * (2 + 1 / (16 * (1 - e)));
     while (world.state.time < end - early) world.tick();
     EXPECT_GT(world.ball().v_W.norm(), 0) << e;
     while (world.state.time < end + 2e-3) world.tick();
     EXPECT_LT(world.ball().v_W.norm(), 1e-10) << e;  // the solver's tolerance
-    EXPECT_NEAR(world.ball().X_WI.p.z(), kRadius, 1e-12) << e;
+    EXPECT_NEAR(world.ball().X_WI.p.z(), kBallRadius, 1e-12) << e;
   }
 }
 
@@ -92,8 +93,8 @@ TEST(Impact, FrictionActsWithinTheHit) {
     const double loss = std::min(2.0 / 7 * v_t, mu * (1 + e) * v_n);
     EXPECT_NEAR(world.ball().v_W.z(), e * v_n, 1e-9);
     EXPECT_NEAR(world.ball().v_W.x(), v_t - loss, 1e-9);  // the solver's tolerance, 1e-10 of the speed
-    EXPECT_NEAR(bodyAngularVelocity(world.model, world.state, 1).y(), 2.5 * loss / kRadius, 1e-6);
-    EXPECT_NEAR(world.ball().X_WI.p.z(), kRadius + e * (1e-3 - 0.0003), 1e-9);  // it hit after 0.3 ms
+    EXPECT_NEAR(bodyAngularVelocity(world.model, world.state, 1).y(), 2.5 * loss / kBallRadius, 1e-6);
+    EXPECT_NEAR(world.ball().X_WI.p.z(), kBallRadius + e * (1e-3 - 0.0003), 1e-9);  // it hit after 0.3 ms
   }
 }
 
@@ -165,12 +166,12 @@ TEST(Impact, ThrownBodiesNeverGainEnergy) {
 }
 
 TEST(Impact, AllocatesNothing) {
-  if (!testing::allocationsAreCounted()) GTEST_SKIP() << "a sanitizer owns the allocator";
+  if (!tests::allocationsAreCounted()) GTEST_SKIP() << "a sanitizer owns the allocator";
   Bouncing world(0.9, 0.3, startAt(Vec3(0, 0, 0.03), Vec3(1, 0, 0), Vec3(0, 50, 20)));
   int cut = 0;
-  const auto before = testing::allocationCount();
+  const auto before = tests::allocationCount();
   for (int i = 0; i < 500; ++i) cut += world.tick().parts > 1;
-  EXPECT_EQ(testing::allocationCount(), before);
+  EXPECT_EQ(tests::allocationCount(), before);
   EXPECT_GT(cut, 3);
 }
 

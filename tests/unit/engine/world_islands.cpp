@@ -76,12 +76,12 @@ TEST(Islands, AreCountedByWhatTouches) {
 }
 
 TEST(Islands, AllocateNothingInTheTick) {
-  if (!pincer::testing::allocationsAreCounted()) GTEST_SKIP() << "the sanitizer owns the allocator";
+  if (!pincer::tests::allocationsAreCounted()) GTEST_SKIP() << "the sanitizer owns the allocator";
   World w = piles(0, 6, 2);
   WorldScratch scratch(w.model);
-  const std::int64_t before = pincer::testing::allocationCount();
+  const std::int64_t before = pincer::tests::allocationCount();
   for (int k = 0; k < 200; ++k) step(w.model, w.state, scratch);
-  EXPECT_EQ(pincer::testing::allocationCount(), before);
+  EXPECT_EQ(pincer::tests::allocationCount(), before);
 }
 
 }  // namespace

@@ -6,15 +6,16 @@
 #include "engine/world/joints.h"
 #include "engine/world/step.h"
 #include "tests/support/allocation_guard.h"
+#include "tests/support/constants.h"
 #include "tests/support/worlds.h"
 
 namespace pincer::engine {
 namespace {
 
-using testing::startAt;
+using tests::kGravity;
+using tests::kPi;
+using tests::startAt;
 
-constexpr double kG = 9.81;
-constexpr double kPi = 3.14159265358979323846;
 const Quat kAlongX = Quat(Eigen::AngleAxisd(kPi / 2, Vec3::UnitY()));  // turns z to x
 
 struct Jointed {
@@ -36,7 +37,7 @@ struct Jointed {
   }
 };
 
-WorldOptions tickOf(double h, double g = kG) {
+WorldOptions tickOf(double h, double g = kGravity) {
   WorldOptions options;
   options.h = h;
   options.gravity_W = Vec3(0, 0, -g);
@@ -61,7 +62,7 @@ double quarterPeriod(double angle) {
     b = std::sqrt(a * b);
     a = mean;
   }
-  return kPi / (2 * a) * std::sqrt(I / (0.1 * kG * 0.1));
+  return kPi / (2 * a) * std::sqrt(I / (0.1 * kGravity * 0.1));
 }
 
 // Time until the pendulum passes the vertical, between ticks on a straight line.
@@ -121,7 +122,7 @@ TEST(Joints, StiffDamperDoesNotRing) {
     world.tick();
     const double w = bodyAngularVelocity(world.model, world.state, 0).x();
     EXPECT_LE(w, 0);
-    EXPECT_GE(w, -1.1 * 0.1 * kG * 0.1 / 1e3);
+    EXPECT_GE(w, -1.1 * 0.1 * kGravity * 0.1 / 1e3);
     before = w;
   }
   EXPECT_LT(before, 0);
@@ -136,7 +137,7 @@ TEST(Joints, SliderFallsToItsTerminalSpeed) {
   Jointed world(builder, {startAt(Vec3(0, 0, 1))});
   world.run(0.3);
   const Vec3 axis = tilted * Vec3::UnitZ();
-  const double terminal = 0.2 * kG / 2 * axis.z(), tau = 0.2 / 2;
+  const double terminal = 0.2 * kGravity / 2 * axis.z(), tau = 0.2 / 2;
   EXPECT_NEAR(world.state.bodies[0].v_W.dot(axis), -terminal * (1 - std::exp(-0.3 / tau)), 1e-5);
   EXPECT_NEAR((world.state.bodies[0].X_WI.p - Vec3(0, 0, 1)).dot(axis), -terminal * (0.3 - tau * (1 - std::exp(-0.3 / tau))), 1e-6);
   EXPECT_LT(world.gap(), 1e-15);
@@ -213,11 +214,11 @@ TEST(Joints, StartApartIsRefused) {
 }
 
 TEST(Joints, AllocateNothing) {
-  if (!testing::allocationsAreCounted()) GTEST_SKIP() << "a sanitizer owns the allocator";
+  if (!tests::allocationsAreCounted()) GTEST_SKIP() << "a sanitizer owns the allocator";
   Jointed world = pendulum(1e-3, 2, 1e-4);
-  const auto before = testing::allocationCount();
+  const auto before = tests::allocationCount();
   for (int i = 0; i < 200; ++i) world.tick();
-  EXPECT_EQ(testing::allocationCount(), before);
+  EXPECT_EQ(tests::allocationCount(), before);
 }
 
 }  // namespace

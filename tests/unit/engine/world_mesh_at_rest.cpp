@@ -15,14 +15,14 @@
 namespace pincer::engine {
 namespace {
 
-constexpr double kMass = 0.075;
+constexpr double kMeshMass = 0.075;
 constexpr double kSize = 0.07;  // largest dimension [m]
 
 contact::TriangleMesh atHandSize(contact::TriangleMesh mesh) {
   const contact::MeshReport report = contact::inspect(mesh);
   const double scale = kSize / (report.box_max - report.box_min).maxCoeff();
   for (Vec3& v : mesh.vertices) v *= scale;
-  const Vec3 p_BBcm = massPropertiesOf(mesh, kMass).p_BBcm;
+  const Vec3 p_BBcm = massPropertiesOf(mesh, kMeshMass).p_BBcm;
   for (Vec3& v : mesh.vertices) v -= p_BBcm;
   return mesh;
 }
@@ -59,7 +59,7 @@ class Drop {
   static WorldModel world(const contact::TriangleMesh& mesh, const contact::Shape& support) {
     WorldBuilder builder{WorldOptions{}};
     builder.addBody({"support", support, false, 0, {0.5, 0.5, 0, 0}});
-    builder.addBody({"object", contact::Mesh{contact::SmoothMesh::build(mesh)}, true, kMass, {0.6, 0.51, 0, 0}});
+    builder.addBody({"object", contact::Mesh{contact::SmoothMesh::build(mesh)}, true, kMeshMass, {0.6, 0.51, 0, 0}});
     return builder.build();
   }
 

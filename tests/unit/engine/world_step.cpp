@@ -6,14 +6,14 @@
 
 #include "engine/world/step.h"
 #include "tests/support/allocation_guard.h"
+#include "tests/support/constants.h"
 #include "tests/support/worlds.h"
 
 namespace pincer::engine {
 namespace {
 
-using testing::startAt;
-
-constexpr double kG = 9.81;
+using tests::kGravity;
+using tests::startAt;
 
 WorldModel ballOverTable(double mu = 0.5) {
   WorldBuilder builder{WorldOptions{}};
@@ -30,7 +30,7 @@ TEST(WorldStep, LoneBodyFollowsItsParabolaExactly) {
   WorldState state = makeState(model, {startAt(Vec3(0, 0, 1), Vec3(1, 2, 3), Vec3(5, 1, 2))}, {});
   WorldScratch scratch(model);
   for (int i = 0; i < 1000; ++i) step(model, state, scratch);
-  const Vec3 want = Vec3(0, 0, 1) + Vec3(1, 2, 3) + 0.5 * Vec3(0, 0, -kG);
+  const Vec3 want = Vec3(0, 0, 1) + Vec3(1, 2, 3) + 0.5 * Vec3(0, 0, -kGravity);
   // The scheme is exact for constant force: what is left is the round-off of 1000 sums of order 1.
   EXPECT_LT((state.bodies[0].X_WI.p - want).norm(), 1e-12);
   EXPECT_EQ(state.time, 1.0);
@@ -105,15 +105,15 @@ TEST(WorldStep, SnapshotAndRestoreGiveTheSameBits) {
 }
 
 TEST(WorldStep, AllocatesNothing) {
-  if (!testing::allocationsAreCounted()) GTEST_SKIP() << "a sanitizer owns the allocator";
+  if (!tests::allocationsAreCounted()) GTEST_SKIP() << "a sanitizer owns the allocator";
   const WorldModel model = ballOverTable();
   WorldState state = makeState(model, {startAt(Vec3::Zero()), startAt(Vec3(0, 0, 0.03), Vec3(1, 0, 0))}, {});
   WorldScratch scratch(model);
-  const auto before = testing::allocationCount();
+  const auto before = tests::allocationCount();
   for (int i = 0; i < 1000; ++i) step(model, state, scratch);
-  EXPECT_EQ(testing::allocationCount(), before);
+  EXPECT_EQ(tests::allocationCount(), before);
   const std::vector<int> counted(10);
-  EXPECT_GT(testing::allocationCount(), before);  // the guard does count
+  EXPECT_GT(tests::allocationCount(), before);  // the guard does count
 }
 
 TEST(WorldStep, NotFiniteStateIsReported) {

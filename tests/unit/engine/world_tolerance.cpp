@@ -6,14 +6,16 @@
 
 #include "engine/world/step.h"
 #include "tests/support/allocation_guard.h"
+#include "tests/support/constants.h"
 #include "tests/support/worlds.h"
 
 namespace pincer::engine {
 namespace {
 
-using testing::startAt;
+using tests::kGravity;
+using tests::startAt;
 
-constexpr double kG = 9.81, kDish = 0.1, kBall = 0.02;
+constexpr double kDish = 0.1, kBall = 0.02;
 
 struct Slide {
   double error;  // [m], largest
@@ -41,7 +43,7 @@ Slide slideInDish(double tolerance, int max_parts, double seconds) {
     const StepReport report = step(model, state, scratch);
     run.most_parts = std::max(run.most_parts, report.parts);
     run.status |= report.status;
-    run.error = std::max(run.error, std::abs(kineticEnergy(model, state) + potentialEnergy(model, state) - start) / (0.1 * kG));
+    run.error = std::max(run.error, std::abs(kineticEnergy(model, state) + potentialEnergy(model, state) - start) / (0.1 * kGravity));
   }
   return run;
 }
@@ -71,7 +73,7 @@ TEST(Tolerance, FastTurnsAreCutBeforehand) {
 }
 
 TEST(Tolerance, AllocatesNothing) {
-  if (!testing::allocationsAreCounted()) GTEST_SKIP() << "a sanitizer owns the allocator";
+  if (!tests::allocationsAreCounted()) GTEST_SKIP() << "a sanitizer owns the allocator";
   WorldOptions options;
   options.position_tolerance = 1e-9;
   WorldBuilder builder(options);
@@ -80,9 +82,9 @@ TEST(Tolerance, AllocatesNothing) {
   const WorldModel model = builder.build();
   WorldState state = makeState(model, {startAt(Vec3::Zero()), startAt(Vec3(0, 0, 0.0205), Vec3(1, 0, 0))}, {});
   WorldScratch scratch(model);
-  const auto before = testing::allocationCount();
+  const auto before = tests::allocationCount();
   for (int i = 0; i < 200; ++i) step(model, state, scratch);
-  EXPECT_EQ(testing::allocationCount(), before);
+  EXPECT_EQ(tests::allocationCount(), before);
 }
 
 }  // namespace

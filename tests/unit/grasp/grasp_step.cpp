@@ -13,9 +13,9 @@
 namespace pincer::grasp {
 namespace {
 
-using testing::GraspWorld;
-using testing::pinchedBall;
-using testing::squeezing;
+using tests::GraspWorld;
+using tests::pinchedBall;
+using tests::squeezing;
 
 // Sum of the impulses on each side of every contact, as the step handed them out.
 TEST(GraspStep, ActionEqualsReactionToTheLastBitEveryTick) {
@@ -106,8 +106,8 @@ TEST(GraspStep, ForcesStayInTheFrictionConeWhileShaken) {
 TEST(GraspStep, DynamicFrictionTakesOverWhenTheFingerSlides) {
   engine::WorldBuilder builder{engine::WorldOptions{}};
   builder.addBody({"table", contact::HalfSpace{}, false, 0, {0.8, 0.5, 0, 0}});
-  GraspModel model = buildGrasp(builder, {testing::softFinger("probe")});
-  GraspState state = makeState(model, {testing::startAt(Vec3::Zero())}, {Vec3(0, 0, 0.008)});
+  GraspModel model = buildGrasp(builder, {tests::softFinger("probe")});
+  GraspState state = makeState(model, {tests::startAt(Vec3::Zero())}, {Vec3(0, 0, 0.008)});
   GraspScratch scratch(model);
   std::vector<FingerInput> inputs(1);
   double largest = 0;
@@ -153,13 +153,13 @@ TEST(GraspStep, BallHeldBelowItsCentreTurnsOverOnlyWithoutTorsion) {
 }
 
 TEST(GraspStep, AllocatesNothing) {
-  if (!testing::allocationsAreCounted()) GTEST_SKIP() << "a sanitizer owns the allocator";
+  if (!tests::allocationsAreCounted()) GTEST_SKIP() << "a sanitizer owns the allocator";
   GraspWorld w = pinchedBall(0.075, 0.6, 1000, 3.3e-3);
   GraspScratch scratch(w.model);
   const auto inputs = squeezing(2e-3);
-  const auto before = testing::allocationCount();
+  const auto before = tests::allocationCount();
   for (int i = 0; i < 1000; ++i) step(w.model, w.state, scratch, inputs);
-  EXPECT_EQ(testing::allocationCount(), before);
+  EXPECT_EQ(tests::allocationCount(), before);
 }
 
 TEST(GraspStep, RestoredSnapshotGivesTheSameBits) {
@@ -196,8 +196,8 @@ TEST(GraspStep, ForceShadingShowsTheFacetsPlaceOnThePad) {
     const auto ball = contact::SmoothMesh::build(contact::icosphere(0.02, 1), options);
     engine::WorldBuilder builder{engine::WorldOptions{}};
     builder.addBody({"ball", contact::Mesh{ball}, false, 0, {0.5, 0.5, 0, 0}});
-    GraspModel model = buildGrasp(builder, {testing::softFinger("probe")});
-    GraspState state = makeState(model, {testing::startAt(Vec3::Zero())}, {over_facet});
+    GraspModel model = buildGrasp(builder, {tests::softFinger("probe")});
+    GraspState state = makeState(model, {tests::startAt(Vec3::Zero())}, {over_facet});
     GraspScratch scratch(model);
     std::vector<FingerInput> inputs(1);
     inputs[0].p_WF = over_facet;

@@ -16,29 +16,17 @@
 #include "tasks/app/progress.h"
 #include "tasks/app/tick_times.h"
 #include "tasks/scene/strict_json.h"
+#include "tests/support/run_app.h"
 #include "tests/support/temporary_directory.h"
 
 namespace pincer::tasks {
 namespace {
 
+using tests::AppResult;
+using tests::contains;
+using tests::runPincer;
+
 const std::string kScenes = PINCER_SOURCE_DIR "/tasks/scenes/";
-
-struct Result {
-  int exit_code;
-  std::string out, error;
-};
-
-Result run(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), "pincer");
-  std::vector<char*> argv;
-  for (std::string& argument : arguments) argv.push_back(argument.data());
-  ::testing::internal::CaptureStdout();
-  ::testing::internal::CaptureStderr();
-  const int exit_code = runApp(static_cast<int>(argv.size()), argv.data());
-  return {exit_code, ::testing::internal::GetCapturedStdout(), ::testing::internal::GetCapturedStderr()};
-}
-
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 int linesOf(const std::string& text) { return static_cast<int>(std::count(text.begin(), text.end(), '\n')); }
 
@@ -59,13 +47,13 @@ TEST(CommandLine, HelpsEverywhereWithAnExample) {
                                                                                        {"mesh", "round-edges"}}) {
     std::vector<std::string> arguments = command;
     arguments.push_back("--help");
-    const Result help = run(arguments);
+    const AppResult help = runPincer(arguments);
     EXPECT_EQ(help.exit_code, kExitOk);
     EXPECT_TRUE(contains(help.out, "pincer ")) << help.out;
     EXPECT_EQ(help.error, "");
     EXPECT_TRUE(contains(help.out, "Example")) << help.out;
   }
-  EXPECT_EQ(run({"--version"}).out.substr(0, 7), "pincer ");
+  EXPECT_EQ(runPincer({"--version"}).out.substr(0, 7), "pincer ");
 }
 
 TEST(CommandLine, ComplainsAboutUsageInOneLine) {
@@ -77,7 +65,7 @@ TEST(CommandLine, ComplainsAboutUsageInOneLine) {
                                                                                          {"mesh", "info", "x.obj"},
                                                                                          {"mesh", "info", "x.obj", "--units", "furlong"},
                                                                                          {"plan", "s.json", "--ticks", "many"}}) {
-    const Result wrong = run(arguments);
+    const AppResult wrong = runPincer(arguments);
     EXPECT_EQ(wrong.exit_code, kExitUsage);
     EXPECT_EQ(wrong.out, "");
     EXPECT_EQ(linesOf(wrong.error), 1) << wrong.error;
@@ -86,13 +74,13 @@ TEST(CommandLine, ComplainsAboutUsageInOneLine) {
 }
 
 TEST(CommandLine, ReportsBadInputAndUnwritableOutput) {
-  EXPECT_EQ(run({"sim", "/nowhere/s.json"}).exit_code, kExitBadInput);
-  EXPECT_TRUE(contains(run({"sim", "/nowhere/s.json"}).error, "/nowhere/s.json"));
-  EXPECT_EQ(run({"mesh", "info", "/nowhere/m.obj", "--units", "m"}).exit_code, kExitBadInput);
-  const Result unwritable = run({"sim", kScenes + "s4_pinch_098.json", "--out", "/nowhere/out.csv"});
+  EXPECT_EQ(runPincer({"sim", "/nowhere/s.json"}).exit_code, kExitBadInput);
+  EXPECT_TRUE(contains(runPincer({"sim", "/nowhere/s.json"}).error, "/nowhere/s.json"));
+  EXPECT_EQ(runPincer({"mesh", "info", "/nowhere/m.obj", "--units", "m"}).exit_code, kExitBadInput);
+  const AppResult unwritable = runPincer({"sim", kScenes + "s4_pinch_098.json", "--out", "/nowhere/out.csv"});
   EXPECT_EQ(unwritable.exit_code, kExitBadInput);
   EXPECT_TRUE(contains(unwritable.error, "/nowhere/out.csv")) << unwritable.error;
-  EXPECT_EQ(run({"sim", kScenes + "s4_pinch.json", "--duration", "0.0005"}).exit_code, kExitBadInput);
+  EXPECT_EQ(runPincer({"sim", kScenes + "s4_pinch.json", "--duration", "0.0005"}).exit_code, kExitBadInput);
 }
 
 // A plain file would take the pipe's place: the file is renamed into it once it is whole.
@@ -100,30 +88,31 @@ TEST(SimCommand, DoesNotWriteOverAPipeOrDevice) {
   const tests::TemporaryDirectory directory;
   const std::string pipe = directory / "pipe";
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
-  const Result result = run({"sim", kScenes + "s4_pinch_098.json", "--out", pipe});
+  const AppResult result = runPincer({"sim", kScenes + "s4_pinch_098.json", "--out", pipe});
   EXPECT_EQ(result.exit_code, kExitBadInput);
   EXPECT_TRUE(contains(result.error, "pipe, not a file")) << result.error;
   EXPECT_TRUE(std::filesystem::is_fifo(pipe));
 }
 
 TEST(SimCommand, ChecksExpectations) {
-  const Result good = run({"sim", kScenes + "s4_pinch_098.json"});
+  const AppResult good = runPincer({"sim", kScenes + "s4_pinch_098.json"});
   EXPECT_EQ(good.exit_code, kExitOk) << good.out;
   const tests::TemporaryDirectory directory;
   std::ofstream(directory / "s.json") << R"({"version": 1, "duration": 0.1, "bodies": [
     {"name": "ball", "shape": {"type": "sphere", "radius": 0.02}, "mass": 1}],
     "expect": [{"quantity": "ball.p_z", "time": "end", "value": 0, "tolerance": 1e-3, "because": "it floats"}]})";
-  const Result failed = run({"sim", directory / "s.json"});
+  const AppResult failed = runPincer({"sim", directory / "s.json"});
   EXPECT_EQ(failed.exit_code, kExitCheckFailed);
   EXPECT_TRUE(contains(failed.out, "FAILS ball.p_z")) << failed.out;
   EXPECT_TRUE(contains(failed.out, "because it floats")) << failed.out;
-  EXPECT_EQ(run({"sim", directory / "s.json", "--duration", "0.01"}).exit_code, kExitOk);  // its time doesn't come
+  EXPECT_EQ(runPincer({"sim", directory / "s.json", "--duration", "0.01"}).exit_code, kExitOk);  // its time doesn't come
 }
 
 TEST(SimCommand, WritesCsvAndJson) {
   const tests::TemporaryDirectory directory;
   const std::string csv = directory / "out.csv";
-  const Result result = run({"sim", kScenes + "s4_pinch_098.json", "--duration", "0.01", "--every", "0.002", "--out", csv, "--json"});
+  const AppResult result =
+      runPincer({"sim", kScenes + "s4_pinch_098.json", "--duration", "0.01", "--every", "0.002", "--out", csv, "--json"});
   ASSERT_EQ(result.exit_code, kExitOk) << result.error;
   std::ifstream in(csv);
   const std::string table{std::istreambuf_iterator<char>(in), {}};
@@ -141,12 +130,12 @@ TEST(RunCommand, LeavesASessionThatReportAndExportRead) {
   const std::string out = directory / "first";
   const std::vector<std::string> command = {"run", "sphere-pickup", "--condition", "cld+force", "--friction", "0.9", "--repetitions",
                                             "1",   "--no-report",   "--json",      "--out",     out};
-  const Result result = run(command);
+  const AppResult result = runPincer(command);
   ASSERT_EQ(result.exit_code, kExitOk) << result.error;
   EXPECT_EQ(parseJson(result.out, "stdout").at("trials").number(), 1);
-  const Result again = run(command);
+  const AppResult again = runPincer(command);
   EXPECT_EQ(again.exit_code, kExitBadInput);  // a session is never overwritten
-  const Result tables = run({"export", out + "/session.db", "--every", "100"});
+  const AppResult tables = runPincer({"export", out + "/session.db", "--every", "100"});
   EXPECT_EQ(tables.exit_code, kExitOk) << tables.error;
   EXPECT_TRUE(std::filesystem::exists(out + "/csv/trial.csv"));
 }
@@ -154,23 +143,23 @@ TEST(RunCommand, LeavesASessionThatReportAndExportRead) {
 TEST(RunCommand, RefusesBadOptionsBeforeItWritesAnything) {
   const tests::TemporaryDirectory directory;
   const std::string out = directory / "first";
-  EXPECT_EQ(run({"run", "sphere-pickup", "--mass", "-1", "--out", out}).exit_code, kExitBadInput);
+  EXPECT_EQ(runPincer({"run", "sphere-pickup", "--mass", "-1", "--out", out}).exit_code, kExitBadInput);
   EXPECT_FALSE(std::filesystem::exists(out));
-  EXPECT_EQ(run({"run", "sphere-pickup", "--object", "/nowhere/cow.obj", "--out", out}).exit_code, kExitBadInput);
-  const Result both = run({"run", "sphere-pickup", "--object", "cow.obj", "--units", "m", "--size", "0.06", "--out", out});
+  EXPECT_EQ(runPincer({"run", "sphere-pickup", "--object", "/nowhere/cow.obj", "--out", out}).exit_code, kExitBadInput);
+  const AppResult both = runPincer({"run", "sphere-pickup", "--object", "cow.obj", "--units", "m", "--size", "0.06", "--out", out});
   EXPECT_EQ(both.exit_code, kExitBadInput);
   EXPECT_TRUE(contains(both.error, "Give one of them")) << both.error;
-  EXPECT_EQ(run({"run", "sphere-pickup", "--size", "0.06", "--out", out}).exit_code, kExitBadInput);
-  EXPECT_EQ(run({"run", "sphere-pickup", "--shading", "facet", "--out", out}).exit_code, kExitBadInput);
+  EXPECT_EQ(runPincer({"run", "sphere-pickup", "--size", "0.06", "--out", out}).exit_code, kExitBadInput);
+  EXPECT_EQ(runPincer({"run", "sphere-pickup", "--shading", "facet", "--out", out}).exit_code, kExitBadInput);
   EXPECT_FALSE(std::filesystem::exists(out));
 }
 
 TEST(PlanCommand, NamesFormsAndMeasuresStages) {
-  const Result text = run({"plan", kScenes + "pickup.json", "--ticks", "200"});
+  const AppResult text = runPincer({"plan", kScenes + "pickup.json", "--ticks", "200"});
   ASSERT_EQ(text.exit_code, kExitOk) << text.error;
   EXPECT_TRUE(contains(text.out, "sphere r 20 mm, 75 g; rotation: spherical top, exact")) << text.out;
   EXPECT_TRUE(contains(text.out, "thumb - sphere")) << text.out;
-  const JsonValue json = parseJson(run({"plan", kScenes + "s1_tumbling_box.json", "--ticks", "100", "--json"}).out, "stdout");
+  const JsonValue json = parseJson(runPincer({"plan", kScenes + "s1_tumbling_box.json", "--ticks", "100", "--json"}).out, "stdout");
   EXPECT_EQ(json.at("stages").array().size(), engine::kStageCount + 1u);
   EXPECT_EQ(json.at("ticks").number(), 100);
 }
@@ -179,7 +168,7 @@ TEST(MeshCommand, MeasuresATetrahedron) {
   const tests::TemporaryDirectory directory;
   const std::string obj = directory / "tetra.obj";
   std::ofstream(obj) << "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
-  const JsonValue json = parseJson(run({"mesh", "info", obj, "--units", "cm", "--density", "6000", "--json"}).out, "stdout");
+  const JsonValue json = parseJson(runPincer({"mesh", "info", obj, "--units", "cm", "--density", "6000", "--json"}).out, "stdout");
   EXPECT_NEAR(json.at("volume").number(), 1e-6 / 6, 1e-20);
   EXPECT_NEAR(json.at("mass").at("mass").number(), 1e-3, 1e-17);
   EXPECT_NEAR(json.at("mass").at("p_BBcm").vector().x(), 0.0025, 1e-16);

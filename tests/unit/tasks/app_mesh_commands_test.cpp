@@ -15,27 +15,15 @@
 #include "tasks/app/app.h"
 #include "tasks/scene/strict_json.h"
 #include "tests/support/mesh_generators.h"
+#include "tests/support/run_app.h"
 #include "tests/support/temporary_directory.h"
 
 namespace pincer::tasks {
 namespace {
 
-struct Result {
-  int exit_code;
-  std::string out, error;
-};
-
-Result run(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), "pincer");
-  std::vector<char*> argv;
-  for (std::string& argument : arguments) argv.push_back(argument.data());
-  ::testing::internal::CaptureStdout();
-  ::testing::internal::CaptureStderr();
-  const int exit_code = runApp(static_cast<int>(argv.size()), argv.data());
-  return {exit_code, ::testing::internal::GetCapturedStdout(), ::testing::internal::GetCapturedStderr()};
-}
-
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+using tests::AppResult;
+using tests::contains;
+using tests::runPincer;
 
 constexpr double kMillimetre = 1e-3;
 
@@ -50,21 +38,21 @@ void writeSamples(const std::string& open, const std::string& whole) {
 TEST(MeshCheckCommand, SaysByItsExitCodeWhetherAMeshIsFit) {
   const tests::TemporaryDirectory directory;
   writeSamples(directory / "open.obj", directory / "whole.obj");
-  EXPECT_EQ(run({"mesh", "check", directory / "whole.obj", "--units", "mm"}).exit_code, kExitOk);
-  const Result open = run({"mesh", "check", directory / "open.obj", "--units", "mm"});
+  EXPECT_EQ(runPincer({"mesh", "check", directory / "whole.obj", "--units", "mm"}).exit_code, kExitOk);
+  const AppResult open = runPincer({"mesh", "check", directory / "open.obj", "--units", "mm"});
   EXPECT_EQ(open.exit_code, kExitCheckFailed);
   EXPECT_TRUE(contains(open.out, "! boundary-edges: ") && contains(open.out, "--fill-holes 4")) << open.out;
-  const Result metres = run({"mesh", "check", directory / "whole.obj"});
+  const AppResult metres = runPincer({"mesh", "check", directory / "whole.obj"});
   EXPECT_EQ(metres.exit_code, kExitCheckFailed);
   EXPECT_TRUE(contains(metres.out, "wrong-scale") && contains(metres.out, "--units mm (40 mm)")) << metres.out;
   std::ofstream(directory / "cut.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n";
-  EXPECT_EQ(run({"mesh", "check", directory / "cut.obj"}).exit_code, kExitBadInput);
+  EXPECT_EQ(runPincer({"mesh", "check", directory / "cut.obj"}).exit_code, kExitBadInput);
 }
 
 TEST(MeshCheckCommand, NamesFindingsForPrograms) {
   const tests::TemporaryDirectory directory;
   writeSamples(directory / "open.obj", directory / "whole.obj");
-  const JsonValue json = parseJson(run({"mesh", "check", directory / "open.obj", "--units", "mm", "--json"}).out, "stdout");
+  const JsonValue json = parseJson(runPincer({"mesh", "check", directory / "open.obj", "--units", "mm", "--json"}).out, "stdout");
   EXPECT_FALSE(json.at("fit").boolean());
   EXPECT_EQ(json.at("boundary_edges").number(), 4);
   EXPECT_EQ(json.at("findings").array()[0].at("name").text(), "boundary-edges");
@@ -75,8 +63,8 @@ TEST(MeshCheckCommand, MeasuresHollowsAgainstTheFinger) {
   const tests::TemporaryDirectory directory;
   const std::string file = directory / "torus.obj";
   contact::writeMesh(file, contact::torus(0.02, 0.015, 48, 32));  // the hole's hollow has a radius of about 5 mm
-  EXPECT_FALSE(contains(run({"mesh", "check", file, "--finger-radius", "3"}).out, "tight-hollow"));
-  const Result large = run({"mesh", "check", file, "--finger-radius", "8"});
+  EXPECT_FALSE(contains(runPincer({"mesh", "check", file, "--finger-radius", "3"}).out, "tight-hollow"));
+  const AppResult large = runPincer({"mesh", "check", file, "--finger-radius", "8"});
   EXPECT_TRUE(contains(large.out, "- tight-hollow: a finger of 8 mm")) << large.out;
   EXPECT_EQ(large.exit_code, kExitOk) << "good to know, no more";
 }
@@ -85,31 +73,31 @@ TEST(MeshConvertCommand, KeepsWhatItConvertsAndScales) {
   const tests::TemporaryDirectory directory;
   const std::string in = directory / "ball.obj", out = directory / "ball.ply";
   contact::writeMesh(in, contact::icosphere(0.02, 2), {.metres_per_unit = kMillimetre});
-  ASSERT_EQ(run({"mesh", "convert", in, out, "--units", "mm", "--to-units", "cm"}).exit_code, kExitOk);
+  ASSERT_EQ(runPincer({"mesh", "convert", in, out, "--units", "mm", "--to-units", "cm"}).exit_code, kExitOk);
   const contact::TriangleMesh back = contact::readMesh(out, {.metres_per_unit = 0.01});
   EXPECT_EQ(back.triangles, contact::icosphere(0.02, 2).triangles);
   EXPECT_NEAR(back.vertices[7].norm(), 0.02, 1e-15);
-  ASSERT_EQ(run({"mesh", "convert", in, directory / "large.obj", "--size", "0.1"}).exit_code, kExitOk);
+  ASSERT_EQ(runPincer({"mesh", "convert", in, directory / "large.obj", "--size", "0.1"}).exit_code, kExitOk);
   const contact::MeshReport report = contact::inspect(contact::readMesh(directory / "large.obj"));
   EXPECT_NEAR((report.box_max - report.box_min).maxCoeff(), 0.1, 1e-15);
-  EXPECT_EQ(run({"mesh", "convert", in, in}).exit_code, kExitBadInput) << "the input is not overwritten";
+  EXPECT_EQ(runPincer({"mesh", "convert", in, in}).exit_code, kExitBadInput) << "the input is not overwritten";
 }
 
 TEST(MeshConvertCommand, ListsEveryRepairAndLeavesSoundFilesByteForByte) {
   const tests::TemporaryDirectory directory;
   writeSamples(directory / "open.obj", directory / "whole.obj");
-  const Result repaired =
-      run({"mesh", "convert", directory / "open.obj", directory / "closed.obj", "--units", "mm", "--repair", "--fill-holes", "4"});
+  const AppResult repaired =
+      runPincer({"mesh", "convert", directory / "open.obj", directory / "closed.obj", "--units", "mm", "--repair", "--fill-holes", "4"});
   ASSERT_EQ(repaired.exit_code, kExitOk) << repaired.error;
   EXPECT_TRUE(contains(repaired.out, "* filled-holes: filled 1 holes with 2 triangles")) << repaired.out;
-  EXPECT_EQ(run({"mesh", "check", directory / "closed.obj", "--units", "mm"}).exit_code, kExitOk);
+  EXPECT_EQ(runPincer({"mesh", "check", directory / "closed.obj", "--units", "mm"}).exit_code, kExitOk);
 
-  ASSERT_EQ(run({"mesh", "convert", directory / "whole.obj", directory / "plain.obj", "--units", "mm"}).exit_code, kExitOk);
-  const Result sound =
-      run({"mesh", "convert", directory / "whole.obj", directory / "again.obj", "--units", "mm", "--repair", "--weld", "1"});
+  ASSERT_EQ(runPincer({"mesh", "convert", directory / "whole.obj", directory / "plain.obj", "--units", "mm"}).exit_code, kExitOk);
+  const AppResult sound =
+      runPincer({"mesh", "convert", directory / "whole.obj", directory / "again.obj", "--units", "mm", "--repair", "--weld", "1"});
   EXPECT_TRUE(contains(sound.out, "nothing to repair")) << sound.out;
   EXPECT_EQ(tests::readFile(directory / "again.obj"), tests::readFile(directory / "plain.obj"));
-  EXPECT_EQ(run({"mesh", "convert", directory / "whole.obj", directory / "x.obj", "--weld", "1"}).exit_code, kExitUsage)
+  EXPECT_EQ(runPincer({"mesh", "convert", directory / "whole.obj", directory / "x.obj", "--weld", "1"}).exit_code, kExitUsage)
       << "needs --repair";
 }
 
@@ -117,12 +105,12 @@ TEST(MeshRoundEdgesCommand, WritesNormalsThatMakeItSmooth) {
   const tests::TemporaryDirectory directory;
   writeSamples(directory / "open.obj", directory / "whole.obj");
   const std::string out = directory / "round.obj";
-  const Result result = run({"mesh", "round-edges", directory / "whole.obj", out, "--units", "mm", "--radius", "1.5"});
+  const AppResult result = runPincer({"mesh", "round-edges", directory / "whole.obj", out, "--units", "mm", "--radius", "1.5"});
   ASSERT_EQ(result.exit_code, kExitOk) << result.error;
   EXPECT_TRUE(contains(result.out, "rounded 12 edges, 8 corners and 0 tips to 1.5 mm")) << result.out;
   const contact::MeshReport report = contact::inspect(contact::readMesh(out, {.metres_per_unit = kMillimetre}));
   EXPECT_TRUE(report.closed && report.file_normals && report.crease_edges == 0);
-  const Result large = run({"mesh", "round-edges", directory / "whole.obj", out, "--units", "mm", "--radius", "30"});
+  const AppResult large = runPincer({"mesh", "round-edges", directory / "whole.obj", out, "--units", "mm", "--radius", "30"});
   EXPECT_EQ(large.exit_code, kExitBadInput);
   EXPECT_TRUE(contains(large.error, "--radius 19.8")) << large.error;
 }
@@ -147,7 +135,7 @@ TEST(MeshesPage, EveryCommandRuns) {
     std::istringstream words(command);
     std::vector<std::string> arguments{std::istream_iterator<std::string>(words), {}};
     arguments.erase(arguments.begin());
-    const Result result = run(arguments);
+    const AppResult result = runPincer(arguments);
     EXPECT_EQ(result.exit_code, kExitOk) << command << "\n" << result.error;
   }
   std::filesystem::current_path(before);

@@ -147,9 +147,9 @@ TEST(ScriptedPickup, AllocatesNothingWhileActing) {
   Phantom phantom;
   ScriptedPickup participant(1);
   participant.begin(phantom.scene.cues);
-  const auto before = testing::allocationCount();
+  const auto before = tests::allocationCount();
   for (int i = 0; i < 10000; ++i) phantom.step(participant, i == 5 ? Cue::kStart : Cue::kNone);
-  EXPECT_EQ(testing::allocationCount() - before, 0);
+  EXPECT_EQ(tests::allocationCount() - before, 0);
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 namespace pincer::tasks {
 namespace {
 
-SensingLimits exactSenses() {
+SensingLimits exactTouch() {
   SensingLimits limits;
   limits.tactor_sd = limits.orientation_sd = limits.placement_sd = limits.placement_between_sd = limits.direction_sd = 0;
   limits.tactor_bias = 1;
@@ -49,7 +49,7 @@ struct TouchedSphere : ::testing::Test {
 // With perfect senses the reading is the geometry: a spherical tip on a sphere touches on the line of centres.
 TEST_F(TouchedSphere, TellsHowFarTheCentreIsAcrossThePads) {
   for (const Vec3& offset_W : {Vec3(0, 0.004, 0), Vec3(0, 0, -0.007), Vec3(0, -0.003, 0.009)}) {
-    Touch touch = touchWith(exactSenses());
+    Touch touch = touchWith(exactTouch());
     touch.feel(percept(0, offset_W, false));
     touch.feel(percept(1e-3, offset_W));
     const auto read_W = touch.readPlace(random);
@@ -59,7 +59,7 @@ TEST_F(TouchedSphere, TellsHowFarTheCentreIsAcrossThePads) {
 }
 
 TEST_F(TouchedSphere, IsFeltTowardsTheCentreOfThePad) {
-  SensingLimits limits = exactSenses();
+  SensingLimits limits = exactTouch();
   limits.tactor_bias = 0.9;
   Touch touch = touchWith(limits);
   const double offset = 0.005, reach = options.radius + options.finger_radius;
@@ -76,7 +76,7 @@ TEST_F(TouchedSphere, TellsNothingWhereTheTactorsStandStill) {
 
 // SD of one reading, mean of two fingers: (r + R)/r x 1.63 mm / sqrt 2 = 4.0 mm per axis. Five standard errors, SD/sqrt(2 n).
 TEST_F(TouchedSphere, IsReadWithTheNoiseOfPublishedLocalisation) {
-  SensingLimits limits = exactSenses();
+  SensingLimits limits = exactTouch();
   limits.tactor_sd = 1.63e-3;
   Touch touch = touchWith(limits);
   touch.feel(percept(0, Vec3(0, 0.003, 0), false));
@@ -90,7 +90,7 @@ TEST_F(TouchedSphere, IsReadWithTheNoiseOfPublishedLocalisation) {
 }
 
 TEST_F(TouchedSphere, FeelsOnlyWhatPressesAgainstThePadAndExceedsTheFloor) {
-  Touch touch = touchWith(exactSenses());
+  Touch touch = touchWith(exactTouch());
   Percept felt = percept(0, Vec3::Zero());
   for (std::size_t i = 0; i < 2; ++i) felt.fingers[i].f_D = Vec3(0, 0, i == 0 ? -0.5 : -0.05);  // D's z points at the object
   touch.feel(felt);
@@ -103,7 +103,7 @@ TEST_F(TouchedSphere, FeelsOnlyWhatPressesAgainstThePadAndExceedsTheFloor) {
 }
 
 TEST_F(TouchedSphere, TellsTheDishFromTheSideOfTheObject) {
-  Touch side = touchWith(exactSenses()), dish = touchWith(exactSenses());
+  Touch side = touchWith(exactTouch()), dish = touchWith(exactTouch());
   Percept pushed = percept(0, Vec3::Zero()), lifted = pushed;
   pushed.fingers[0].f_D = Vec3(0, 0.2, -0.6);  // D: y up, z towards the object
   lifted.fingers[0].f_D = Vec3(0, 0.6, -0.2);

@@ -5,12 +5,14 @@
 
 #include "contact/error.h"
 #include "tasks/report/report.h"
+#include "tests/support/error_of.h"
 #include "tests/support/synthetic_session.h"
 #include "tests/support/temporary_directory.h"
 
 namespace pincer::tasks {
 namespace {
 
+using tests::errorOf;
 using tests::readFile;
 using tests::SyntheticSession;
 using tests::TemporaryDirectory;
@@ -29,15 +31,6 @@ void writeSession(const std::string& path) {
   auto writer = SessionWriter::create(path, SyntheticSession::info(5), {.block_when_full = true});
   SyntheticSession({.seed = 5, .repetitions = 2, .frictions = {0.3, 0.9}, .rate = 100}).writeTo(writer);
   writer.close();
-}
-
-std::string errorOf(const std::function<void()>& act) {
-  try {
-    act();
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return "";
 }
 
 // Every link to a trial has a row to go to.

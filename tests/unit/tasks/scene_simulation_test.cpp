@@ -108,9 +108,9 @@ TEST(Simulation, MovesFingersAlongTheirTrajectories) {
 TEST(Simulation, TicksWithoutAllocatingAndTwiceToTheSameBits) {
   const Scene scene = readScene(PINCER_SOURCE_DIR "/tasks/scenes/pickup.json");
   Simulation first(scene), second(scene);
-  const std::int64_t before = pincer::testing::allocationCount();
+  const std::int64_t before = pincer::tests::allocationCount();
   for (int i = 0; i < 2000; ++i) first.tick();
-  EXPECT_EQ(pincer::testing::allocationCount(), before);
+  EXPECT_EQ(pincer::tests::allocationCount(), before);
   for (int i = 0; i < 2000; ++i) second.tick();
   EXPECT_EQ(engine::hashOf(first.state().world), engine::hashOf(second.state().world));
 }

@@ -80,11 +80,11 @@ TEST(ServoHistogram, AddsAnotherAsIfItsTimesHadBeenAdded) {
 }
 
 TEST(ServoHistogram, AllocatesNothing) {
-  if (!testing::allocationsAreCounted()) GTEST_SKIP() << "the sanitizer owns the allocator";
-  const auto before = testing::allocationCount();
+  if (!tests::allocationsAreCounted()) GTEST_SKIP() << "the sanitizer owns the allocator";
+  const auto before = tests::allocationCount();
   Histogram histogram;
   for (int i = 0; i < 1000; ++i) histogram.add(1e-6 * i);
-  EXPECT_EQ(testing::allocationCount() - before, 0);
+  EXPECT_EQ(tests::allocationCount() - before, 0);
 }
 
 }  // namespace

@@ -15,7 +15,7 @@
 namespace pincer::tasks {
 namespace {
 
-const std::atomic<bool> kNever{false};
+const std::atomic<bool> kNeverStop{false};
 
 // Does `work` in every tick, keeps the ticks' times, counts cuts and by which thread.
 class Cycle final : public ServoCycle {
@@ -51,7 +51,7 @@ TEST(ServoVirtual, TicksOneAfterTheOtherAtTheRate) {
   ServoOptions options;
   options.rate = 500;
   Cycle cycle([n = 0](double) mutable { return ++n < 1000; });
-  const ServoReport report = runServo(options, cycle, kNever);
+  const ServoReport report = runServo(options, cycle, kNeverStop);
   ASSERT_EQ(cycle.times.size(), 1000u);
   for (std::size_t k = 0; k < cycle.times.size(); ++k) ASSERT_EQ(cycle.times[k], static_cast<double>(k) / 500);  // no drift: not summed
   EXPECT_EQ(report.ticks, 1000);
@@ -98,7 +98,7 @@ TEST(ServoVirtual, CutsForcesAndPassesAnExceptionOn) {
     return true;
   });
   try {
-    runServo({}, cycle, kNever);
+    runServo({}, cycle, kNeverStop);
     FAIL() << "the exception was swallowed";
   } catch (const std::runtime_error& e) {
     EXPECT_STREQ(e.what(), "the cable is off");
@@ -112,19 +112,19 @@ TEST(ServoVirtual, RefusesOptionsOutOfRange) {
   for (const double rate : {0.0, -1000.0, 99.0, 4001.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
     ServoOptions options;
     options.rate = rate;
-    EXPECT_THROW(runServo(options, cycle, kNever), std::invalid_argument) << rate;
+    EXPECT_THROW(runServo(options, cycle, kNeverStop), std::invalid_argument) << rate;
   }
   for (const double watchdog : {0.0, -1.0, std::nan("")}) {
     ServoOptions options;
     options.watchdog = watchdog;
-    EXPECT_THROW(runServo(options, cycle, kNever), std::invalid_argument) << watchdog;
+    EXPECT_THROW(runServo(options, cycle, kNeverStop), std::invalid_argument) << watchdog;
   }
   EXPECT_TRUE(cycle.times.empty());
 }
 
 TEST(ServoRealTime, AccountsForEveryTickOf200Milliseconds) {
   Cycle cycle([](double now) { return now < 0.2; });
-  const ServoReport report = runServo(realTime(), cycle, kNever);
+  const ServoReport report = runServo(realTime(), cycle, kNeverStop);
   ASSERT_FALSE(cycle.times.empty());
   // Every due tick was done or is counted as missed, up to the last one that was done.
   const auto last = std::llround(cycle.times.back() * 1000);
@@ -144,7 +144,7 @@ TEST(ServoRealTime, SkipsTicksWhoseTimeHasPassedAndCountsThem) {
     if (now == 0) sleepFor(20);
     return now < 0.04;
   });
-  const ServoReport report = runServo(realTime(), cycle, kNever);
+  const ServoReport report = runServo(realTime(), cycle, kNeverStop);
   EXPECT_GE(report.missed, 19);
   ASSERT_GE(cycle.times.size(), 2u);
   EXPECT_GE(cycle.times[1], 0.020);
@@ -164,13 +164,13 @@ TEST(ServoRealTime, StopsWhenAnotherThreadInterrupts) {
 
 TEST(ServoRealTime, CutsForcesAndPassesAnExceptionOn) {
   Cycle cycle([](double) -> bool { throw std::runtime_error("the cable is off"); });
-  EXPECT_THROW(runServo(realTime(), cycle, kNever), std::runtime_error);
+  EXPECT_THROW(runServo(realTime(), cycle, kNeverStop), std::runtime_error);
   EXPECT_EQ(cycle.cuts, 1);
 }
 
 TEST(ServoRealTime, NamesWhatTheSystemDidNotPermit) {
   Cycle cycle([](double) { return false; });
-  const std::string note = runServo(realTime(), cycle, kNever).note;
+  const std::string note = runServo(realTime(), cycle, kNeverStop).note;
   EXPECT_TRUE(note.empty() || note.find("limits.conf") != std::string::npos) << note;
 }
 
@@ -184,7 +184,7 @@ TEST(ServoWatchdog, CutsForcesFromItsOwnThreadWhenATickStalls) {
     return false;
   });
   self = &cycle;
-  const ServoReport report = runServo(options, cycle, kNever);
+  const ServoReport report = runServo(options, cycle, kNeverStop);
   EXPECT_TRUE(report.watchdog_tripped);
   EXPECT_EQ(cycle.cuts, 1) << "latched: cut once, not at every check";
   EXPECT_EQ(cycle.cuts_by_another_thread, 1);
@@ -192,7 +192,7 @@ TEST(ServoWatchdog, CutsForcesFromItsOwnThreadWhenATickStalls) {
 
 TEST(ServoReport, AddsAnotherAsIfTheTwoWereOneRun) {
   Cycle first([](double now) { return now < 0.02; }), second([](double now) { return now < 0.01; });
-  const ServoReport a = runServo(realTime(), first, kNever), b = runServo({}, second, kNever);
+  const ServoReport a = runServo(realTime(), first, kNeverStop), b = runServo({}, second, kNeverStop);
   ServoReport sum = a;
   sum.add(b);
   EXPECT_EQ(sum.ticks, a.ticks + b.ticks);

@@ -11,10 +11,13 @@
 #include "tasks/app/pickup_session.h"
 #include "tasks/app/servo_text.h"
 #include "tasks/session/session_store.h"
+#include "tests/support/session_samples.h"
 #include "tests/support/temporary_directory.h"
 
 namespace pincer::tasks {
 namespace {
+
+using tests::samplesOf;
 
 const std::atomic<bool> kNever{false};
 
@@ -25,12 +28,6 @@ PickupSessionOptions shortStudy(int repetitions = 1) {
   options.study.repetitions = repetitions;
   options.study.timeout = 3;
   return options;
-}
-
-std::vector<SampleRecord> samplesOf(const SessionReader& session) {
-  std::vector<SampleRecord> samples;
-  session.forEachSample({}, [&](const SampleRecord& sample) { samples.push_back(sample); });
-  return samples;
 }
 
 TEST(PickupSession, KeepsEveryFifthTickByDefault) {

@@ -8,12 +8,16 @@
 
 #include "contact/error.h"
 #include "tasks/session/columns.h"
+#include "tests/support/error_of.h"
+#include "tests/support/session_samples.h"
 #include "tests/support/synthetic_session.h"
 #include "tests/support/temporary_directory.h"
 
 namespace pincer::tasks {
 namespace {
 
+using tests::errorOf;
+using tests::samplesOf;
 using tests::SyntheticSession;
 using tests::TemporaryDirectory;
 
@@ -53,21 +57,6 @@ void expectSame(const Record& a, const Record& b) {
   forEachColumn(a, print(as));
   forEachColumn(b, print(bs));
   EXPECT_EQ(as, bs);
-}
-
-std::vector<SampleRecord> samplesOf(const SessionReader& reader, const SampleFilter& filter = {}) {
-  std::vector<SampleRecord> samples;
-  reader.forEachSample(filter, [&](const SampleRecord& s) { samples.push_back(s); });
-  return samples;
-}
-
-std::string errorOf(const std::function<void()>& act) {
-  try {
-    act();
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return "";
 }
 
 TEST(SessionStore, GivesBackEveryFieldToTheBit) {

@@ -7,7 +7,7 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr double kTick = 1e-3;
+constexpr double kJudgeTick = 1e-3;
 
 // Plays scripted states to a judge.
 struct Stage {
@@ -26,10 +26,10 @@ struct Stage {
     }
   }
   void play(double seconds) {
-    const int ticks = static_cast<int>(std::lround(seconds / kTick));
+    const int ticks = static_cast<int>(std::lround(seconds / kJudgeTick));
     for (int i = 0; i < ticks && verdict == PickupVerdict::kRunning; ++i) {
       verdict = judge.observe(view);
-      view.time += kTick;
+      view.time += kJudgeTick;
     }
   }
   const PickupCounts& counts() const { return judge.counts(); }

@@ -28,7 +28,7 @@ struct PickupRun {
   SpherePickupOptions options;
   PickupObject object = makePickupObject(options);
   ScriptedPickup participant;
-  testing::MemorySink sink{kTicks};
+  tests::MemorySink sink{kTicks};
   SimulatedPickup cycle;
   std::atomic<bool> interrupted{false};
 
@@ -123,9 +123,9 @@ TEST(SpherePickupTrial, EndsInAFaultWithZeroForceWhenAnArmIsUnplugged) {
 TEST(SpherePickupTrial, AllocatesNothingPerTick) {
   PickupRun run(specWith(0.9));
   for (int i = 0; i < 100; ++i) run.cycle.tick(1e-3 * i);
-  const auto before = testing::allocationCount();
+  const auto before = tests::allocationCount();
   for (int i = 100; i < 6000; ++i) run.cycle.tick(1e-3 * i);
-  EXPECT_EQ(testing::allocationCount() - before, 0);
+  EXPECT_EQ(tests::allocationCount() - before, 0);
 }
 
 TEST(SpherePickupTrial, MeasuresTheClearanceOfASphereLiftedStraightUp) {
@@ -142,7 +142,7 @@ TEST(SpherePickupStudy, RunsEveryTrialAndReportsProgress) {
   options.frictions = {0.9};
   options.repetitions = 1;
   options.timeout = 8;
-  testing::MemorySink sink;
+  tests::MemorySink sink;
   std::vector<std::size_t> done;
   const std::atomic<bool> interrupted{false};
   EXPECT_EQ(runPickupStudy(options, {}, sink, interrupted, [&](const PickupProgress& progress) { done.push_back(progress.done); }), 2u);
@@ -153,7 +153,7 @@ TEST(SpherePickupStudy, RunsEveryTrialAndReportsProgress) {
 }
 
 TEST(SpherePickupStudy, LeavesNoRowOfAnInterruptedTrial) {
-  testing::MemorySink sink;
+  tests::MemorySink sink;
   const std::atomic<bool> interrupted{true};
   EXPECT_EQ(runPickupStudy({}, {}, sink, interrupted), 0u);
   EXPECT_TRUE(sink.trials.empty());

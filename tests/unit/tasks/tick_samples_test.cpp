@@ -10,13 +10,15 @@
 #include "engine/world/state.h"
 #include "tasks/servo/tick.h"
 #include "tests/support/allocation_guard.h"
+#include "tests/support/constants.h"
 #include "tests/support/worlds.h"
 
 namespace pincer::tasks {
 namespace {
 
+using tests::kNan;
+
 constexpr double kTick = 1e-3;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // Two arms, turned differently, whose fingers pinch a ball of 50 g. Gates without ramp, so that forces come at once.
 struct Rig {
@@ -24,7 +26,7 @@ struct Rig {
   TickState state;
 
   Rig() {
-    testing::GraspWorld ball = testing::pinchedBall(0.05, 0.8, 1000, 3.3e-3);
+    tests::GraspWorld ball = tests::pinchedBall(0.05, 0.8, 1000, 3.3e-3);
     model.grasp = ball.model;
     state.grasp = ball.state;
     for (int i = 0; i < 2; ++i) {
@@ -129,13 +131,13 @@ TEST(Tick, TellsSamplesApartByOneBit) {
 }
 
 TEST(Tick, AllocatesNothing) {
-  if (!testing::allocationsAreCounted()) GTEST_SKIP() << "the sanitizer owns the allocator";
+  if (!tests::allocationsAreCounted()) GTEST_SKIP() << "the sanitizer owns the allocator";
   LiveRig rig;
   const Recording recording = record(rig.model, 0, 500);
   rig.step(recording[0]);
-  const auto before = testing::allocationCount();
+  const auto before = tests::allocationCount();
   for (std::size_t k = 1; k < recording.size(); ++k) rig.step(recording[k]);
-  EXPECT_EQ(testing::allocationCount() - before, 0);
+  EXPECT_EQ(tests::allocationCount() - before, 0);
 }
 
 TEST(Tick, PlacesTheProxyWhereTheFirstValidSampleIs) {

@@ -25,19 +25,19 @@ TEST(PremiumKinematics, PutsTheResetPlaceAtTheOrigin) { EXPECT_EQ(forward(Vec3::
 // Three postures that can be read off a drawing.
 TEST(PremiumKinematics, FollowsTheLinksInPosturesThatAreEasyToDraw) {
   const double quarter = std::numbers::pi / 2;
-  const double rounding = 1e-16;                                                              // cos(pi/2) isn't 0
-  EXPECT_LE((forward({quarter, 0, 0}) - Vec3(kUpperLink, 0, -kUpperLink)).norm(), rounding);  // turned to the right
-  EXPECT_LE((forward({0, quarter, 0}) - Vec3(0, kUpperLink, -kUpperLink)).norm(), rounding);  // upper link upright
-  EXPECT_LE((forward({0, 0, quarter}) - Vec3(0, kForeLink, kForeLink)).norm(), rounding);     // stretched forward
+  const double rounding = 1e-16;                                              // cos(pi/2) isn't 0
+  EXPECT_LE((forward({quarter, 0, 0}) - Vec3(l1, 0, -l1)).norm(), rounding);  // turned to the right
+  EXPECT_LE((forward({0, quarter, 0}) - Vec3(0, l1, -l1)).norm(), rounding);  // upper link upright
+  EXPECT_LE((forward({0, 0, quarter}) - Vec3(0, l2, l2)).norm(), rounding);   // stretched forward
 }
 
 TEST(PremiumKinematics, KeepsTheLengthsOfItsLinks) {
   tests::RandomNumbers draw(1);
   for (int i = 0; i < 1000; ++i) {
     const Vec3 q = anyAngles(draw);
-    const Vec3 shoulder(0, kForeLink, -kUpperLink);
-    const Vec3 upper = kUpperLink * Vec3(std::sin(q[0]) * std::cos(q[1]), std::sin(q[1]), std::cos(q[0]) * std::cos(q[1]));
-    EXPECT_NEAR((forward(q) - shoulder - upper).norm(), kForeLink, 1e-15);  // a few ulp of 0.2 m
+    const Vec3 shoulder(0, l2, -l1);
+    const Vec3 upper = l1 * Vec3(std::sin(q[0]) * std::cos(q[1]), std::sin(q[1]), std::cos(q[0]) * std::cos(q[1]));
+    EXPECT_NEAR((forward(q) - shoulder - upper).norm(), l2, 1e-15);  // a few ulp of 0.2 m
   }
 }
 
@@ -52,10 +52,10 @@ TEST(PremiumKinematics, InverseUndoesForward) {
 }
 
 TEST(PremiumKinematics, HasNoAnswerBeyondItsReach) {
-  const Vec3 shoulder(0, kForeLink, -kUpperLink);
-  EXPECT_FALSE(inverse(shoulder + Vec3(0, 0, kUpperLink + kForeLink + 1e-6)));
-  EXPECT_TRUE(inverse(shoulder + Vec3(0, 0, kUpperLink + kForeLink - 1e-6)));
-  EXPECT_FALSE(inverse(shoulder + Vec3(0, 0, kUpperLink - kForeLink - 1e-6)));  // too near to fold up to
+  const Vec3 shoulder(0, l2, -l1);
+  EXPECT_FALSE(inverse(shoulder + Vec3(0, 0, l1 + l2 + 1e-6)));
+  EXPECT_TRUE(inverse(shoulder + Vec3(0, 0, l1 + l2 - 1e-6)));
+  EXPECT_FALSE(inverse(shoulder + Vec3(0, 0, l1 - l2 - 1e-6)));  // too near to fold up to
   EXPECT_FALSE(inverse(shoulder));
   EXPECT_FALSE(inverse(Vec3(std::nan(""), 0, 0)));
 }
@@ -74,7 +74,7 @@ TEST(PremiumKinematics, JacobianIsTheDerivativeOfForward) {
 TEST(PremiumKinematics, DexterityIsTheDeterminantOverItsValueAtReset) {
   tests::RandomNumbers draw(4);
   const double at_reset = jacobian(Vec3::Zero()).determinant();
-  EXPECT_NEAR(at_reset, kUpperLink * kUpperLink * kForeLink, 1e-17);
+  EXPECT_NEAR(at_reset, l1 * l1 * l2, 1e-17);
   for (int i = 0; i < 1000; ++i) {
     const Vec3 q = anyAngles(draw);
     EXPECT_NEAR(dexterity(q), jacobian(q).determinant() / at_reset, 1e-14);

@@ -7,12 +7,13 @@
 #include <limits>
 #include <stdexcept>
 
+#include "tests/support/constants.h"
 #include "tests/support/random_numbers.h"
 
 namespace pincer::devices {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+using tests::kNan;
 
 Vec3 anyPlace(tests::RandomNumbers& draw) {
   const Vec3 share(draw.uniform(0, 1), draw.uniform(0, 1), draw.uniform(0, 1));

@@ -5,12 +5,14 @@
 #include <cmath>
 #include <limits>
 
+#include "tests/support/constants.h"
 #include "tests/support/random_numbers.h"
 
 namespace pincer::devices {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+using tests::kNan;
+
 const PadPolicy kPolicy;
 
 // Where the policy settles: a second at 1 kHz is ten times the longest glide on a pad.

@@ -9,12 +9,13 @@
 #include <set>
 #include <stdexcept>
 
+#include "tests/support/constants.h"
 #include "tests/support/random_numbers.h"
 
 namespace pincer::devices {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+using tests::kNan;
 
 // Half of the tactor's travel, peak to peak, while `axis` follows a sine of `amplitude` [m] at `frequency` [Hz], once it is steady.
 double tactorAmplitude(int axis, double amplitude, double frequency) {

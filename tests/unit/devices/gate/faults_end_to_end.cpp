@@ -65,11 +65,11 @@ INSTANTIATE_TEST_SUITE_P(EachFault, Faults,
                                            std::pair(SimFault::kUnplugged, Trip::kInvalidSample)));
 
 TEST(DevicesTick, AllocatesNothing) {
-  if (!pincer::testing::allocationsAreCounted()) GTEST_SKIP() << "a sanitizer owns the allocator";
+  if (!pincer::tests::allocationsAreCounted()) GTEST_SKIP() << "a sanitizer owns the allocator";
   Servo servo;
-  const auto before = pincer::testing::allocationCount();
+  const auto before = pincer::tests::allocationCount();
   for (int i = 0; i < 1000; ++i) servo.tick();
-  EXPECT_EQ(pincer::testing::allocationCount(), before);
+  EXPECT_EQ(pincer::tests::allocationCount(), before);
 }
 
 }  // namespace

@@ -8,12 +8,14 @@
 #include <limits>
 #include <set>
 
+#include "tests/support/constants.h"
 #include "tests/support/random_numbers.h"
 
 namespace pincer::devices {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+using tests::kNan;
+
 constexpr double kInf = std::numeric_limits<double>::infinity();
 const GateLimits kLimits;
 
