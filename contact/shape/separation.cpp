@@ -9,10 +9,10 @@
 namespace pincer::contact {
 namespace {
 
-constexpr double kSameGap = 1e-13;    // of the size: round-off
-constexpr double kApart = 1e-8;       // of the size: solids that are apart by more have nearest points to trust
-constexpr double kMovedApart = 1e-2;  // of the size
-constexpr double kShallow = 1e-4;     // of the size: overlap out of which hardly more than one way leads
+constexpr double kGapRounding = 1e-13;  // of the size: round-off
+constexpr double kTrustedGap = 1e-8;    // of the size: solids that are apart by more have nearest points to trust
+constexpr double kMovedApart = 1e-2;    // of the size
+constexpr double kShallow = 1e-4;       // of the size: overlap out of which hardly more than one way leads
 
 // Kinks of gap: normals of faces, edges.
 struct Kinks {
@@ -26,7 +26,7 @@ class Search {
   Search(const PosedSolid& a, const PosedSolid& b, double size) : a_(a), b_(b), size_(size), round_(isRound(a.shape) || isRound(b.shape)) {}
 
   const Separation& best() const { return best_; }
-  bool isApart() const { return best_.gap > kApart * size_; }
+  bool isApart() const { return best_.gap > kTrustedGap * size_; }
 
   void offer(const Vec3& n) {
     const double gap = gapAlong(a_, b_, n);
@@ -61,7 +61,7 @@ class Search {
       if (!d.apart) break;
       const double before = best_.gap;
       offer(d.v.normalized());
-      if (apart || !(best_.gap > before + (round_ ? kRoughly : kSameGap) * size_)) break;
+      if (apart || !(best_.gap > before + (round_ ? kRoughly : kGapRounding) * size_)) break;
     }
     snapToFaces();
     if (round_) polish();
@@ -78,7 +78,7 @@ class Search {
   // Wins over a direction that is better by round-off only: what lies flat on a face has the face's normal, to the last bit.
   void prefer(const Vec3& n) {
     const double gap = gapAlong(a_, b_, n);
-    if (gap > best_.gap - kSameGap * size_) best_ = {n, gap};
+    if (gap > best_.gap - kGapRounding * size_) best_ = {n, gap};
   }
 
   void snapToFaces() {
@@ -154,12 +154,12 @@ class Search {
       if (!(length > kSmallest && length < 0.9 * last)) break;
       const Vec3 next = (n + std::min(1.0, kLargest / length) * step).normalized();
       const double next_gap = gapAlong(a_, b_, next);
-      if (!(next_gap > gap - kSameGap * size_)) break;
+      if (!(next_gap > gap - kGapRounding * size_)) break;
       n = next;
       gap = next_gap;
       last = length;
     }
-    if (gap > best_.gap - kSameGap * size_) best_ = {n, gap};
+    if (gap > best_.gap - kGapRounding * size_) best_ = {n, gap};
   }
 
   // Zero where the gap isn't concave.

@@ -10,11 +10,12 @@
 #include "tasks/app/record_text.h"
 #include "tasks/measure/timing.h"
 #include "tasks/scene/strict_json.h"
+#include "tests/support/constants.h"
 
 namespace pincer::tasks {
 namespace {
 
-const double kNan = std::nan("");
+using tests::kNan;
 
 TEST(Record, IsOkWhereItsRelationHolds) {
   EXPECT_TRUE(atMost("a", 1, "-", 1).ok);
