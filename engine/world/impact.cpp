@@ -21,10 +21,10 @@ constexpr int kRootSteps = 40;                // a sphere above a plane needs on
 struct Approach {
   double phi, u, a;
 
-  // Time to phi = 0 on the parabola; infinite if it opens before it closes.
+  // Time to phi = 0 on the parabola; infinite if it opens before it closes. What overlaps has closed, if ever, in the past.
   double timeLeft() const {
     const double root = std::sqrt(std::max(u * u - 2 * a * phi, 0.0));
-    if (u < 0) return u * u < 2 * a * phi ? std::numeric_limits<double>::infinity() : 2 * phi / (root - u);
+    if (u < 0) return phi > 0 && u * u < 2 * a * phi ? std::numeric_limits<double>::infinity() : 2 * phi / (root - u);
     return a < 0 ? (root + u) / -a : std::numeric_limits<double>::infinity();
   }
 };
@@ -46,18 +46,41 @@ bool isTouching(const WorldState& state, int a, int b) {
   return false;
 }
 
-bool isNoted(std::span<const ImpactPair> pairs, const Contact& c) {
-  return std::any_of(pairs.begin(), pairs.end(), [&](const ImpactPair& p) { return p.a == c.a.index && p.b == c.b.index; });
+bool isNoted(std::span<const ImpactPair> pairs, int a, int b) {
+  return std::any_of(pairs.begin(), pairs.end(), [&](const ImpactPair& p) { return p.a == a && p.b == b; });
+}
+
+bool isOfBodies(const Contact& c, int a, int b) {
+  return c.a.kind == SideKind::kBody && c.b.kind == SideKind::kBody && c.a.index == a && c.b.index == b;
+}
+
+// Whether two bodies that go `way` past each other in a tick have to be swept.
+bool isFarFor(const WorldModel& model, int a, int b, const Vec3& way) {
+  const double slow = kSlowWay * std::min(model.bodies[a].inner_radius, model.bodies[b].inner_radius);
+  return way.squaredNorm() > slow * slow;
+}
+
+// At the start of this part of the tick [m/s].
+double normalVelocity(const WorldScratch& scratch, const Contact& c) {
+  const BodyScratch &sa = scratch.bodies[c.a.index], &sb = scratch.bodies[c.b.index];
+  const Vec3 v_a = sa.start.v_W + sa.start.w_W.cross(c.p_W - sa.X_WI_mid.p);
+  const Vec3 v_b = sb.start.v_W + sb.start.w_W.cross(c.p_W - sb.X_WI_mid.p);
+  return c.n_W().dot(v_a - v_b);
+}
+
+// Whether the pair touches without closing: it has hit in this tick, and now slides.
+bool hasLanded(const WorldScratch& scratch, const ImpactPair& pair) {
+  return std::any_of(scratch.contacts.begin(), scratch.contacts.end(), [&](const Contact& c) {
+    if (!isOfBodies(c, pair.a, pair.b)) return false;
+    const double u = normalVelocity(scratch, c);
+    return std::abs(u) < kClosingSpeed && c.phi - 0.5 * scratch.h * u < kTouching;
+  });
 }
 
 // A contact that closes in this tick, if nothing holds it up, and then bounces.
 bool mayBounce(const WorldModel& model, const WorldState& state, const WorldScratch& scratch, const Contact& c) {
   if (!(c.material.restitution > 0)) return false;
-  const BodyScratch &sa = scratch.bodies[c.a.index], &sb = scratch.bodies[c.b.index];
-  const Vec3 n_W = c.n_W();
-  const Vec3 v_a = sa.start.v_W + sa.start.w_W.cross(c.p_W - sa.X_WI_mid.p);
-  const Vec3 v_b = sb.start.v_W + sb.start.w_W.cross(c.p_W - sb.X_WI_mid.p);
-  const double u = n_W.dot(v_a - v_b), a = gapAcceleration(model, c);
+  const double u = normalVelocity(scratch, c), a = gapAcceleration(model, c);
   if (u >= 0 && a >= 0) return false;
   const double phi = std::max(c.phi - 0.5 * scratch.h * u, 0.0);
   const double u_hit = -std::sqrt(std::max(u * u - 2 * a * phi, 0.0));
@@ -65,7 +88,7 @@ bool mayBounce(const WorldModel& model, const WorldState& state, const WorldScra
   return !isTouching(state, c.a.index, c.b.index);
 }
 
-// Where the body is, and how it moves, `t` after the start of this part of the tick.
+// Where the body is, and how it moves, `t` after the start of this part of the tick, on the path that advance() takes.
 struct Moment {
   Pose X_WI;
   Motion motion;
@@ -75,20 +98,36 @@ Moment momentOf(const WorldModel& model, const WorldState& state, const WorldScr
   const BodyModel& body = model.bodies[i];
   const BodyState& s = state.bodies[i];
   const BodyScratch& now = scratch.bodies[i];
-  const double share = t / scratch.h;
   if (!body.dynamic) {
     if (!body.driven) return {s.X_WI, {}};
-    const DrivenPlace place = drivenPlace({s.X_WI, {s.v_W, s.L_W}}, {now.X_WB_end, now.free}, scratch.h, share);
+    const DrivenPlace place = drivenPlace({s.X_WI, {s.v_W, s.L_W}}, {now.X_WB_end, now.free}, scratch.h, t / scratch.h);
     return {place.X_WB, place.motion};
   }
   const Vec3 dv_W = now.free.v_W + body.inverse_mass * now.impulse_W - s.v_W;
+  const double share = now.closing ? 1 : t / scratch.h;     // of the change of velocity that has happened
+  const double mean_share = now.closing ? 1 : 0.5 * share;  // in the mean until then
   Moment m;
-  m.X_WI.p = s.X_WI.p + t * (s.v_W + (0.5 * share) * dv_W);
+  m.X_WI.p = s.X_WI.p + t * (s.v_W + mean_share * dv_W);
   m.X_WI.q = s.X_WI.q;
-  rotateFreely(body.rotation, s.L_W + (0.5 * share) * now.angular_impulse_W, t, m.X_WI.q);
+  rotateFreely(body.rotation, s.L_W + mean_share * now.angular_impulse_W, t, m.X_WI.q);
   m.motion.v_W = s.v_W + share * dv_W;
   m.motion.w_W = angularVelocity(body.rotation, m.X_WI.q, s.L_W + share * now.angular_impulse_W);
   return m;
+}
+
+Vec3 endVelocity(const WorldModel& model, const WorldScratch& scratch, int i) {
+  const BodyScratch& now = scratch.bodies[i];
+  return model.bodies[i].dynamic ? Vec3(now.free.v_W + model.bodies[i].inverse_mass * now.impulse_W) : now.free.v_W;
+}
+
+// Whether contacts push some body so hard that it goes far for what it is, which its velocity at the start didn't show.
+bool somethingIsPushed(const WorldModel& model, const WorldScratch& scratch) {
+  for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+    const BodyScratch& body = scratch.bodies[i];
+    if (!body.touched || !model.bodies[i].dynamic) continue;
+    if (scratch.h * model.bodies[i].inverse_mass * body.impulse_W.norm() > kSlowWay * kSlowWay * model.bodies[i].inner_radius) return true;
+  }
+  return false;
 }
 
 // The search for when one pair closes.
@@ -96,8 +135,9 @@ class ClosingPair {
  public:
   ClosingPair(const WorldModel& model, const WorldState& state, WorldScratch& scratch, ImpactPair pair)
       : model_(model), state_(state), scratch_(scratch), pair_(pair) {
-    const double speed = (scratch.bodies[pair.a].start.v_W - scratch.bodies[pair.b].start.v_W).norm();
-    margin_ = 2 * (model.options.contact_margin + scratch.h * speed);
+    const double before = (scratch.bodies[pair.a].start.v_W - scratch.bodies[pair.b].start.v_W).norm();
+    const double after = (endVelocity(model, scratch, pair.a) - endVelocity(model, scratch, pair.b)).norm();
+    margin_ = 2 * (model.options.contact_margin + scratch.h * std::max(before, after));
   }
 
   // Newton's method on the parabolas of the points. A gap between convex bodies that don't turn is a convex function of time, so that each
@@ -151,8 +191,8 @@ class ClosingPair {
 
   Vec3 acceleration(int i) const {
     const BodyScratch& now = scratch_.bodies[i];
-    if (!model_.bodies[i].dynamic) return (now.free.v_W - now.start.v_W) / scratch_.h;
-    return (now.free.v_W + model_.bodies[i].inverse_mass * now.impulse_W - now.start.v_W) / scratch_.h;
+    if (now.closing) return Vec3::Zero();
+    return (endVelocity(model_, scratch_, i) - now.start.v_W) / scratch_.h;
   }
 
   const WorldModel& model_;
@@ -250,21 +290,37 @@ double bounceRestitution(double restitution, double u, double acceleration, doub
 }
 
 void noteFastPair(const WorldModel& model, int a, int b, WorldScratch& scratch) {
-  const double thickness = std::min(model.bodies[a].inner_radius, model.bodies[b].inner_radius);
   const Vec3 way = model.options.h * (scratch.bodies[a].start.v_W - scratch.bodies[b].start.v_W);
-  if (way.squaredNorm() <= kSlowWay * kSlowWay * thickness * thickness) return;
+  if (!isFarFor(model, a, b, way)) return;
   if (scratch.fast_pairs.size() < scratch.fast_pairs.capacity()) scratch.fast_pairs.push_back({a, b});
+}
+
+void notePushedPairs(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
+  if (!somethingIsPushed(model, scratch)) return;
+  for (const PairModel& pair : model.pairs) {
+    if (!scratch.bodies[pair.a].touched && !scratch.bodies[pair.b].touched) continue;
+    const Vec3 way = scratch.h * (endVelocity(model, scratch, pair.a) - endVelocity(model, scratch, pair.b));
+    if (!isFarFor(model, pair.a, pair.b, way) || isTouching(state, pair.a, pair.b)) continue;
+    const auto is_seen = [&](const Contact& c) { return isOfBodies(c, pair.a, pair.b); };
+    if (std::any_of(scratch.contacts.begin(), scratch.contacts.end(), is_seen)) continue;
+    if (isNoted(scratch.impact_pairs, pair.a, pair.b) || scratch.pushed_pairs.size() == scratch.pushed_pairs.capacity()) continue;
+    scratch.pushed_pairs.push_back({pair.a, pair.b});
+    scratch.impact_pairs.push_back({pair.a, pair.b});
+  }
 }
 
 void holdBackImpacts(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
   scratch.impact_pairs.clear();
-  if (scratch.fast_pairs.empty() && !model.bounces) return;
-  for (const ImpactPair& pair : scratch.fast_pairs) {
-    if (!isTouching(state, pair.a, pair.b)) scratch.impact_pairs.push_back(pair);
+  if (scratch.fast_pairs.empty() && scratch.pushed_pairs.empty() && !model.bounces) return;
+  for (const auto* pairs : {&scratch.fast_pairs, &scratch.pushed_pairs}) {
+    for (const ImpactPair& pair : *pairs) {
+      if (isNoted(scratch.impact_pairs, pair.a, pair.b) || isTouching(state, pair.a, pair.b) || hasLanded(scratch, pair)) continue;
+      scratch.impact_pairs.push_back(pair);
+    }
   }
   std::erase_if(scratch.contacts, [&](const Contact& c) {
     if (c.a.kind != SideKind::kBody || c.b.kind != SideKind::kBody) return false;
-    if (isNoted(scratch.impact_pairs, c)) return true;
+    if (isNoted(scratch.impact_pairs, c.a.index, c.b.index)) return true;
     if (!mayBounce(model, state, scratch, c)) return false;
     scratch.impact_pairs.push_back({c.a.index, c.b.index});
     return true;

@@ -10,7 +10,7 @@
 // A hit bounces if T is at least a sixteenth of a tick and all that would follow lasts at least a tick; else it lands.
 //
 // Two bodies that cross a quarter of the thinner one's thickness within a tick are swept, whatever their restitution: the middle of the tick
-// doesn't show whether they meet.
+// doesn't show whether they meet. So are two that would after the solve, because something else (a finger) pushes one of them.
 //
 // Newton's law can add energy in oblique hits with friction (T. R. Kane, D. A. Levinson, Dynamics: Theory and Applications, 1985, section 5.8).
 // Then e is lowered, by quarters, until it doesn't; e = 0 never does.
@@ -33,6 +33,10 @@ double gapAcceleration(const WorldModel& model, const Contact& c);
 
 // Notes the pair in scratch.fast_pairs if it needs to be swept.
 void noteFastPair(const WorldModel& model, int a, int b, WorldScratch& scratch);
+
+// Notes, after the solve, the pairs that contacts push at each other or past each other so fast that they need to be swept, and that weren't
+// near enough to be seen; for the rest of the tick. Only in worlds without a broad phase.
+void notePushedPairs(const WorldModel& model, const WorldState& state, WorldScratch& scratch);
 
 // Takes the contacts of pairs that may hit each other in this tick out of scratch.contacts, and notes the pairs.
 void holdBackImpacts(const WorldModel& model, const WorldState& state, WorldScratch& scratch);

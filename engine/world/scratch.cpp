@@ -20,7 +20,8 @@ WorldScratch::WorldScratch(const WorldModel& model) : h(model.options.h), patche
   points.resize(model.points.size());
   contacts.reserve(contact_count);
   fast_pairs.reserve(contact_count);
-  impact_pairs.reserve(2 * contact_count);
+  pushed_pairs.reserve(contact_count);
+  impact_pairs.reserve(3 * contact_count);
   for (const JointGroup& group : model.joint_groups) {
     const auto rows = static_cast<std::size_t>(group.count) * kMostJointRows;
     JointGroupScratch& out = joint_groups.emplace_back();

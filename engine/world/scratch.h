@@ -117,6 +117,7 @@ struct WorldScratch {
   std::vector<Contact> contacts;  // capacity options.max_contacts
   bool contacts_dropped = false;
   std::vector<ImpactPair> fast_pairs;    // move so fast that the middle of the tick doesn't show whether they meet; capacity as contacts
+  std::vector<ImpactPair> pushed_pairs;  // get that fast in this tick (notePushedPairs); capacity as contacts
   std::vector<ImpactPair> impact_pairs;  // hit each other in this part of the tick, or may (impact.h)
   std::vector<JointGroupScratch> joint_groups;
   std::vector<bool> struck;                // per body, in an impact

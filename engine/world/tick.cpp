@@ -8,6 +8,8 @@
 namespace pincer::engine {
 namespace {
 
+constexpr double kFarTurn = 0.5;        // of what touches, in one part of a tick [rad]
+constexpr int kMostTurningParts = 64;   // that a tick is cut into for that
 constexpr double kShortestPart = 1e-9;  // of a tick: a hit sooner than that is a hit at once
 
 bool isFinite(const MotionInput& in) {
@@ -95,6 +97,7 @@ class Tick {
     const double h = model_.options.h;
     left_ = h;
     impacts_ = 0;
+    scratch_.pushed_pairs.clear();
     report_ = {};
     report_.parts = 0;
     for (PointScratch& point : scratch_.points) point.tick_impulse_W.setZero();
@@ -104,13 +107,15 @@ class Tick {
     }
   }
 
-  // To the end of this part, or to the next impact and through it.
+  // To the end of this part, or as far as what touches doesn't turn too far, or to the next impact and through it.
   void passTime() {
-    const double h = left_ - stop_;
+    double h = left_ - stop_;
     attempt(h);
+    for (; somethingTurnsFar(h) && h > model_.options.h / kMostTurningParts; attempt(h)) h *= 0.5;
+    if (impacts_ < kMostImpacts) notePushedPairs(model_, state_, scratch_);
     double t = h;
     if (!scratch_.impact_pairs.empty()) t = timeOfImpact(model_, state_, scratch_);
-    if (!(t < h)) return finish();
+    if (!(t < h)) return finish(h);
     if (t > kShortestPart * model_.options.h) {
       attempt(t);
       conclude();
@@ -121,9 +126,21 @@ class Tick {
     ++impacts_;
   }
 
-  void finish() {
+  void finish(double h) {
     conclude();
-    left_ = stop_;
+    left_ = h < left_ - stop_ ? left_ - h : stop_;
+  }
+
+  // Of what something pushes on. Contacts wander round a body that turns so far, and those of the middle don't show it: needles and sheets,
+  // which friction spins up, would gain energy.
+  bool somethingTurnsFar(double h) const {
+    for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
+      const BodyScratch& body = scratch_.bodies[i];
+      if (!body.touched || !model_.bodies[i].dynamic || model_.bodies[i].rotation.kind == FreeRotation::Kind::kSpherical) continue;
+      const Vec3 w_end_W = body.free.w_W + body.inverse_inertia_W * body.angular_impulse_W;
+      if (h * h * std::max(body.start.w_W.squaredNorm(), w_end_W.squaredNorm()) > kFarTurn * kFarTurn) return true;
+    }
+    return false;
   }
 
   void conclude() {

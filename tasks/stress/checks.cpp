@@ -28,7 +28,8 @@ std::string faultOfState(const engine::WorldModel& model, const engine::WorldSta
     const engine::BodyState& body = state.bodies[i];
     if (!body.X_WI.p.allFinite() || !body.X_WI.q.coeffs().allFinite() || !body.v_W.allFinite() || !body.L_W.allFinite())
       return fmt::format("{} isn't finite", model.bodies[i].name);
-    if (model.bodies[i].dynamic && body.X_WI.p.z() < 0)
+    constexpr double kSunk = 1e-5;  // a sheet of 20 um may be pressed into the floor by half its thickness [m]
+    if (model.bodies[i].dynamic && body.X_WI.p.z() < -kSunk)
       return fmt::format("{} is {:.3g} m below the floor", model.bodies[i].name, -body.X_WI.p.z());
   }
   for (const engine::PointState& point : state.points) {

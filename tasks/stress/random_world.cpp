@@ -137,11 +137,14 @@ class Draft {
   }
 
   void drawSlivers() {
+    double z = 0;
     for (int i = 0; i < 2; ++i) {
       const double length = logUniform(random_, 0.02, 0.5);
       const double a = length * logUniform(random_, 1e-3, 1), b = length * logUniform(random_, 1e-3, 1);
-      engine::BodyStart& start = add(contact::Box{Vec3(length, a, b) / 2}, logUniform(random_, 1e-3, 1),
-                                     {anyRotation(random_), Vec3(0, 0, length * (0.6 + 1.2 * i))});
+      const double reach = 0.5 * Vec3(length, a, b).norm();
+      engine::BodyStart& start =
+          add(contact::Box{Vec3(length, a, b) / 2}, logUniform(random_, 1e-3, 1), {anyRotation(random_), Vec3(0, 0, z + 1.1 * reach)});
+      z += 2.2 * reach;
       start.w_W = random_.uniform(0, 50) * random_.normal3().normalized();
     }
   }
@@ -168,8 +171,10 @@ class Draft {
 
 }  // namespace
 
-StressWorld::StressWorld(StressClass kind, std::uint64_t seed) : kind_(kind), random_(seedFor(seed, static_cast<std::uint64_t>(kind))) {
+StressWorld::StressWorld(StressClass kind, std::uint64_t seed, int threads)
+    : kind_(kind), random_(seedFor(seed, static_cast<std::uint64_t>(kind))) {
   Draft draft(kind, random_);
+  draft.options.threads = threads;
   engine::WorldBuilder builder(draft.options);
   for (const engine::BodySpec& body : draft.bodies) builder.addBody(body);
   model = grasp::buildGrasp(std::move(builder), std::move(draft.fingers));

@@ -28,7 +28,8 @@ constexpr std::string_view kStressClassNames[] = {"mass-ratio", "redundant", "ov
                                                   "inertia",    "heap",      "stiffness", "teleport", "noise"};
 
 struct StressWorld {
-  StressWorld(StressClass kind, std::uint64_t seed);
+  // `threads` solve it (engine::WorldOptions).
+  StressWorld(StressClass kind, std::uint64_t seed, int threads = 1);
 
   // Where the fingers' devices are at the end of the next tick.
   std::span<const grasp::FingerInput> nextInputs();

@@ -4,7 +4,8 @@
 //   cones     r_n >= 0 and |r_T| <= mu r_n, with torsion and rolling in the same cone, for every contact, to 1e-9 relative
 //   law       the contact law's residual (natural map) of a tick that isn't flagged is below 1e-6 of the largest speed, or 2e-8 m/s, computed here afresh
 //   energy    of worlds without fingers never above what it began with, and what getting out of an initial overlap may lift
-//   floor     no centre of mass is below the floor
+//   floor     no centre of mass is more than 10 um below the floor
+//   threads   one world in twenty ends with the same bits where two threads solve
 // A tick that the engine flags (StepStatus) may miss the law, nothing else. Every failure is named with its seed, which repeats it.
 #pragma once
 #include <cstdint>

@@ -165,6 +165,28 @@ TEST(Impact, ThrownBodiesNeverGainEnergy) {
   }
 }
 
+// It slides fast after the hit, so it is swept, and the gap's parabola touches 0 just where it begins: it once sank freely from there.
+TEST(Impact, ABallThatLandsObliquelyInALongTickSlidesOnTheFloor) {
+  constexpr double kSmall = 0.0039;
+  WorldOptions options;
+  options.h = 8.6e-3;
+  WorldBuilder builder(options);
+  const Material material{2.9, 2.9, 0, 0};
+  builder.addBody({"floor", contact::HalfSpace{}, false, 0, material});
+  builder.addBody({"ball", contact::Sphere{kSmall}, true, 0.19, material});
+  const WorldModel model = builder.build();
+  for (int phase = 0; phase < 20; ++phase) {
+    const double height = kSmall + 1e-3 + 4e-4 * phase;
+    WorldState state = makeState(model, {startAt(Vec3::Zero()), startAt(Vec3(0, 0, height), Vec3(0.3, -0.46, -0.9), Vec3(-2, -3, 2))}, {});
+    WorldScratch scratch(model);
+    for (int i = 0; i < 30; ++i) {
+      ASSERT_EQ(step(model, state, scratch).status, kStepOk);
+      // What other contacts leave of the root is 1e-7 m.
+      ASSERT_GT(state.bodies[1].X_WI.p.z(), kSmall - 1e-7) << "phase " << phase << ", tick " << i;
+    }
+  }
+}
+
 TEST(Impact, AllocatesNothing) {
   if (!tests::allocationsAreCounted()) GTEST_SKIP() << "a sanitizer owns the allocator";
   Bouncing world(0.9, 0.3, startAt(Vec3(0, 0, 0.03), Vec3(1, 0, 0), Vec3(0, 50, 20)));

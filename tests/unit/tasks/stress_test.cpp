@@ -15,6 +15,21 @@ TEST(Stress, AFewWorldsOfEachClassHold) {
   }
 }
 
+// Fingers that flung a body through the floor within a tick, a needle that friction spun up until it gained energy, and one that a single
+// hit spun up.
+TEST(Stress, WorldsThatOnceFailedHold) {
+  const auto run = [](std::string_view name, std::uint64_t seed) {
+    for (const Measurement& measurement : stressMeasurements({.first_seed = seed, .seeds = 1})) {
+      if (measurement.name != name) continue;
+      MeasureContext context;
+      for (const Record& record : measurement.run(context)) EXPECT_TRUE(record.ok) << record.metric;
+    }
+  };
+  for (const std::uint64_t seed : {31, 125, 164, 211, 244}) run("stress/teleport", seed);
+  run("stress/stiffness", 50);
+  for (const std::uint64_t seed : {32, 75, 196, 249}) run("stress/inertia", seed);
+}
+
 // The checks see what they are there for.
 TEST(Stress, ChecksNameAContactThatPullsOrSlipsOutOfItsCone) {
   engine::WorldBuilder builder(engine::WorldOptions{});
