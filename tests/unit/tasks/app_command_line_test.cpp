@@ -187,7 +187,7 @@ TEST(MeshCommand, MeasuresATetrahedron) {
 // Figures of the exact scene hold, whatever its times are here; files are written, one row per run.
 TEST(BenchEngine, MeasuresASceneAndWritesItsTables) {
   const tests::TemporaryDirectory directory;
-  const Result r = run({"bench", "engine", "--only", "s2", "--rounds", "1", "--json", "--out", directory.path()});
+  const AppResult r = runPincer({"bench", "engine", "--only", "s2", "--rounds", "1", "--json", "--out", directory.path()});
   const JsonValue records = parseJson(r.out, "stdout");
   const JsonValue& error = records.array().at(0);
   EXPECT_EQ(error.at("name").text(), "s2/slide-to-roll");
@@ -198,7 +198,7 @@ TEST(BenchEngine, MeasuresASceneAndWritesItsTables) {
 }
 
 TEST(BenchEngine, ListsItsScenes) {
-  const Result r = run({"bench", "engine", "--list"});
+  const AppResult r = runPincer({"bench", "engine", "--list"});
   EXPECT_EQ(r.exit_code, kExitOk);
   for (const char* name : {"s1/tumbling-box\n", "s6/mass-ratio-1e4\n", "s9/latency\n", "more/capsule-pinch-20x\n"}) {
     EXPECT_TRUE(contains(r.out, name)) << r.out;
