@@ -35,7 +35,7 @@ int runSim(const SimArguments& arguments) {
     Progress progress("sim", simulation.scene().ticks());
     return runScene(simulation, arguments.options, interrupted, [&](std::int64_t done) { progress.update(done); });
   }();
-  fmt::print("{}", arguments.json ? simJson(simulation, result) : simText(simulation, result));
+  fmt::print("{}", arguments.json ? simJson(simulation, arguments.options, result) : simText(simulation, arguments.options, result));
   if (result.interrupted) return kExitInterrupted;
   return result.broke || result.log.anyFailed() ? kExitCheckFailed : kExitOk;
 }
@@ -50,6 +50,8 @@ void addSimCommand(CLI::App& app, int& exit_code) {
   command->add_option("--every", arguments->options.every, "Time between recorded rows in place of the scene's [s]")
       ->check(CLI::PositiveNumber);
   command->add_option("--out", arguments->options.csv, "Write the recorded quantities to this CSV file");
+  command->add_flag("--grasp", arguments->options.grasp,
+                    "Say how well the fingers hold each body at the end: slip margins, force closure, epsilon");
   command->add_flag("--json", arguments->json, "Print the result as JSON");
   command->footer(kSimExample);
   command->callback([arguments, &exit_code] { exit_code = runSim(*arguments); });

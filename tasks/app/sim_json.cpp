@@ -1,3 +1,4 @@
+#include "tasks/app/grasp_text.h"
 #include "tasks/app/json_writer.h"
 #include "tasks/app/sim_run.h"
 
@@ -59,13 +60,14 @@ void writeTimes(const SimResult& result, JsonWriter& json) {
 
 }  // namespace
 
-std::string simJson(const Simulation& simulation, const SimResult& result) {
+std::string simJson(const Simulation& simulation, const SimOptions& options, const SimResult& result) {
   JsonWriter json;
   json.beginObject().key("scene").value(simulation.scene().file).key("description").value(simulation.scene().description);
   json.key("time").value(simulation.time()).key("ticks").value(simulation.ticks()).key("interrupted").value(result.interrupted);
   writeTimes(result, json);
   writeBodies(simulation, json);
   writeFingers(simulation, json);
+  if (options.grasp) writeGrasps(simulation, json);
   json.key("recorded").beginObject();
   for (const Quantity& q : simulation.scene().record.quantities) json.key(q.name).value(q.measure(simulation.moment()));
   json.endObject();

@@ -15,6 +15,7 @@ struct SimOptions {
   std::optional<double> duration;  // in place of the scene's [s]
   std::optional<double> every;     // in place of the scene's recording interval [s]
   std::string csv;                 // file for the recorded quantities; empty: none
+  bool grasp = false;              // say how well the fingers hold at the end
 };
 
 struct SimResult {
@@ -34,7 +35,7 @@ SimResult runScene(Simulation& simulation, const SimOptions& options, const std:
                    const std::function<void(std::int64_t)>& progress);
 
 // For a person, and for machines.
-std::string simText(const Simulation& simulation, const SimResult& result);
-std::string simJson(const Simulation& simulation, const SimResult& result);
+std::string simText(const Simulation& simulation, const SimOptions& options, const SimResult& result);
+std::string simJson(const Simulation& simulation, const SimOptions& options, const SimResult& result);
 
 }  // namespace pincer::tasks

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "tasks/app/grasp_text.h"
 #include "tasks/app/sim_run.h"
 #include "tasks/app/terminal.h"
 
@@ -80,10 +81,11 @@ void appendStatuses(const SimResult& result, std::string& out) {
 
 }  // namespace
 
-std::string simText(const Simulation& simulation, const SimResult& result) {
+std::string simText(const Simulation& simulation, const SimOptions& options, const SimResult& result) {
   const Scene& scene = simulation.scene();
   std::string out = scene.description.empty() ? scene.file + "\n" : fmt::format("{}\n{}\n", scene.file, scene.description);
   appendStates(simulation, out);
+  if (options.grasp) out += graspText(simulation);
   appendRecorded(simulation, out);
   appendExpectations(result, out);
   appendStatuses(result, out);

@@ -21,6 +21,7 @@ class Simulation {
   const grasp::GraspModel& model() const { return model_; }
   const grasp::GraspState& state() const { return state_; }
   grasp::GraspScratch& scratch() { return scratch_; }
+  const grasp::GraspScratch& scratch() const { return scratch_; }  // as the last tick left it
   Moment moment() const { return {model_, state_, scratch_.fingers, scene_.starts}; }
   Pose bodyPose(int body) const { return engine::bodyPose(model_.world, state_.world, body); }  // X_WB
 

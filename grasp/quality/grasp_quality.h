@@ -1,0 +1,30 @@
+// grasp_quality: how well fingers hold a body, from the contacts of one tick. Off the tick: it allocates, and takes milliseconds to seconds.
+//
+// Sources: C. Ferrari, J. Canny, ICRA 1992, 2290-2295 (epsilon, volume); V.-D. Nguyen, Int. J. Robotics Res. 7 (1988) 3-16 (force closure);
+// T. Yoshikawa, K. Nagai, IEEE Trans. Robotics Autom. 7 (1991) 67-77 (internal force: the part that moves nothing).
+#pragma once
+#include "grasp/quality/wrench_set.h"
+
+namespace pincer::grasp {
+
+struct GraspQuality {
+  std::vector<GraspContact> contacts;
+  double rho = 0;              // length that makes torques forces: the furthest contact's distance from the centre of mass [m]
+  int rank = 0;                // of the grasp matrix, 0 .. 6
+  bool force_closure = false;  // any small wrench can be resisted by squeezing
+  double epsilon = 0;          // the least wrench (f, tau/rho) that the grasp can resist per newton of summed normal force, over directions
+  Vec6 weakest_W = Vec6::Zero();     // its direction (f, tau/rho), unit
+  double volume = 0;                 // see WrenchSet::volume
+  std::vector<double> slip_margins;  // per contact
+  std::vector<Vec3> internal_f_W;    // per contact: the part of its force on the body that the other contacts cancel [N]
+  double squeeze = 0;                // summed normal force [N]
+  double least_squeeze = 0;          // that could hold the body's weight [N]; infinite if none can
+};
+
+// `body` must be a dynamic one. Empty contacts: rank 0, least_squeeze infinite.
+GraspQuality graspQuality(const GraspModel& model, const GraspState& state, const GraspScratch& scratch, int body);
+
+// Of given contacts, about the centre of mass p_WC, for a body of weight `weight_W` [N].
+GraspQuality graspQuality(std::vector<GraspContact> contacts, const Vec3& p_WC, const Vec3& weight_W);
+
+}  // namespace pincer::grasp
