@@ -24,15 +24,23 @@ double impactBias(const WorldModel& model, const WorldScratch& scratch, const Co
   return scratch.bounce * bounceRestitution(c.material.restitution, u_n, gapAcceleration(model, c), model.options.h) * u_n;
 }
 
+// Whether a contact that landed in the last tick now only rolls on, round a rim or along an edge: all its normal velocity comes from the turn of
+// its arms, which it meets from the middle of the landing to that of this tick, twice `turn`.
+bool rollsOn(double u_n, double turn) {
+  constexpr double kAlike = 0.2;  // of the turn: it changes from tick to tick
+  return std::abs(turn) > kClosingSpeed && std::abs(u_n - 2 * turn) < kAlike * std::abs(turn);
+}
+
 double normalBias(const WorldModel& model, const WorldState& state, const WorldScratch& scratch, Contact& c) {
   if (scratch.h == 0) return impactBias(model, scratch, c);
   const double h = model.options.h;
   const ContactMemory* memory = c.memory >= 0 ? &state.contacts[c.memory] : nullptr;
-  // What landed in the last tick still has the speed that it landed with: it is stopped like a new contact.
-  if (memory && memory->active && !memory->closing) {
-    return std::max(kNormalCorrection * c.phi / h, -kLargestCorrection) + turnOfNormal(scratch, state.h_last, c, *memory);
-  }
   const double u_n = c.v_start_C[kNormalRow];
+  if (memory && memory->active) {
+    const double turn = turnOfNormal(scratch, state.h_last, c, *memory);
+    // What landed in the last tick still has the speed that it landed with: it is stopped like a new contact.
+    if (!memory->closing || rollsOn(u_n, turn)) return std::max(kNormalCorrection * c.phi / h, -kLargestCorrection) + turn;
+  }
   const double phi_start = c.phi - 0.5 * scratch.h * u_n;
   c.closing = std::abs(u_n) > kClosingSpeed;  // also what hops and comes down within the tick
   if (phi_start > 0) return phi_start / scratch.h;

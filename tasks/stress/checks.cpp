@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace pincer::tasks {
@@ -55,7 +56,10 @@ std::string faultOfLaw(const engine::WorldModel& model, const engine::WorldScrat
   constexpr double kTolerance = 1e-6;
   constexpr double kContent = 2e-8;  // [m/s] twice what the solver is content with (SolverOptions::content_speed), for w is another here
   double speed = 1e-6, worst = 0;
-  for (const engine::Contact& c : scratch.contacts) speed = std::max(speed, c.u_C.norm());
+  for (const engine::Contact& c : scratch.contacts) {
+    const Eigen::Vector4d u_free_C = engine::relativeVelocity(c, engine::mover(scratch, c.a).free, engine::mover(scratch, c.b).free);
+    speed = std::max({speed, c.u_C.norm(), u_free_C.head<3>().norm()});
+  }
   for (const engine::Contact& c : scratch.contacts) {
     if (c.material.torsion_radius > 0) continue;
     const double w = inverseMass(model, c.a) + inverseMass(model, c.b);

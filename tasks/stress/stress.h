@@ -2,7 +2,8 @@
 //
 //   finite    every place and velocity is a number
 //   cones     r_n >= 0 and |r_T| <= mu r_n, with torsion and rolling in the same cone, for every contact, to 1e-9 relative
-//   law       the contact law's residual (natural map) of a tick that isn't flagged is below 1e-6 of the largest speed, or 2e-8 m/s, computed here afresh
+//   law       the contact law's residual (natural map) of a tick that isn't flagged, computed here afresh, is below 1e-6 of the largest speed with
+//             contacts or without, or 2e-8 m/s
 //   energy    of worlds without fingers never above what it began with, and what getting out of an initial overlap may lift
 //   floor     no centre of mass is more than 10 um below the floor
 //   threads   one world in twenty ends with the same bits where two threads solve
