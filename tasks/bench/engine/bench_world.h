@@ -67,6 +67,7 @@ struct BenchStep {
 struct Contestant {
   std::string engine = {}, setting = {};
   std::vector<BenchStep> ladder = {};                        // empty: the scene's
+  std::function<bool(const BenchWorld&)> meant = {};         // for which worlds; null: all. Left out elsewhere
   std::function<std::string(const BenchWorld&)> lacks = {};  // why it takes no part in this world; empty: it does
   std::function<std::unique_ptr<BenchEngine>(const BenchWorld&, const BenchStep&)> make = {};
 

@@ -154,7 +154,7 @@ std::vector<Contestant> pincerContestants() {
   const auto if_small = [](const BenchWorld& world) {
     return world.bodies.size() > kMostWithin ? fmt::format("not run with more than {} bodies, for its cost", kMostWithin) : std::string();
   };
-  Contestant plain{"pincer", "", {}, always, make}, within{"pincer", "with tolerance", {}, if_small, make};
+  Contestant plain{"pincer", "", {}, {}, always, make}, within{"pincer", "with tolerance", {}, {}, if_small, make};
   for (const double tolerance : {1e-7, 1e-9, 1e-11}) within.ladder.push_back({1e-3, tolerance});
   return {plain, within};
 }

@@ -11,7 +11,7 @@ namespace pincer::tasks {
 
 struct RaceOptions {
   int rounds = 3;                   // of timing; the least counts
-  double seconds = 0.1;             // of processor time that a run of an even scene takes in a round [s]
+  double seconds = 0.03;            // of processor time that a run of an even scene takes in a round [s]
   std::int64_t least_steps = 1000;  // but at least so many
 };
 

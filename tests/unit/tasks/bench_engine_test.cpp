@@ -102,11 +102,11 @@ class FakeEngine : public BenchEngine {
 };
 
 Contestant fake(const std::string& name, double error) {
-  return {name,
-          "",
-          {},
-          [](const BenchWorld&) { return std::string(); },
-          [=](const BenchWorld&, const BenchStep& step) { return std::make_unique<FakeEngine>(step.h, error); }};
+  Contestant c;
+  c.engine = name;
+  c.lacks = [](const BenchWorld&) { return std::string(); };
+  c.make = [=](const BenchWorld&, const BenchStep& step) { return std::make_unique<FakeEngine>(step.h, error); };
+  return c;
 }
 
 BenchScene glide() {
@@ -123,11 +123,14 @@ BenchScene glide() {
 TEST(Race, JudgesEachRunAndTimesThoseThatMoved) {
   Contestant picky = fake("picky", 0);
   picky.lacks = [](const BenchWorld&) { return std::string("has no wheels"); };
+  Contestant elsewhere = fake("elsewhere", 0);
+  elsewhere.meant = [](const BenchWorld&) { return false; };  // has no run at all
   Contestant broken = fake("broken", 0);
   broken.make = [](const BenchWorld&, const BenchStep&) -> std::unique_ptr<BenchEngine> { throw InputError("no such shape"); };
   MeasureContext context;
-  const auto runs = race(glide(), {fake("right", 0), fake("near", 0.25), fake("stuck", -1), fake("lost", kNoNumber), picky, broken},
-                         {.rounds = 1}, context);
+  const auto runs =
+      race(glide(), {fake("right", 0), fake("near", 0.25), fake("stuck", -1), fake("lost", kNoNumber), picky, elsewhere, broken},
+           {.rounds = 1}, context);
   ASSERT_EQ(runs.size(), 11u);
   EXPECT_EQ(runs[0].steps, 100);
   EXPECT_EQ(runs[1].steps, 1000);
