@@ -95,7 +95,7 @@ class Tick {
 
   void runInParts(int parts) {
     const double h = model_.options.h;
-    left_ = h;
+    left_ = part_ = h;
     impacts_ = 0;
     scratch_.pushed_pairs.clear();
     report_ = {};
@@ -109,9 +109,11 @@ class Tick {
 
   // To the end of this part, or as far as what touches doesn't turn too far, or to the next impact and through it.
   void passTime() {
-    double h = left_ - stop_;
+    const double rest = left_ - stop_;
+    double h = rest < 2.001 * part_ ? rest : 2 * part_;  // leaves no crumb of round-off
     attempt(h);
     for (; somethingTurnsFar(h) && h > model_.options.h / kMostTurningParts; attempt(h)) h *= 0.5;
+    part_ = h;
     if (impacts_ < kMostImpacts) notePushedPairs(model_, state_, scratch_);
     double t = h;
     if (!scratch_.impact_pairs.empty()) t = timeOfImpact(model_, state_, scratch_);
@@ -208,6 +210,7 @@ class Tick {
   const StepInputs& inputs_;
   ContactSource* source_;
   double left_;      // of the tick [s]
+  double part_ = 0;  // length of the last part, before a hit cut it [s]
   double stop_ = 0;  // what is left of the tick at the end of this part [s]
   int impacts_ = 0;
   StepReport report_;
