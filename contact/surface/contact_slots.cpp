@@ -26,6 +26,10 @@ struct Followed {
   ShellContact contact;
   int slot = -1;
   bool is_new = false;
+  bool fades = false;
+  double ease = 0;  // [m]
+
+  double shown() const { return contact.h + ease; }
 };
 
 // Whether the place is on an edge or a vertex that this triangle has too.
@@ -45,22 +49,34 @@ bool isOnFeatureOf(const SurfaceNet& net, const Foot& foot, std::int32_t triangl
 class Touch {
  public:
   Touch(const TouchedSurface& surface, const Vec3& C, double r, double margin, SurfaceTracker& tracker, PatchCache& cache)
-      : s_(surface), C_(C), r_(r), reach_(r + margin), tracker_(tracker), cache_(cache) {}
+      : s_(surface),
+        C_(C),
+        r_(r),
+        reach_(r + margin),
+        moved_((C - tracker.p_BC_last).norm()),
+        eases_(surface.variant == SurfaceVariant::smooth),
+        tracker_(tracker),
+        cache_(cache) {}
 
   SurfaceContacts run() {
     followSlots();
-    if (!touches()) takeNearest();
+    if (count_ == 0 && lost_count_ > 0) findLost();
+    if (!touches() && lost_count_ == 0) takeNearest();
+    if (eases_) fadeLost();
     if (nearestHeight() < reach_) addFurther();
-    if (lost_ >= 0) holdLost();
     return write();
   }
 
  private:
   void followSlots();
-  void holdLost();
+  bool continues(const SurfaceSlot& kept, const ShellContact& contact) const;
+  void lose(int slot);
+  void fadeLost();
+  void findLost();
+  void hold(int slot);
   void takeNearest();
-  void takeOrHold(const ShellContact& nearest);
   ShellContact nearestWithin(double bound) const;
+  ShellContact straightTo(const SurfaceSeed& seed) const;
   void addFurther();
   void tryPlace(const Foot& foot);
   bool isNew(const ShellContact& candidate) const;
@@ -71,36 +87,46 @@ class Touch {
   bool touches() const { return nearestHeight() < r_; }
   double nearestHeight() const {
     double h = kInfinity;
-    for (int i = 0; i < count_; ++i) h = std::min(h, list_[at(i)].contact.h);
+    for (int i = 0; i < count_; ++i) h = list_[at(i)].fades ? h : std::min(h, list_[at(i)].contact.h);
     return h;
   }
   Vec3 placeOf(const ShellContact& c) const { return C_ - c.h * c.n; }
   ShellContact follow(const Foot& foot) const { return followContact(s_.variant, s_.net, cache_, C_, r_, foot); }
+  const SurfaceSlot& keptIn(int slot) const { return tracker_.slots[at(slot)]; }
   Foot footOf(int slot) const {
-    const SurfaceSlot& kept = tracker_.slots[at(slot)];
+    const SurfaceSlot& kept = keptIn(slot);
     return {kept.triangle, {std::max(0.0, 1 - kept.u - kept.v), kept.u, kept.v}};
   }
-  bool isUsed(int slot) const {
-    const std::int32_t triangle = tracker_.slots[at(slot)].triangle;
-    return triangle >= 0 && triangle < s_.net.size();
+  bool isUsed(int slot) const { return keptIn(slot).triangle >= 0 && keptIn(slot).triangle < s_.net.size(); }
+  // The contact that a slot stands for, as a plane.
+  ShellContact planeOf(int slot) const {
+    const SurfaceSlot& kept = keptIn(slot);
+    return {footOf(slot), kept.n_B, (C_ - kept.p_BS).dot(kept.n_B), false, {}};
   }
   static std::size_t at(int i) { return static_cast<std::size_t>(i); }
   bool isListed(const ShellContact& contact) const {
-    return std::any_of(list_.data(), list_.data() + count_,
-                       [&](const Followed& other) { return (placeOf(other.contact) - placeOf(contact)).norm() < kOnePlace * r_; });
+    return std::any_of(list_.data(), list_.data() + count_, [&](const Followed& other) {
+      return !other.fades && (placeOf(other.contact) - placeOf(contact)).norm() < kOnePlace * r_;
+    });
   }
-  void add(const ShellContact& contact, int slot, bool is_new) { list_[at(count_++)] = {contact, slot, is_new}; }
+  // What it overlaps by beyond what the finger can have come closer.
+  double easeOfNew(const ShellContact& contact) const { return eases_ && was_used_ ? std::max(0.0, r_ - contact.h - moved_) : 0; }
+  void addNew(const ShellContact& contact) { list_[at(count_++)] = {contact, freeSlot(), true, false, easeOfNew(contact)}; }
   int freeSlot() const;
 
   const TouchedSurface& s_;
   const Vec3 C_;
   const double r_, reach_;
+  const double moved_;  // the centre since the last query [m]
+  const bool eases_;    // the other variants show what they do at edges: jump
   SurfaceTracker& tracker_;
   PatchCache& cache_;
+  bool was_used_ = false;  // the last query had contacts
 
   std::array<Followed, kMaxSurfaceContacts> list_;
   int count_ = 0;
-  int lost_ = -1;  // a slot whose contact has lost its solution
+  std::array<int, kMaxSurfaceContacts> lost_;  // slots whose contacts have lost their solutions
+  int lost_count_ = 0;
   std::uint32_t status_ = kQueryOk;
   QueryCost cost_;
 
@@ -114,69 +140,93 @@ void Touch::followSlots() {
   constexpr double kWellAbove = 0.25;  // of r
   for (int slot = 0; slot < kMaxSurfaceContacts; ++slot) {
     if (!isUsed(slot)) continue;
+    was_used_ = true;
+    if (keptIn(slot).fades) {
+      lose(slot);
+      continue;
+    }
     const Foot start = footOf(slot);
     const ShellContact contact = follow(start);
     cost_.iterations += contact.cost.steps;
     cost_.crossings += contact.cost.crossings;
     const bool is_other_side = contact.converged && contact.h < 0 && tangentContact(s_.net, cache_, C_, start).h > kWellAbove * r_;
-    if (!contact.converged || is_other_side) {
-      if (lost_ < 0) lost_ = slot;
-      continue;
+    if (!contact.converged || is_other_side || isListed(contact)) {
+      lose(slot);
+    } else if (continues(keptIn(slot), contact)) {
+      list_[at(count_++)] = {contact, slot, false, false, std::max(0.0, keptIn(slot).ease - moved_)};
+    } else {
+      lose(slot);
+      if (count_ < kMaxSurfaceContacts) addNew(contact);
     }
-    if (!isListed(contact)) add(contact, slot, false);
   }
 }
 
-// One of several that has lost its solution, unless the search for further contacts has found it again.
-void Touch::holdLost() {
-  constexpr double kSameNormal = 0.9;  // cosine
-  const ShellContact held = tangentContact(s_.net, cache_, C_, footOf(lost_));
-  for (int i = 0; i < count_; ++i) {
-    if (!list_[at(i)].is_new || list_[at(i)].contact.n.dot(held.n) < kSameNormal) continue;
-    status_ |= kQueryReseeded;
-    ++cost_.reseeds;
+// Whether the contact is the slot's moved on, or another one that the walk has slid down to.
+bool Touch::continues(const SurfaceSlot& kept, const ShellContact& contact) const {
+  constexpr double kSteepest = 10;  // change of overlap per way of the centre, beyond what any hollow that the finger fits into gives
+  constexpr double kStill = 1e-5;   // of r
+  const double before = r_ - (tracker_.p_BC_last - kept.p_BS).dot(kept.n_B), now = r_ - contact.h;
+  if (!eases_ || before <= 0 || now <= 0) return true;
+  return (now * contact.n - before * kept.n_B).norm() <= kSteepest * moved_ + kStill * r_;
+}
+
+void Touch::lose(int slot) { lost_[at(lost_count_++)] = slot; }
+
+// What was lost in overlap stands for its plane, and gives way as the finger moves.
+void Touch::fadeLost() {
+  for (int i = 0; i < lost_count_ && count_ < kMaxSurfaceContacts; ++i) {
+    const int slot = lost_[at(i)];
+    Followed plane{planeOf(slot), slot, false, true, keptIn(slot).ease + moved_};
+    if (!(plane.shown() < r_)) continue;
+    list_[at(count_++)] = plane;
+    status_ |= kQueryEased;
+  }
+}
+
+// Without any contact left: a place on the side that the finger is on, or none.
+void Touch::findLost() {
+  constexpr double kSameDepth = 0.5;  // of r
+  const int slot = lost_[0];
+  const ShellContact plane = planeOf(slot);
+  if (plane.h + keptIn(slot).ease >= r_) {
+    lost_count_ = 0;
     return;
   }
-  if (!(held.h < r_) || count_ == kMaxSurfaceContacts) return;
-  add(held, lost_, false);
+  const auto isSameSide = [&](const ShellContact& c) { return c.n.dot(plane.n) > 0 && std::abs(c.h - plane.h) < kSameDepth * r_; };
+  addFurther();
+  Followed* const end = list_.data() + count_;
+  const Followed* const found = std::find_if(list_.data(), end, [&](const Followed& c) { return isSameSide(c.contact); });
+  count_ = found == end ? 0 : 1;
+  if (count_ == 1) list_[0] = *found;
+  if (count_ == 0) {
+    const SurfaceSeed seed = s_.search.nearest(s_.net, cache_, C_, reach_, Facing::front);
+    ShellContact nearest;
+    if (seed.found) nearest = follow(seed.foot);
+    if (seed.found && (!nearest.converged || !isSameSide(nearest))) nearest = straightTo(seed);
+    if (!nearest.converged || !isSameSide(nearest)) return hold(slot);
+    addNew(nearest);
+  }
+  status_ |= kQueryReseeded;
+  ++cost_.reseeds;
+}
+
+// Its plane stays, whole.
+void Touch::hold(int slot) {
+  list_[at(count_++)] = {planeOf(slot), slot, false, false, keptIn(slot).ease};
+  lost_count_ = 0;
   status_ |= kQueryHeldDirection;
   ++cost_.held;
 }
 
 // In free space the nearest place is the contact, whatever was followed.
 void Touch::takeNearest() {
-  ShellContact nearest = nearestWithin(nearestHeight());
-  if (count_ == 0) return takeOrHold(nearest);
-  if (!nearest.converged || isListed(nearest)) return;
+  const ShellContact nearest = nearestWithin(nearestHeight());
+  if (count_ > 0 && (!nearest.converged || isListed(nearest))) return;
   if (count_ == kMaxSurfaceContacts) --count_;
-  add(nearest, freeSlot(), true);
-}
-
-// A contact that was lost may come back on its own side only: the far side of a thin wall is as near as this one.
-void Touch::takeOrHold(const ShellContact& nearest) {
-  constexpr double kSameDepth = 0.5;  // of r
-  const bool was_followed = lost_ >= 0;
-  const ShellContact held = tangentContact(s_.net, cache_, C_, was_followed ? footOf(lost_) : nearest.foot);
-  const auto isSameSide = [&](const ShellContact& c) {
-    return !was_followed || held.h >= r_ || (c.n.dot(held.n) > 0 && std::abs(c.h - held.h) < kSameDepth * r_);
-  };
-  ShellContact found = nearest;
-  if (!nearest.converged || !isSameSide(nearest)) {
-    addFurther();
-    Followed* const end = list_.data() + count_;
-    const Followed* const other = std::find_if(list_.data(), end, [&](const Followed& c) { return isSameSide(c.contact); });
-    found = other == end ? held : other->contact;
-    count_ = 0;
-  }
-  add(found, was_followed ? lost_ : 0, false);
-  lost_ = -1;
-  if (!found.converged) {
-    status_ |= kQueryHeldDirection;
-    ++cost_.held;
-  } else if (was_followed) {
-    status_ |= kQueryReseeded;
-    ++cost_.reseeds;
-  }
+  addNew(nearest);
+  if (nearest.converged) return;
+  status_ |= kQueryHeldDirection;
+  ++cost_.held;
 }
 
 // The nearest solution; not converged if there is none nearer than `bound`. In free space a seed that leads to no solution as near (shading
@@ -187,18 +237,22 @@ ShellContact Touch::nearestWithin(double bound) const {
   if (!seed.found) return {};
   ShellContact contact = follow(seed.foot);
   const bool strayed = !contact.converged || std::abs(contact.h) > seed.distance + kStrayed * r_;
-  if (strayed && seed.distance > r_) {
-    const PatchPoint x = evaluate(s_.net.cell(seed.foot.triangle, cache_).patch, seed.foot.b[1], seed.foot.b[2]);
-    const double sign = (C_ - x.S).dot(x.N) < 0 ? -1 : 1;
-    return {seed.foot, sign / seed.distance * (C_ - x.S), sign * seed.distance, true, {}};
-  }
+  if (strayed && seed.distance > r_) return straightTo(seed);
+  if (!contact.converged) contact = tangentContact(s_.net, cache_, C_, seed.foot);
   contact.converged = contact.converged && std::abs(contact.h) < bound;
   return contact;
 }
 
+// Contact with the place itself, whatever the normal there.
+ShellContact Touch::straightTo(const SurfaceSeed& seed) const {
+  const PatchPoint x = evaluate(s_.net.cell(seed.foot.triangle, cache_).patch, seed.foot.b[1], seed.foot.b[2]);
+  const double sign = (C_ - x.S).dot(x.N) < 0 ? -1 : 1;
+  return {seed.foot, sign / seed.distance * (C_ - x.S), sign * seed.distance, seed.distance > 0, {}};
+}
+
 void Touch::addFurther() {
   s_.search.visitMinima(s_.net, C_, reach_, [&](const Foot& foot, double radius) {
-    if (!isSeen(foot, radius)) tryPlace(foot);
+    if (seen_count_ < kMaxTries && !isSeen(foot, radius)) tryPlace(foot);
     return seen_count_ < kMaxTries;
   });
 }
@@ -218,7 +272,7 @@ bool Touch::isSeen(const Foot& foot, double radius) const {
   };
   for (int i = 0; i < count_; ++i) {
     const ShellContact& c = list_[at(i)].contact;
-    if (stands(c.foot, placeOf(c), c.n)) return true;
+    if (!list_[at(i)].fades && stands(c.foot, placeOf(c), c.n)) return true;
   }
   for (int i = 0; i < seen_count_; ++i) {
     if (stands(seen_[at(i)].foot, seen_[at(i)].S, seen_[at(i)].n)) return true;
@@ -235,7 +289,7 @@ void Touch::tryPlace(const Foot& foot) {
 bool Touch::isNew(const ShellContact& candidate) const {
   const Vec3 S = placeOf(candidate);
   for (int i = 0; i < count_; ++i) {
-    if (list_[at(i)].contact.n.dot(candidate.n) > kApart) return false;
+    if (!list_[at(i)].fades && list_[at(i)].contact.n.dot(candidate.n) > kApart) return false;
   }
   const bool is_on_face = *std::min_element(candidate.foot.b.begin(), candidate.foot.b.end()) > 0;
   const PatchPoint x = evaluate(s_.net.cell(candidate.foot.triangle, cache_).patch, candidate.foot.b[1], candidate.foot.b[2]);
@@ -247,35 +301,43 @@ bool Touch::isNew(const ShellContact& candidate) const {
 
 // Followed contacts stay; of further ones the deepest do.
 void Touch::keepDeepestFurther(const ShellContact& candidate) {
-  if (count_ < kMaxSurfaceContacts) return add(candidate, freeSlot(), true);
+  if (count_ < kMaxSurfaceContacts) return addNew(candidate);
   status_ |= kQueryContactsDropped;
   for (int i = 0; i < count_; ++i) {
-    if (!list_[at(i)].is_new || list_[at(i)].contact.h <= candidate.h) continue;
-    list_[at(i)].contact = candidate;
+    Followed& other = list_[at(i)];
+    if (!other.is_new || other.contact.h <= candidate.h) continue;
+    other.contact = candidate;
+    other.ease = easeOfNew(candidate);
     return;
   }
 }
 
+// One that nothing is followed in, if there is; what fades yields.
 int Touch::freeSlot() const {
+  int spare = -1;
   for (int slot = 0; slot < kMaxSurfaceContacts; ++slot) {
-    bool is_taken = slot == lost_;
+    bool is_taken = false, is_lost = false;
     for (int i = 0; i < count_; ++i) is_taken |= list_[at(i)].slot == slot;
-    if (!is_taken) return slot;
+    for (int i = 0; i < lost_count_; ++i) is_lost |= lost_[at(i)] == slot;
+    if (!is_taken && !is_lost) return slot;
+    if (!is_taken) spare = slot;
   }
-  return lost_;
+  return spare;
 }
 
 SurfaceContacts Touch::write() {
   std::sort(list_.begin(), list_.begin() + count_, [](const Followed& a, const Followed& b) {
-    return a.contact.h < b.contact.h || (a.contact.h == b.contact.h && a.slot < b.slot);
+    return a.shown() < b.shown() || (a.shown() == b.shown() && a.slot < b.slot);
   });
   SurfaceContacts found;
   tracker_.slots = {};
   for (int i = 0; i < count_; ++i) {
-    const auto& [contact, slot, is_new] = list_[at(i)];
-    if (i > 0 && contact.h >= reach_) continue;
-    tracker_.slots[at(slot)] = {contact.foot.triangle, contact.foot.b[1], contact.foot.b[2]};
-    found.points[at(found.count++)] = {placeOf(contact), contact.n, contact.h - r_, static_cast<std::uint32_t>(slot)};
+    const Followed& f = list_[at(i)];
+    if (i > 0 && f.shown() >= reach_) continue;
+    const ShellContact& c = f.contact;
+    tracker_.slots[at(f.slot)] = {c.foot.triangle, f.fades, c.foot.b[1], c.foot.b[2], f.ease, placeOf(c), c.n};
+    found.points[at(found.count++)] = {placeOf(c), c.n, f.shown() - r_, static_cast<std::uint32_t>(f.slot)};
+    if (f.ease > 0) status_ |= kQueryEased;
   }
   const ShellContact& main = list_[0].contact;
   if (main.h > 0) {
@@ -284,6 +346,7 @@ SurfaceContacts Touch::write() {
   } else if (main.h <= 0 && tracker_.has_centre) {
     tracker_.p_BC = placeOf(main) + r_ * main.n;
   }
+  tracker_.p_BC_last = C_;
   tracker_.status = status_;
   found.cost = cost_;
   return found;

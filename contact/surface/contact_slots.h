@@ -1,17 +1,23 @@
 // contact_slots: the up to three places at which one finger touches one surface, followed from tick to tick.
 //
-//   h_i = height of the finger's centre C over contact i, along its normal [m];  phi_i = h_i - r
+//   h_i = (C - S_i) . n_i,   phi_i = h_i - r + e_i
+//
+//   C  finger's centre, S_i, n_i  place and unit normal of contact i [m, -], frame B;  r  finger's radius [m];  e_i >= 0  its ease [m]
 //
 // A tick:  follow what the tracker's slots hold;  in free space take the nearest place instead;  look for further places that face the
-// centre with h < r + margin;  keep the three that matter;  write the slots back.
+// centre with h < r + margin;  keep the three that matter;  ease what came or went in overlap;  write the slots back.
 //
 // - A contact is followed for as long as the equation has a solution that way, so the tracked side of a thin wall never changes. A further
 //   one is added where the finger comes to touch it, at phi near 0, and dropped once it is out of the margin: no force jumps.
 // - A new contact is one that the finger could come to from outside: its place faces where the centre was at the last query and faces it
 //   now, and no other part of the surface hides it. A centre that has been pressed under the surface counts as being where the finger would
 //   be on that surface, so the far side of a wall stays out of reach however long the finger is pressed.
-// - Two that have moved to one place are one: they push alike, so nothing jumps when the younger goes.
-// - With several contacts, one that loses its solution is held with its normal; a single one is looked for in the whole surface first.
+// - Two that have moved to one place are one.
+// - Ease. Places that face a finger that is pressed into a hollow tighter than itself come, go and swap while they overlap (where two meet
+//   at a fold of the distance). A contact that comes so begins at phi = 0, e = its depth; its ease shrinks by as much as the centre moves.
+//   One that goes so stays as a plane, and its ease grows by as much, until it has faded. A finger whose contacts all have
+//   phi >= 0, as those of grasp/, meets no such place: the way down from it leads to one nearer than it, so it lies at phi > 0.
+// - A contact without a solution near is looked for in the whole surface; failing that, its plane is held.
 #pragma once
 #include "contact/surface/surface_contact.h"
 #include "contact/surface/surface_search.h"

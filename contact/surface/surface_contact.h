@@ -24,7 +24,7 @@ constexpr int kMaxSurfaceContacts = 3;
 struct SurfaceContact {
   Vec3 p_BS = Vec3::Zero();
   Vec3 n_B = Vec3::UnitZ();
-  double phi = 0;             // [m]
+  double phi = 0;             // [m]; eased where the contact came or goes while it overlaps (contact_slots.h)
   std::uint32_t feature = 0;  // the tracker's slot: the same for as long as this contact is followed
 };
 
@@ -44,19 +44,23 @@ struct SurfaceContacts {
   const SurfaceContact& main() const { return points[0]; }
 };
 
-// The foot of one followed contact.
+// One followed contact: its foot, and what the last query answered.
 struct SurfaceSlot {
   std::int32_t triangle = -1;  // -1: nothing is followed here
+  bool fades = false;          // lost while it overlapped: stands for its tangent plane until it has been eased away
   double u = 0, v = 0;         // barycentric coordinates of corners 1 and 2 of the triangle [-]
+  double ease = 0;             // by which the gap is answered larger than it is [m], >= 0
+  Vec3 p_BS = Vec3::Zero(), n_B = Vec3::UnitZ();
 };
 
 // Where the last query of one finger on one mesh ended; the next begins there. Closed forms don't use it. A plain value: part of the
 // world's state, copied with snapshots. A default one means "search the whole mesh".
 struct SurfaceTracker {
   std::array<SurfaceSlot, kMaxSurfaceContacts> slots;
-  Vec3 p_BC = Vec3::Zero();  // where the fingertip's centre was, or would have been had it not been pressed under the surface [m]
-  bool has_centre = false;   // whether it has been outside
-  std::uint32_t status = 0;  // bits of QueryStatus of the last query
+  Vec3 p_BC = Vec3::Zero();       // where the fingertip's centre was, or would have been had it not been pressed under the surface [m]
+  Vec3 p_BC_last = Vec3::Zero();  // where it was
+  bool has_centre = false;        // whether it has been outside
+  std::uint32_t status = 0;       // bits of QueryStatus of the last query
 };
 
 enum QueryStatus : std::uint32_t {
@@ -64,6 +68,7 @@ enum QueryStatus : std::uint32_t {
   kQueryReseeded = 1u << 0,         // the warm start failed; the answer came from the tree (nothing was lost)
   kQueryHeldDirection = 1u << 1,    // no solution found: the last contact was kept. Remedy: refine or smooth the mesh there
   kQueryContactsDropped = 1u << 2,  // more than three places are touched: the shallowest of the new ones were dropped. Fill such hollows
+  kQueryEased = 1u << 3,            // a contact came or went while it overlapped: eased in or out. Widen hollows tighter than the finger
 };
 
 }  // namespace pincer::contact
