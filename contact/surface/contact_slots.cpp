@@ -326,9 +326,8 @@ int Touch::freeSlot() const {
 }
 
 SurfaceContacts Touch::write() {
-  std::sort(list_.begin(), list_.begin() + count_, [](const Followed& a, const Followed& b) {
-    return a.shown() < b.shown() || (a.shown() == b.shown() && a.slot < b.slot);
-  });
+  std::sort(list_.begin(), list_.begin() + count_,
+            [](const Followed& a, const Followed& b) { return a.shown() < b.shown() || (a.shown() == b.shown() && a.slot < b.slot); });
   SurfaceContacts found;
   tracker_.slots = {};
   for (int i = 0; i < count_; ++i) {

@@ -1,0 +1,209 @@
+// Grooves, corners, pits and holes: the sum of the contacts' pushes and its direction move no faster than the finger does, however contacts
+// come, go and meet.
+//
+//   f = sum max(-phi_i, 0) n_i,  the push per stiffness [m];  its place on the pad turns with f / |f|
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "contact/mesh/generated_meshes.h"
+#include "contact/surface/smooth_mesh.h"
+#include "tests/support/notched_blocks.h"
+#include "tests/support/random_numbers.h"
+
+namespace pincer::contact {
+namespace {
+
+using tests::RandomNumbers;
+
+constexpr double kTip = 0.008;        // [m]
+constexpr double kNear = 0.001;       // [m]
+constexpr double kMicrometre = 1e-6;  // [m]
+
+Vec3 pushOf(const SurfaceContacts& contacts) {
+  Vec3 f = Vec3::Zero();
+  for (int i = 0; i < contacts.count; ++i) {
+    const SurfaceContact& c = contacts.points[static_cast<std::size_t>(i)];
+    f += std::max(-c.phi, 0.0) * c.n_B;
+  }
+  return f;
+}
+
+struct Tip {
+  explicit Tip(const TriangleMesh& mesh) : surface(SmoothMesh::build(mesh)) {}
+  SurfaceContacts at(const Vec3& C) { return surface->querySphere(C, kTip, kNear, tracker, cache); }
+
+  std::shared_ptr<const SmoothMesh> surface;
+  SurfaceTracker tracker;
+  PatchCache cache;
+};
+
+struct Steadiness {
+  double push = 0;   // largest change of f per way of the centre [-]
+  double place = 0;  // and of f's direction, times the finger's radius and |f| over the way [m]: |f| d(place) / d(way)
+  int most = 0;      // contacts that overlap
+  std::uint32_t status = 0;
+};
+
+Steadiness along(const TriangleMesh& mesh, double way, const std::function<Vec3(double)>& path) {
+  Tip tip(mesh);
+  Steadiness felt;
+  Vec3 C0 = path(0), f0 = Vec3::Zero();
+  for (int i = 0; i * kMicrometre <= way; ++i) {
+    const Vec3 C = path(i * kMicrometre);
+    const SurfaceContacts contacts = tip.at(C);
+    const Vec3 f = pushOf(contacts);
+    if (i > 0) {
+      const double moved = (C - C0).norm();
+      felt.push = std::max(felt.push, (f - f0).norm() / moved);
+      if (f.norm() > kMicrometre && f0.norm() > kMicrometre)
+        felt.place = std::max(felt.place, kTip * f.norm() * (f.normalized() - f0.normalized()).norm() / moved);
+    }
+    int overlaps = 0;
+    for (int k = 0; k < contacts.count; ++k) overlaps += contacts.points[static_cast<std::size_t>(k)].phi < 0;
+    felt.most = std::max(felt.most, overlaps);
+    felt.status |= tip.tracker.status;
+    C0 = C;
+    f0 = f;
+  }
+  return felt;
+}
+
+// Walls at right angles: f's derivative is sum n n^T, whose largest eigenvalue is 1. Place moves by r / |f| of what f does.
+constexpr double kRightAngle = 1 + 1e-6;
+
+TEST(SurfaceGrooves, AcrossAGrooveOfRightAngles) {
+  const double rest = std::sqrt(2.0) * kTip;
+  for (const double depth : {0.0005, 0.004}) {
+    const Steadiness felt =
+        along(grooveBlock(M_PI / 4, 0.02, 0.04, 0.04), 0.016, [&](double s) { return Vec3(-0.008 + s, 0.001 + 0.1 * s, rest - depth); });
+    EXPECT_LT(felt.push, kRightAngle) << depth;
+    EXPECT_LT(felt.place, kTip * kRightAngle) << depth;
+    EXPECT_EQ(felt.most, 2);
+    EXPECT_EQ(felt.status, kQueryOk);
+  }
+}
+
+// The place on the pad in the middle of the groove, 4 mm deep: r / (2 depth / sqrt 2 * sqrt 2) um per um; contact.md's 2.2 is its figure.
+TEST(SurfaceGrooves, ThePlaceOnThePadMovesByTwoMicrometresPerMicrometre) {
+  Tip tip(grooveBlock(M_PI / 4, 0.02, 0.04, 0.04));
+  const double rest = std::sqrt(2.0) * kTip;
+  Vec3 last = Vec3::Zero();
+  double largest = 0;
+  for (int i = -1000; i <= 1000; ++i) {
+    const Vec3 n = pushOf(tip.at({i * kMicrometre, 0.001, rest - 0.004})).normalized();
+    if (i > -1000) largest = std::max(largest, kTip * (n - last).norm());
+    last = n;
+  }
+  EXPECT_LT(largest, 2.2 * kMicrometre);
+  EXPECT_GT(largest, 1.9 * kMicrometre);
+}
+
+// Walls that meet at an angle g: the derivative's largest eigenvalue is 1 + cos(angle between the normals).
+TEST(SurfaceGrooves, SharpAndWideGrooves) {
+  for (const double half_angle : {M_PI / 6, M_PI / 3}) {
+    const double rest = kTip / std::sin(half_angle);
+    const double steepest = 1 + std::abs(std::cos(2 * half_angle)) + 1e-6;
+    const Steadiness felt = along(grooveBlock(half_angle, 0.02, 0.06, 0.04), 0.002,
+                                  [&](double s) { return Vec3(-0.001 + s, 0.001 + 0.1 * s, rest - 0.0008 + 0.2 * s); });
+    EXPECT_LT(felt.push, steepest) << half_angle;
+    EXPECT_EQ(felt.most, 2);
+    EXPECT_EQ(felt.status, kQueryOk);
+  }
+}
+
+// Walls of unequal size and slope, from the one onto the other, over the short one's upper edge and back.
+TEST(SurfaceGrooves, AVWithUnequalSides) {
+  Mat3 short_wall = Mat3::Identity(), slanting = Mat3::Identity();
+  short_wall(2, 2) = 0.3;
+  slanting(0, 2) = 0.3;
+  slanting(2, 0) = -0.1;
+  const Steadiness high = along(tests::mapped(tests::stepBlock(0.04), short_wall), 0.02,
+                                [](double s) { return Vec3(0.0079 - 0.9 * s, 0.001, 0.0075 + 1.1 * s); });
+  EXPECT_LT(high.push, 1.5) << "over the edge f turns by depth / height of the way: at most 0.5 here";
+  EXPECT_EQ(high.most, 2);
+  const Steadiness slant = along(tests::mapped(tests::stepBlock(0.04), slanting), 0.012,
+                                 [](double s) { return Vec3(0.0095 - 0.3 * s, 0.001 + 0.1 * s, 0.018 - s); });
+  EXPECT_LT(slant.push, 1.6);
+  EXPECT_EQ(slant.most, 2);
+  EXPECT_EQ((high.status | slant.status), kQueryOk);
+}
+
+TEST(SurfaceGrooves, IntoACornerOfThreeWallsAndAlongThem) {
+  const TriangleMesh corner = tests::cornerBlock(0.03);
+  const Steadiness in = along(corner, 0.013, [](double s) { return Vec3(0.0152 - 0.8 * s, 0.0151 - 0.7 * s, 0.0149 - 0.75 * s); });
+  EXPECT_LT(in.push, kRightAngle);
+  EXPECT_EQ(in.most, 3);
+  const Steadiness along_it = along(corner, 0.012, [](double s) { return Vec3(0.003 + s, 0.0155 - s, 0.0055 + 0.3 * s); });
+  EXPECT_LT(along_it.push, kRightAngle);
+  EXPECT_LT(along_it.place, kTip * kRightAngle);
+  EXPECT_EQ((in.status | along_it.status), kQueryOk);
+}
+
+TEST(SurfaceGrooves, IntoAPitAndAroundInIt) {
+  const TriangleMesh pit = tests::pitBlock(0.02);
+  const Steadiness in = along(pit, 0.0225, [](double s) { return Vec3(0.0004 + 0.1 * s, 0.0007 + 0.1 * s, 0.03 + kTip - s); });
+  EXPECT_LT(in.push, kRightAngle + 0.6) << "the pit's rim comes first: 1 + depth / height";
+  const Steadiness around = along(pit, 0.02, [](double s) { return Vec3(0.004 * std::cos(300 * s), 0.004 * std::sin(300 * s), 0.0165); });
+  EXPECT_LT(around.push, kRightAngle);
+  EXPECT_EQ(around.most, 3);
+  EXPECT_EQ((in.status | around.status), kQueryOk);
+}
+
+// In a hole of radius rho the contact turns around the finger by h / (rho - h) of its way: 1 contact, 4 at the most with rho 10 mm.
+TEST(SurfaceGrooves, AroundInATorusHole) {
+  for (const double hole : {0.018, 0.010}) {
+    const double off = hole - kTip + 0.0005, depth = 0.0005 + 1e-5;
+    const Steadiness felt = along(torus(hole + 0.012, 0.012, 48, 24), 0.02, [&](double s) {
+      return Vec3(off * std::cos(s / off), off * std::sin(s / off), 0.001 * std::sin(200 * s));
+    });
+    EXPECT_LT(felt.push, 1.1 * depth / off + 0.1) << hole;
+    EXPECT_EQ(felt.most, 1);
+    EXPECT_EQ(felt.status, kQueryOk);
+  }
+}
+
+// Where the finger doesn't fit there are folds: contacts come, go and swap while they overlap. What comes and goes is eased, by as much per
+// micrometre as the finger moves; up to three contacts and what they replace.
+TEST(SurfaceGrooves, ContactsThatComeAndGoInOverlapAreEased) {
+  for (const TriangleMesh& mesh : {torus(0.02, 0.012, 48, 24), bumpySphere(0.03, 0.06, 9, 24), tests::pitBlock(0.015),
+                                   noisy(icosphere(0.02, 2), 5e-4, 1), tests::mapped(tests::stepBlock(0.04), 0.5 * Mat3::Identity())}) {
+    Tip tip(mesh);
+    RandomNumbers random(5);
+    SurfaceContacts last = tip.at({0.003, 0.004, 0.05});
+    Vec3 C = last.main().p_BS + (kTip - 1e-5) * last.main().n_B, v = Vec3::Zero(), f0 = Vec3::Zero();
+    last = tip.at(C);
+    f0 = pushOf(last);
+    for (int i = 0; i < 20000; ++i) {
+      v = 0.98 * v + 0.2 * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)) - 0.01 * C / C.norm();
+      Vec3 move = v;
+      for (int k = 0; k < last.count; ++k) {
+        const SurfaceContact& c = last.points[static_cast<std::size_t>(k)];
+        if (c.phi < -5e-4) move += 1.2 * c.n_B;
+      }
+      const Vec3 step = 2 * kMicrometre * move / std::max(1.0, move.norm());
+      C += step;
+      last = tip.at(C);
+      const Vec3 f = pushOf(last);
+      ASSERT_LT((f - f0).norm(), 6 * step.norm() + 1e-5 * kTip) << mesh.source << ' ' << i;
+      ASSERT_EQ(last.cost.held, 0) << mesh.source << ' ' << i;
+      f0 = f;
+    }
+  }
+}
+
+// More places than a query tries, twice in one query: the inside of a coarse bowl whose contact has been lost. It once wrote past its list.
+TEST(SurfaceGrooves, ManyMinimaAtOnceAreNoHarm) {
+  TriangleMesh bowl = noisy(geodesicSphere(0.0081, 12), 1e-4, 3);
+  for (auto& t : bowl.triangles) std::swap(t[1], t[2]);
+  Tip tip(bowl);
+  RandomNumbers random(2);
+  for (int i = 0; i < 3000; ++i) {
+    const SurfaceContacts contacts = tip.at(2e-4 * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)));
+    ASSERT_GE(contacts.count, 1);
+    ASSERT_TRUE(pushOf(contacts).allFinite());
+  }
+}
+
+}  // namespace
+}  // namespace pincer::contact
