@@ -11,10 +11,11 @@ namespace pincer::contact {
 
 namespace {
 
-constexpr int kMaxTries = 16;          // places from which a further contact is looked for, per query
-constexpr double kOnePlace = 1e-3;     // of r: contacts nearer than this are one
-constexpr double kApart = 0.998;       // cosine of 3.6 degrees: further contacts differ by more in their normals
-constexpr double kBesideSeen = 0.966;  // cosine of 15 degrees: a normal that far out of a patch's cone still belongs to it
+constexpr int kMaxTries = 16;           // places from which a further contact is looked for, per query
+constexpr double kOnePlace = 1e-3;      // of r: contacts nearer than this are one
+constexpr double kApart = 0.998;        // cosine of 3.6 degrees: further contacts differ by more in their normals
+constexpr double kBesideKnown = 0.966;  // cosine of 15 degrees: a normal that far from a patch's still belongs to it
+constexpr double kAround = 1.0 / 16;    // of r: what lies nearer to a contact than this differs by no more than kApart in its normal
 
 // Where a try has led.
 struct Seen {
@@ -46,6 +47,11 @@ bool isOnFeatureOf(const SurfaceNet& net, const Foot& foot, std::int32_t triangl
   return is_on_feature && shares_all;
 }
 
+// Cosine of the angle between `n` and the nearest of the triangle's corner normals.
+double closestNormal(const SurfaceNet& net, std::int32_t triangle, const Vec3& n) {
+  return std::max({net.normal(triangle, 0).dot(n), net.normal(triangle, 1).dot(n), net.normal(triangle, 2).dot(n)});
+}
+
 class Touch {
  public:
   Touch(const TouchedSurface& surface, const Vec3& C, double r, double margin, SurfaceTracker& tracker, PatchCache& cache)
@@ -61,9 +67,9 @@ class Touch {
   SurfaceContacts run() {
     followSlots();
     if (count_ == 0 && lost_count_ > 0) findLost();
-    if (!touches() && lost_count_ == 0) takeNearest();
+    if (!(nearestHeight() < reach_) && lost_count_ == 0) takeNearest();
     if (eases_) fadeLost();
-    if (nearestHeight() < reach_) addFurther();
+    if (nearestHeight() < reach_ && !isVouched()) addFurther();
     return write();
   }
 
@@ -80,7 +86,8 @@ class Touch {
   void addFurther();
   void tryPlace(const Foot& foot);
   bool isNew(const ShellContact& candidate) const;
-  bool isSeen(const Foot& foot, double radius) const;
+  bool isKnown(std::int32_t triangle, const PatchBounds& part) const;
+  bool isVouched() const;
   void keepDeepestFurther(const ShellContact& candidate);
   SurfaceContacts write();
 
@@ -148,6 +155,7 @@ void Touch::followSlots() {
     const Foot start = footOf(slot);
     const ShellContact contact = follow(start);
     cost_.iterations += contact.cost.steps;
+    cost_.longest_walk = std::max(cost_.longest_walk, contact.cost.steps);
     cost_.crossings += contact.cost.crossings;
     const bool is_other_side = contact.converged && contact.h < 0 && tangentContact(s_.net, cache_, C_, start).h > kWellAbove * r_;
     if (!contact.converged || is_other_side || isListed(contact)) {
@@ -251,24 +259,31 @@ ShellContact Touch::straightTo(const SurfaceSeed& seed) const {
 }
 
 void Touch::addFurther() {
-  s_.search.visitMinima(s_.net, C_, reach_, [&](const Foot& foot, double radius) {
-    if (seen_count_ < kMaxTries && !isSeen(foot, radius)) tryPlace(foot);
-    return seen_count_ < kMaxTries;
-  });
+  tracker_.vouched = 0;
+  const bool is_all = s_.search.visitMinima(
+      s_.net, C_, reach_, kAround * r_, [&](std::int32_t triangle, const PatchBounds& part) { return isKnown(triangle, part); },
+      [&](const Foot& foot) {
+        if (seen_count_ < kMaxTries) tryPlace(foot);
+        return seen_count_ < kMaxTries;
+      });
+  if (!is_all || lost_count_ > 0) return;
+  tracker_.p_BC_searched = C_;
+  tracker_.vouched = kAround * r_;
+  tracker_.reach = reach_;
 }
 
-// Whether a contact is known that stands for this place: beside it, with a normal that the patch's could be.
-bool Touch::isSeen(const Foot& foot, double radius) const {
-  constexpr double kBeside = 2;  // radii of the patch
-  Vec3 p = Vec3::Zero();
-  for (int i = 0; i < 3; ++i) p += foot.b[at(i)] * s_.net.vertex(foot.triangle, i);
+// The last look for further places found all that there are here too.
+bool Touch::isVouched() const {
+  return lost_count_ == 0 && (C_ - tracker_.p_BC_searched).norm() + std::max(0.0, reach_ - tracker_.reach) < tracker_.vouched;
+}
+
+// Whether a contact is known that stands for this patch: beside it, with a normal that the patch's could be. (Not any of its cone's: along a
+// groove that holds the other wall's.)
+bool Touch::isKnown(std::int32_t triangle, const PatchBounds& part) const {
+  const double beside = std::max<double>(part.radius, kAround * r_) + part.radius;
   const auto stands = [&](const Foot& other, const Vec3& S, const Vec3& n) {
-    if (other.triangle == foot.triangle || isOnFeatureOf(s_.net, other, foot.triangle)) return true;
-    const double reach = kBeside * radius;
-    if ((S - p).squaredNorm() > reach * reach) return false;
-    double closest = -1;
-    for (int i = 0; i < 3; ++i) closest = std::max(closest, s_.net.normal(foot.triangle, i).dot(n));
-    return closest > kBesideSeen;
+    if (other.triangle == triangle || isOnFeatureOf(s_.net, other, triangle)) return true;
+    return (S - part.middle()).squaredNorm() < beside * beside && closestNormal(s_.net, triangle, n) > kBesideKnown;
   };
   for (int i = 0; i < count_; ++i) {
     const ShellContact& c = list_[at(i)].contact;
@@ -332,7 +347,10 @@ SurfaceContacts Touch::write() {
   tracker_.slots = {};
   for (int i = 0; i < count_; ++i) {
     const Followed& f = list_[at(i)];
-    if (i > 0 && f.shown() >= reach_) continue;
+    if (i > 0 && f.shown() >= reach_) {
+      tracker_.vouched = 0;  // it may come back at once
+      continue;
+    }
     const ShellContact& c = f.contact;
     tracker_.slots[at(f.slot)] = {c.foot.triangle, f.fades, c.foot.b[1], c.foot.b[2], f.ease, placeOf(c), c.n};
     found.points[at(found.count++)] = {placeOf(c), c.n, f.shown() - r_, static_cast<std::uint32_t>(f.slot)};

@@ -2,6 +2,8 @@
 
 #include <numeric>
 
+#include "contact/surface/outward_float.h"
+
 namespace pincer::contact {
 
 FacingTree::FacingTree(const std::vector<FacingBox>& boxes, const std::function<void(double)>& progress)
@@ -19,7 +21,7 @@ NormalCone FacingTree::split(std::size_t node, std::int32_t begin, std::int32_t 
     return boxes[static_cast<std::size_t>(order_[static_cast<std::size_t>(place)])];
   };
   const auto twice_centre = [](const FacingBox& b, std::size_t k) { return b.low[k] + b.high[k]; };
-  Node bounds{box(begin).low, box(begin).high, {}, -1 - begin, end - begin};
+  Node bounds{box(begin).low, box(begin).high, 0, {}, -1 - begin, end - begin};
   std::array<float, 3> first, last;
   for (std::size_t k = 0; k < 3; ++k) first[k] = last[k] = twice_centre(box(begin), k);
   for (std::int32_t i = begin; i < end; ++i) {
@@ -31,6 +33,12 @@ NormalCone FacingTree::split(std::size_t node, std::int32_t begin, std::int32_t 
       last[k] = std::max(last[k], twice_centre(b, k));
     }
   }
+  double diagonal2 = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double edge = static_cast<double>(bounds.high[k]) - bounds.low[k];
+    diagonal2 += edge * edge;
+  }
+  bounds.radius = above(0.5 * std::sqrt(diagonal2));
   NormalCone cone = box(begin).cone;
   if (end - begin <= kLeafSize) {
     for (std::int32_t i = begin + 1; i < end; ++i) cone = joined(cone, box(i).cone);

@@ -31,10 +31,10 @@ class FacingTree {
   const std::vector<std::int32_t>& order() const { return order_; }
   std::size_t memoryBytes() const { return nodes_.capacity() * sizeof(Node) + order_.capacity() * sizeof(std::int32_t); }
 
-  // Calls visit(i), for places i of `order`, on the items of all leaves that are nearer to `p` than sqrt(bound2) and may face it, nearer
-  // leaves first; `bound2` [m^2] may shrink meanwhile. Stops once visit returns false. Allocates nothing.
+  // Calls visit(i), for places i of `order`, on the items of all leaves that are nearer to `p` than sqrt(bound2) and may face it or a point
+  // within `around` [m] of it, nearer leaves first; `bound2` [m^2] may shrink meanwhile. Stops once visit returns false. Allocates nothing.
   template <class Visit>
-  void visitFacing(const Vec3& p, const double& bound2, Facing facing, Visit&& visit) const;
+  void visitFacing(const Vec3& p, const double& bound2, double around, Facing facing, Visit&& visit) const;
 
   // Calls visit(i) on the items of all leaves that the box touches, until it returns false.
   template <class Visit>
@@ -43,6 +43,7 @@ class FacingTree {
  private:
   struct Node {
     std::array<float, 3> low, high;
+    float radius;  // of the ball around the box [m]
     FacingTest cone;
     std::int32_t left;   // >= 0: the children are left and left + 1; < 0: a leaf, items begin at place -1 - left
     std::int32_t count;  // of items in a leaf
@@ -53,7 +54,7 @@ class FacingTree {
 
   NormalCone split(std::size_t node, std::int32_t begin, std::int32_t end, const std::vector<FacingBox>& boxes);
   // Squared distance of `p` from the node's box [m^2], or kNever where the node can be left out.
-  static double squaredDistance(const Node& node, const Vec3& p, double bound2, Facing facing);
+  static double squaredDistance(const Node& node, const Vec3& p, double bound2, double around, Facing facing);
   static bool overlaps(const Node& node, const Vec3& low, const Vec3& high);
   const Node& at(std::int32_t i) const { return nodes_[static_cast<std::size_t>(i)]; }
 
@@ -62,22 +63,21 @@ class FacingTree {
   std::function<void(double)> progress_;
 };
 
-inline double FacingTree::squaredDistance(const Node& node, const Vec3& p, double bound2, Facing facing) {
-  double box2 = 0, centre2 = 0, R2 = 0, along = 0;
+inline double FacingTree::squaredDistance(const Node& node, const Vec3& p, double bound2, double around, Facing facing) {
+  double box2 = 0, centre2 = 0, along = 0;
   const auto addAxis = [&](std::size_t k) {
-    const double low = node.low[k], high = node.high[k];
-    const double half = 0.5 * (high - low), D = p[static_cast<int>(k)] - 0.5 * (low + high);
-    const double out = std::max(std::abs(D) - half, 0.0);
+    const double low = node.low[k], high = node.high[k], x = p[static_cast<int>(k)];
+    const double D = x - 0.5 * (low + high), out = std::max(std::max(low - x, x - high), 0.0);
     box2 += out * out;
     centre2 += D * D;
-    R2 += half * half;
     along += node.cone.axis[k] * D;
   };
   addAxis(0);
   addAxis(1);
   addAxis(2);
   if (box2 >= bound2) return kNever;
-  const bool may_face = node.cone.mayFace(along, centre2, R2) || (facing == Facing::both && node.cone.mayFace(-along, centre2, R2));
+  const double R = node.radius + around;
+  const bool may_face = node.cone.mayFace(along, centre2, R) || (facing == Facing::both && node.cone.mayFace(-along, centre2, R));
   return may_face ? box2 : kNever;
 }
 
@@ -90,7 +90,7 @@ inline bool FacingTree::overlaps(const Node& node, const Vec3& low, const Vec3& 
 }
 
 template <class Visit>
-void FacingTree::visitFacing(const Vec3& p, const double& bound2, Facing facing, Visit&& visit) const {
+void FacingTree::visitFacing(const Vec3& p, const double& bound2, double around, Facing facing, Visit&& visit) const {
   struct Entry {
     std::int32_t node;
     double distance2;
@@ -108,8 +108,8 @@ void FacingTree::visitFacing(const Vec3& p, const double& bound2, Facing facing,
       }
       continue;
     }
-    std::array<Entry, 2> children{Entry{node.left, squaredDistance(at(node.left), p, bound2, facing)},
-                                  Entry{node.left + 1, squaredDistance(at(node.left + 1), p, bound2, facing)}};
+    std::array<Entry, 2> children{Entry{node.left, squaredDistance(at(node.left), p, bound2, around, facing)},
+                                  Entry{node.left + 1, squaredDistance(at(node.left + 1), p, bound2, around, facing)}};
     if (children[1].distance2 < children[0].distance2) std::swap(children[0], children[1]);
     if (children[1].distance2 < kNever) stack[size++] = children[1];
     if (children[0].distance2 < kNever) stack[size++] = children[0];

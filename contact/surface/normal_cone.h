@@ -4,9 +4,11 @@
 //
 // A ball of radius R about m, whose surface normals lie in the cone, may have a point x with C - x along its normal only if
 //
-//   a . D >= cos alpha sqrt(|D|^2 - R^2) - sin alpha R,   D = C - m            (C inside the ball: always)
+//   |D| <= R,   or   angle(a, D) <= alpha + asin(R / |D|),   D = C - m
 //
-// for the angle between a and C - x is at least that between a and D, less asin(R / |D|).
+// for the angle between a and C - x is at least that between a and D, less asin(R / |D|). The latter is, with a . D and what D has across a,
+//
+//   cos alpha |D - (a . D) a| - sin alpha (a . D) <= R,   where angle(a, D) - alpha < 90 degrees
 // Source: D. E. Johnson, E. Cohen, "Spatialized normal cone hierarchies", I3D 2001.
 #pragma once
 #include <algorithm>
@@ -61,15 +63,17 @@ struct FacingTest {
 
   FacingTest() = default;
   explicit FacingTest(const NormalCone& cone) {
-    constexpr double kRounding = 1e-6;  // of the stored axis; it covers |D|, which is at most sqrt(|D|^2 - R^2) + R
+    constexpr double kRounding = 1e-6;  // of the stored axis; it covers |D|, which is at most what D has across a, along it, and R
     for (int k = 0; k < 3; ++k) axis[static_cast<std::size_t>(k)] = static_cast<float>(cone.axis[k]);
     cosine = static_cast<float>(cone.cosine - kRounding);
     sine = static_cast<float>(std::sqrt(std::max(0.0, 1 - cone.cosine * cone.cosine)) + kRounding);
   }
+  bool isFull() const { return cosine < 0; }
   // Whether a point of the ball may face C; `along` = a.D, or -a.D for one that has C straight behind it.
-  bool mayFace(double along, double distance2, double R2) const {
-    const double rest2 = distance2 - R2;
-    return rest2 <= 0 || along >= cosine * std::sqrt(rest2) - sine * std::sqrt(R2);
+  bool mayFace(double along, double distance2, double R) const {
+    if (distance2 <= R * R || isFull()) return true;
+    const double across = std::sqrt(std::max(0.0, distance2 - along * along));
+    return cosine * along + sine * across > 0 && cosine * across - sine * along <= R;
   }
 };
 

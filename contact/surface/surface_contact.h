@@ -30,10 +30,11 @@ struct SurfaceContact {
 
 // What the answer took; the same input takes the same.
 struct QueryCost {
-  int iterations = 0;  // Newton steps of the followed contacts
-  int crossings = 0;   // of triangle edges
-  int reseeds = 0;     // contacts that the search had to find again
-  int held = 0;        // contacts without a solution
+  int iterations = 0;    // Newton steps of the followed contacts
+  int longest_walk = 0;  // the most that one of them took
+  int crossings = 0;     // of triangle edges
+  int reseeds = 0;       // contacts that the search had to find again
+  int held = 0;          // contacts without a solution
 };
 
 struct SurfaceContacts {
@@ -60,7 +61,11 @@ struct SurfaceTracker {
   Vec3 p_BC = Vec3::Zero();       // where the fingertip's centre was, or would have been had it not been pressed under the surface [m]
   Vec3 p_BC_last = Vec3::Zero();  // where it was
   bool has_centre = false;        // whether it has been outside
-  std::uint32_t status = 0;       // bits of QueryStatus of the last query
+  // The last look for further places: while the centre is nearer to p_BC_searched than `vouched`, and further contacts are wanted no
+  // further than `reach` from it, it finds no others [m].
+  Vec3 p_BC_searched = Vec3::Zero();
+  double vouched = 0, reach = 0;
+  std::uint32_t status = 0;  // bits of QueryStatus of the last query
 };
 
 enum QueryStatus : std::uint32_t {

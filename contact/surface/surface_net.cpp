@@ -58,6 +58,24 @@ void setCentre(Patch& p) {
   p.b111 = handles + (handles - (p.b300 + p.b030 + p.b003) / 3) / 2;
 }
 
+// Where the smooth edge from corner i to the middle of the side across has come to after 2/3 of the way, over the triangle's middle.
+Vec3 placeOnMedian(const Patch& p, int i) {
+  const auto side = edgeCurve(p, (i + 1) % 3);
+  const auto normals = edgeNormals(p, (i + 1) % 3);
+  const Vec3 P = edgeCurve(p, i)[0], n = edgeNormals(p, i)[0];
+  const Vec3 M = (side[0] + 3 * side[1] + 3 * side[2] + side[3]) / 8, n_M = (normals[0] + 2 * normals[1] + normals[2]).normalized();
+  const auto [first, second] = edgeHandles({P, n, n}, {M, n_M, n_M});
+  return (P + 6 * first + 12 * second + 8 * M) / 27;
+}
+
+// So that the patch's middle is the medians' mean: on spheres no further off than its edges; with Vlachos' centre it is the worst place.
+void setCentreByMedians(Patch& p) {
+  const Vec3 middle = (placeOnMedian(p, 0) + placeOnMedian(p, 1) + placeOnMedian(p, 2)) / 3;
+  const Vec3 corners = p.b300 + p.b030 + p.b003, handles = p.b210 + p.b120 + p.b021 + p.b012 + p.b102 + p.b201;
+  const Vec3 centre = (27 * middle - corners - 3 * handles) / 6;
+  if (centre.allFinite()) p.b111 = centre;  // not where a side's normals are opposite
+}
+
 // FNV-1a over what the patches depend on.
 class Fingerprint {
  public:
@@ -204,6 +222,7 @@ SurfaceCell SurfaceNet::build(std::int32_t triangle) const {
     if (variant_ == SurfaceVariant::smooth_published) setPublishedEdges(p);
   }
   setCentre(p);
+  if (variant_ == SurfaceVariant::smooth) setCentreByMedians(p);
   return cell;
 }
 

@@ -115,9 +115,9 @@ SurfaceSeed SurfaceSearch::nearest(const SurfaceNet& net, PatchCache& cache, con
   SurfaceSeed seed{{}, bound, false};
   double bound2 = bound * bound;
   int visits = 0;
-  tree_.visitFacing(p, bound2, facing, [&](std::int32_t place_in_order) {
+  tree_.visitFacing(p, bound2, 0, facing, [&](std::int32_t place_in_order) {
     const Leaf& at = leaf(place_in_order);
-    if (!at.mayHold(p, seed.distance, facing)) return true;
+    if (!at.mayHold(p, seed.distance, 0, facing)) return true;
     const std::int32_t triangle = triangleAt(place_in_order);
     const FlatPoint flat = closestOnFacet(net, triangle, p);
     const double reach = seed.distance + at.bulge;

@@ -25,6 +25,18 @@ struct SurfaceSeed {
   bool found = false;  // false: nothing within the bound
 };
 
+// A patch in single precision, rounded outwards.
+struct PatchBounds {
+  std::array<float, 3> centre;
+  float radius;  // of a ball that holds the patch [m]
+  float bulge;   // no point of the patch is further from the flat triangle [m]
+  FacingTest cone;
+
+  Vec3 middle() const { return {centre[0], centre[1], centre[2]}; }
+  // Whether a place of it may be nearer to `p` than `bound` and face it or a point within `around`.
+  bool mayHold(const Vec3& p, double bound, double around, Facing facing) const;
+};
+
 class SurfaceSearch {
  public:
   // Looks at every patch once, and shows it to `inspector`. `progress` is told the share of the work done.
@@ -34,10 +46,12 @@ class SurfaceSearch {
   // bowl, where all places are equally near. Allocates nothing.
   SurfaceSeed nearest(const SurfaceNet& net, PatchCache& cache, const Vec3& p, double bound, Facing facing) const;
 
-  // Calls visit(foot, radius) on the places nearer to `p` than `bound` [m] where the flat triangles' distance from it is least among their
-  // neighbours', with `p` in front; `radius` is that of the patch. Nearer leaves first, until it returns false. Allocates nothing.
-  template <class Visit>
-  void visitMinima(const SurfaceNet& net, const Vec3& p, double bound, Visit&& visit) const;
+  // Calls visit(foot) on the places nearer to `p` than `bound` [m] where the flat triangles' distance from it is least among their
+  // neighbours', with `p` in front; nearer leaves first, until it returns false. Patches with `is_known(triangle, part)` are passed over.
+  // Returns whether there is nothing else: whether each patch that is nearer than bound + around and may face a point within `around` [m]
+  // of `p` is known. Allocates nothing.
+  template <class IsKnown, class Visit>
+  bool visitMinima(const SurfaceNet& net, const Vec3& p, double bound, double around, IsKnown&& is_known, Visit&& visit) const;
 
   // Whether the flat triangles hide `a` from `b`. Allocates nothing.
   bool isHidden(const SurfaceNet& net, const Vec3& a, const Vec3& b) const;
@@ -45,16 +59,7 @@ class SurfaceSearch {
   std::size_t memoryBytes() const { return tree_.memoryBytes() + leaves_.capacity() * sizeof(Leaf); }
 
  private:
-  // A patch in single precision, rounded outwards.
-  struct Leaf {
-    std::array<float, 3> centre;
-    float radius;  // of a ball that holds the patch [m]
-    float bulge;   // no point of the patch is further from the flat triangle [m]
-    FacingTest cone;
-
-    Vec3 middle() const { return {centre[0], centre[1], centre[2]}; }
-    bool mayHold(const Vec3& p, double bound, Facing facing) const;
-  };
+  using Leaf = PatchBounds;
   const Leaf& leaf(std::int32_t place) const { return leaves_[static_cast<std::size_t>(place)]; }
   std::int32_t triangleAt(std::int32_t place) const { return tree_.order()[static_cast<std::size_t>(place)]; }
 
@@ -62,30 +67,36 @@ class SurfaceSearch {
   std::vector<Leaf> leaves_;  // in the tree's order
 };
 
-inline bool SurfaceSearch::Leaf::mayHold(const Vec3& p, double bound, Facing facing) const {
+inline bool PatchBounds::mayHold(const Vec3& p, double bound, double around, Facing facing) const {
   double centre2 = 0, along = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     const double D = p[static_cast<int>(k)] - centre[k];
     centre2 += D * D;
     along += cone.axis[k] * D;
   }
-  const double reach = bound + radius, R2 = static_cast<double>(radius) * radius;
+  const double reach = bound + radius, R = radius + around;
   if (centre2 >= reach * reach) return false;
-  return cone.mayFace(along, centre2, R2) || (facing == Facing::both && cone.mayFace(-along, centre2, R2));
+  return cone.mayFace(along, centre2, R) || (facing == Facing::both && cone.mayFace(-along, centre2, R));
 }
 
-template <class Visit>
-void SurfaceSearch::visitMinima(const SurfaceNet& net, const Vec3& p, double bound, Visit&& visit) const {
-  const double bound2 = bound * bound;
-  tree_.visitFacing(p, bound2, Facing::front, [&](std::int32_t place) {
+template <class IsKnown, class Visit>
+bool SurfaceSearch::visitMinima(const SurfaceNet& net, const Vec3& p, double bound, double around, IsKnown&& is_known,
+                                Visit&& visit) const {
+  const double outer = bound + around, outer2 = outer * outer;
+  bool is_all = true;
+  tree_.visitFacing(p, outer2, around, Facing::front, [&](std::int32_t place) {
     const Leaf& at = leaf(place);
-    if (!at.mayHold(p, bound, Facing::front)) return true;
+    if (!at.mayHold(p, outer, around, Facing::front)) return true;
     const std::int32_t triangle = triangleAt(place);
+    if (is_known(triangle, at)) return true;
     const FlatPoint flat = closestOnFacet(net, triangle, p);
-    const double reach = bound + at.bulge;
+    const double reach = bound + at.bulge, outer_reach = outer + at.bulge;
+    if (flat.distance2 >= outer_reach * outer_reach) return true;
+    is_all = false;
     if (flat.distance2 >= reach * reach || !isFlatMinimum(net, triangle, flat, p)) return true;
-    return visit(Foot{triangle, flat.b}, static_cast<double>(at.radius));
+    return visit(Foot{triangle, flat.b});
   });
+  return is_all;
 }
 
 }  // namespace pincer::contact

@@ -67,7 +67,8 @@ void advancePoint(const std::array<AxisForm, 3>& forms, double h, PointScratch& 
   }
   s.p_target_W = scratch.p_target_W;
   s.v_target_W = scratch.v_target_W;
-  s.touching = scratch.touched;
+  // What moved by its end velocity alone begins the next tick so too: half of each, for a tip without mass nor damping, diverges.
+  s.touching = scratch.touched && !scratch.closing;
 }
 
 void remember(const WorldScratch& scratch, const Contact& c, double h, ContactMemory& m) {

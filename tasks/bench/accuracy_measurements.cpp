@@ -117,8 +117,8 @@ std::vector<Record> publishedIterations(MeasureContext& context) {
 }  // namespace
 
 std::vector<Measurement> accuracyMeasurements() {
-  return {{"accuracy/sphere-80", [](MeasureContext&) { return sphereErrors(1, 45); }},
-          {"accuracy/sphere-320", [](MeasureContext&) { return sphereErrors(2, 3.1); }},
+  return {{"accuracy/sphere-80", [](MeasureContext&) { return sphereErrors(1, 15); }},
+          {"accuracy/sphere-320", [](MeasureContext&) { return sphereErrors(2, 1); }},
           {"accuracy/cylinder-15deg", [](MeasureContext&) { return cylinderErrors(); }},
           {"accuracy/gaps-across-smooth-edges", gapsAcrossEdges},
           {"accuracy/published-iteration", publishedIterations}};

@@ -24,6 +24,7 @@ std::vector<Measurement> contactMeasurements(const ContactBenchOptions& options)
 // Its parts, one source file each.
 std::vector<Measurement> strokeMeasurements(const ContactBenchOptions& options);       // iterations, failures, continuity
 std::vector<Measurement> accuracyMeasurements();                                       // closed forms, gaps across edges
+std::vector<Measurement> curveMeasurements();                                          // the 2D algorithm
 std::vector<Measurement> costMeasurements(const ContactBenchOptions& options);         // nanoseconds, growth, peers
 std::vector<Measurement> shadingMeasurements(const ContactBenchOptions& options);      // the variants side by side, plots
 std::vector<Measurement> fingerSceneMeasurements(const ContactBenchOptions& options);  // a finger that presses and drags

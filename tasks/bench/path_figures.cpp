@@ -18,17 +18,30 @@ bool isFinite(const contact::SurfaceContacts& contacts) {
 void countCost(const contact::QueryCost& cost, PathFigures& f) {
   ++f.queries;
   ++f.by_iterations[static_cast<std::size_t>(std::clamp(cost.iterations, 0, kMostIterations))];
+  f.longest_walk = std::max(f.longest_walk, cost.longest_walk);
   f.most_crossings = std::max(f.most_crossings, cost.crossings);
   f.reseeded += cost.reseeds > 0;
 }
 
+// Sum of the contacts' normals, each as long as it is deep.
+Vec3 pushOf(const contact::SurfaceContacts& contacts) {
+  Vec3 sum = Vec3::Zero();
+  for (int i = 0; i < contacts.count; ++i) {
+    const contact::SurfaceContact& c = contacts.points[static_cast<std::size_t>(i)];
+    sum += std::max(-c.phi, 0.0) * c.n_B;
+  }
+  return sum;
+}
+
 struct Felt {
   Vec3 n = Vec3::UnitZ();
-  double phi = 1;  // of the main contact [m]
+  Vec3 push = Vec3::Zero();  // [m]
+  double phi = 1;            // of the main contact [m]
 };
 
 void countTurn(const Felt& before, const Felt& now, double step, double turn_limit, PathFigures& f) {
   constexpr double kRoundOff = 1e-8;  // [m] two contacts solved to 1e-9 m may differ by this on the finger
+  f.largest_push = std::max(f.largest_push, ((now.push - before.push).norm() - kRoundOff) / step);
   if (before.phi >= 0 || now.phi >= 0) return;
   const double angle = std::atan2(before.n.cross(now.n).norm(), before.n.dot(now.n));
   const double place = std::max(0.0, kBenchFinger * angle - kRoundOff) / step;
@@ -59,11 +72,7 @@ int PathFigures::iterationsQuantile(double q) const {
 }
 
 Vec3 feltDirection(const contact::SurfaceContacts& contacts) {
-  Vec3 sum = Vec3::Zero();
-  for (int i = 0; i < contacts.count; ++i) {
-    const contact::SurfaceContact& c = contacts.points[static_cast<std::size_t>(i)];
-    sum += std::max(-c.phi, 0.0) * c.n_B;
-  }
+  const Vec3 sum = pushOf(contacts);
   const double length = sum.norm();
   return length > 0 ? Vec3(sum / length) : contacts.main().n_B;
 }
@@ -76,7 +85,7 @@ PathFigures walkPath(const contact::SmoothMesh& mesh, const FingerPath& path, do
     const bool fresh = i % static_cast<std::size_t>(path.restart_every) == 0;
     if (fresh) finger.tracker = {};
     const contact::SurfaceContacts contacts = finger.on(mesh, path.centres[i]);
-    const Felt now{feltDirection(contacts), contacts.main().phi};
+    const Felt now{feltDirection(contacts), pushOf(contacts), contacts.main().phi};
     f.held += (finger.tracker.status & contact::kQueryHeldDirection) != 0;
     f.not_finite += !isFinite(contacts);
     if (!fresh) {

@@ -19,6 +19,7 @@ constexpr int kMostIterations = 64;  // counted one by one; more are counted as 
 struct PathFigures {
   std::int64_t queries = 0;                                       // warm ones: those that continue a contact
   std::array<std::int64_t, kMostIterations + 1> by_iterations{};  // queries that took so many iterations
+  int longest_walk = 0;                                           // iterations of one contact
   int most_crossings = 0;                                         // of triangle edges in a query
   std::int64_t reseeded = 0;                                      // queries whose walk failed, so that the tree was asked
   std::int64_t held = 0;                                          // queries left without an answer
@@ -27,6 +28,7 @@ struct PathFigures {
   double largest_turn = 0;     // [-]
   double largest_place = 0;    // r |n' - n| / |C' - C| [-]
   double largest_degrees = 0;  // |n' - n| / |C' - C| [degrees per um]
+  double largest_push = 0;     // |f' - f| / |C' - C| [-], f = sum max(-phi_i, 0) n_i: the force's change over the spring's
 
   double meanIterations() const;  // NaN where none was counted: that would be a mistake of the measurement
   int iterationsQuantile(double q) const;

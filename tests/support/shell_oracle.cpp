@@ -142,7 +142,15 @@ void ShellOracle::buildFaces(const TriangleMesh& mesh) {
                           other.triangle < 0});
       }
     }
-    const Vec3 mean = (handles[0][0] + handles[0][1] + handles[1][0] + handles[1][1] + handles[2][0] + handles[2][1]) / 6;
+    // The middle of the patch is the mean of three smooth curves, each from a corner to the middle of the side across, at 2/3.
+    Vec3 middle = Vec3::Zero(), others = p[0] + p[1] + p[2];
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::size_t k = (i + 1) % 3, l = (i + 2) % 3;
+      const Vec3 M = bezier(std::array<Vec3, 4>{p[k], handles[k][0], handles[k][1], p[l]}, 0.5);
+      const auto median = smoothHandles(p[i], M, n[i], unit(bezier(std::array<Vec3, 3>{n[k], middles[k], n[l]}, 0.5)));
+      middle += bezier(std::array<Vec3, 4>{p[i], median[0], median[1], M}, 2.0 / 3) / 3;
+      others += 3 * (handles[i][0] + handles[i][1]);
+    }
     Face face;
     std::size_t m = 0, q = 0;
     const auto cubic = [&](int i, int j, int k, const Vec3& point) {
@@ -154,7 +162,7 @@ void ShellOracle::buildFaces(const TriangleMesh& mesh) {
     cubic(3, 0, 0, p[0]), cubic(0, 3, 0, p[1]), cubic(0, 0, 3, p[2]);
     cubic(2, 1, 0, handles[0][0]), cubic(1, 2, 0, handles[0][1]), cubic(0, 2, 1, handles[1][0]);
     cubic(0, 1, 2, handles[1][1]), cubic(1, 0, 2, handles[2][0]), cubic(2, 0, 1, handles[2][1]);
-    cubic(1, 1, 1, mean + (mean - (p[0] + p[1] + p[2]) / 3) / 2);
+    cubic(1, 1, 1, (27 * middle - others) / 6);
     quadratic(2, 0, 0, n[0]), quadratic(0, 2, 0, n[1]), quadratic(0, 0, 2, n[2]);
     quadratic(1, 1, 0, middles[0]), quadratic(0, 1, 1, middles[1]), quadratic(1, 0, 1, middles[2]);
     face.middle = (p[0] + p[1] + p[2]) / 3;

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
 #include "contact/mesh/connectivity.h"
+#include "contact/mesh/generated_meshes.h"
 #include "tests/support/constants.h"
-#include "tests/support/mesh_generators.h"
 
 namespace pincer::contact {
 namespace {

@@ -6,10 +6,10 @@
 #include <filesystem>
 #include <random>
 
+#include "contact/mesh/generated_meshes.h"
 #include "contact/mesh/mesh_reader.h"
 #include "contact/mesh/mesh_report.h"
 #include "tests/support/inside_out.h"
-#include "tests/support/mesh_generators.h"
 
 namespace pincer::contact {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "tests/support/mesh_generators.h"
+#include "contact/mesh/generated_meshes.h"
 
 namespace pincer::contact {
 namespace {

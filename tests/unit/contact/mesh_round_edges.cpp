@@ -3,12 +3,12 @@
 #include <cmath>
 #include <functional>
 
+#include "contact/mesh/generated_meshes.h"
 #include "contact/mesh/mesh_report.h"
 #include "contact/mesh/round_edges.h"
 #include "contact/surface/smooth_mesh.h"
 #include "contact/surface/surface_net.h"
 #include "tests/support/inside_out.h"
-#include "tests/support/mesh_generators.h"
 
 namespace pincer::contact {
 namespace {

@@ -5,10 +5,10 @@
 #include <set>
 #include <vector>
 
+#include "contact/mesh/generated_meshes.h"
 #include "contact/shape/pair_query.h"
 #include "contact/surface/smooth_mesh.h"
 #include "tests/support/constants.h"
-#include "tests/support/mesh_generators.h"
 #include "tests/support/pairs.h"
 
 namespace pincer::contact {

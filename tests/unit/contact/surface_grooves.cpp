@@ -8,16 +8,17 @@
 
 #include "contact/mesh/generated_meshes.h"
 #include "contact/surface/smooth_mesh.h"
+#include "tests/support/constants.h"
 #include "tests/support/notched_blocks.h"
 #include "tests/support/random_numbers.h"
 
 namespace pincer::contact {
 namespace {
 
+using tests::kFinger;
+using tests::kMargin;
 using tests::RandomNumbers;
 
-constexpr double kTip = 0.008;        // [m]
-constexpr double kNear = 0.001;       // [m]
 constexpr double kMicrometre = 1e-6;  // [m]
 
 Vec3 pushOf(const SurfaceContacts& contacts) {
@@ -31,7 +32,7 @@ Vec3 pushOf(const SurfaceContacts& contacts) {
 
 struct Tip {
   explicit Tip(const TriangleMesh& mesh) : surface(SmoothMesh::build(mesh)) {}
-  SurfaceContacts at(const Vec3& C) { return surface->querySphere(C, kTip, kNear, tracker, cache); }
+  SurfaceContacts at(const Vec3& C, double margin = kMargin) { return surface->querySphere(C, kFinger, margin, tracker, cache); }
 
   std::shared_ptr<const SmoothMesh> surface;
   SurfaceTracker tracker;
@@ -45,7 +46,7 @@ struct Steadiness {
   std::uint32_t status = 0;
 };
 
-Steadiness along(const TriangleMesh& mesh, double way, const std::function<Vec3(double)>& path) {
+Steadiness strokeAlong(const TriangleMesh& mesh, double way, const std::function<Vec3(double)>& path) {
   Tip tip(mesh);
   Steadiness felt;
   Vec3 C0 = path(0), f0 = Vec3::Zero();
@@ -57,7 +58,7 @@ Steadiness along(const TriangleMesh& mesh, double way, const std::function<Vec3(
       const double moved = (C - C0).norm();
       felt.push = std::max(felt.push, (f - f0).norm() / moved);
       if (f.norm() > kMicrometre && f0.norm() > kMicrometre)
-        felt.place = std::max(felt.place, kTip * f.norm() * (f.normalized() - f0.normalized()).norm() / moved);
+        felt.place = std::max(felt.place, kFinger * f.norm() * (f.normalized() - f0.normalized()).norm() / moved);
     }
     int overlaps = 0;
     for (int k = 0; k < contacts.count; ++k) overlaps += contacts.points[static_cast<std::size_t>(k)].phi < 0;
@@ -73,12 +74,12 @@ Steadiness along(const TriangleMesh& mesh, double way, const std::function<Vec3(
 constexpr double kRightAngle = 1 + 1e-6;
 
 TEST(SurfaceGrooves, AcrossAGrooveOfRightAngles) {
-  const double rest = std::sqrt(2.0) * kTip;
+  const double rest = std::sqrt(2.0) * kFinger;
   for (const double depth : {0.0005, 0.004}) {
-    const Steadiness felt =
-        along(grooveBlock(M_PI / 4, 0.02, 0.04, 0.04), 0.016, [&](double s) { return Vec3(-0.008 + s, 0.001 + 0.1 * s, rest - depth); });
+    const Steadiness felt = strokeAlong(grooveBlock(M_PI / 4, 0.02, 0.04, 0.04), 0.016,
+                                        [&](double s) { return Vec3(-0.008 + s, 0.001 + 0.1 * s, rest - depth); });
     EXPECT_LT(felt.push, kRightAngle) << depth;
-    EXPECT_LT(felt.place, kTip * kRightAngle) << depth;
+    EXPECT_LT(felt.place, kFinger * kRightAngle) << depth;
     EXPECT_EQ(felt.most, 2);
     EXPECT_EQ(felt.status, kQueryOk);
   }
@@ -87,12 +88,12 @@ TEST(SurfaceGrooves, AcrossAGrooveOfRightAngles) {
 // The place on the pad in the middle of the groove, 4 mm deep: r / (2 depth / sqrt 2 * sqrt 2) um per um; contact.md's 2.2 is its figure.
 TEST(SurfaceGrooves, ThePlaceOnThePadMovesByTwoMicrometresPerMicrometre) {
   Tip tip(grooveBlock(M_PI / 4, 0.02, 0.04, 0.04));
-  const double rest = std::sqrt(2.0) * kTip;
+  const double rest = std::sqrt(2.0) * kFinger;
   Vec3 last = Vec3::Zero();
   double largest = 0;
   for (int i = -1000; i <= 1000; ++i) {
     const Vec3 n = pushOf(tip.at({i * kMicrometre, 0.001, rest - 0.004})).normalized();
-    if (i > -1000) largest = std::max(largest, kTip * (n - last).norm());
+    if (i > -1000) largest = std::max(largest, kFinger * (n - last).norm());
     last = n;
   }
   EXPECT_LT(largest, 2.2 * kMicrometre);
@@ -102,10 +103,10 @@ TEST(SurfaceGrooves, ThePlaceOnThePadMovesByTwoMicrometresPerMicrometre) {
 // Walls that meet at an angle g: the derivative's largest eigenvalue is 1 + cos(angle between the normals).
 TEST(SurfaceGrooves, SharpAndWideGrooves) {
   for (const double half_angle : {M_PI / 6, M_PI / 3}) {
-    const double rest = kTip / std::sin(half_angle);
+    const double rest = kFinger / std::sin(half_angle);
     const double steepest = 1 + std::abs(std::cos(2 * half_angle)) + 1e-6;
-    const Steadiness felt = along(grooveBlock(half_angle, 0.02, 0.06, 0.04), 0.002,
-                                  [&](double s) { return Vec3(-0.001 + s, 0.001 + 0.1 * s, rest - 0.0008 + 0.2 * s); });
+    const Steadiness felt = strokeAlong(grooveBlock(half_angle, 0.02, 0.06, 0.04), 0.002,
+                                        [&](double s) { return Vec3(-0.001 + s, 0.001 + 0.1 * s, rest - 0.0008 + 0.2 * s); });
     EXPECT_LT(felt.push, steepest) << half_angle;
     EXPECT_EQ(felt.most, 2);
     EXPECT_EQ(felt.status, kQueryOk);
@@ -118,12 +119,12 @@ TEST(SurfaceGrooves, AVWithUnequalSides) {
   short_wall(2, 2) = 0.3;
   slanting(0, 2) = 0.3;
   slanting(2, 0) = -0.1;
-  const Steadiness high = along(tests::mapped(tests::stepBlock(0.04), short_wall), 0.02,
-                                [](double s) { return Vec3(0.0079 - 0.9 * s, 0.001, 0.0075 + 1.1 * s); });
+  const Steadiness high = strokeAlong(tests::mapped(tests::stepBlock(0.04), short_wall), 0.02,
+                                      [](double s) { return Vec3(0.0079 - 0.9 * s, 0.001, 0.0075 + 1.1 * s); });
   EXPECT_LT(high.push, 1.5) << "over the edge f turns by depth / height of the way: at most 0.5 here";
   EXPECT_EQ(high.most, 2);
-  const Steadiness slant = along(tests::mapped(tests::stepBlock(0.04), slanting), 0.012,
-                                 [](double s) { return Vec3(0.0095 - 0.3 * s, 0.001 + 0.1 * s, 0.018 - s); });
+  const Steadiness slant = strokeAlong(tests::mapped(tests::stepBlock(0.04), slanting), 0.012,
+                                       [](double s) { return Vec3(0.0095 - 0.3 * s, 0.001 + 0.1 * s, 0.018 - s); });
   EXPECT_LT(slant.push, 1.6);
   EXPECT_EQ(slant.most, 2);
   EXPECT_EQ((high.status | slant.status), kQueryOk);
@@ -131,20 +132,21 @@ TEST(SurfaceGrooves, AVWithUnequalSides) {
 
 TEST(SurfaceGrooves, IntoACornerOfThreeWallsAndAlongThem) {
   const TriangleMesh corner = tests::cornerBlock(0.03);
-  const Steadiness in = along(corner, 0.013, [](double s) { return Vec3(0.0152 - 0.8 * s, 0.0151 - 0.7 * s, 0.0149 - 0.75 * s); });
+  const Steadiness in = strokeAlong(corner, 0.013, [](double s) { return Vec3(0.0152 - 0.8 * s, 0.0151 - 0.7 * s, 0.0149 - 0.75 * s); });
   EXPECT_LT(in.push, kRightAngle);
   EXPECT_EQ(in.most, 3);
-  const Steadiness along_it = along(corner, 0.012, [](double s) { return Vec3(0.003 + s, 0.0155 - s, 0.0055 + 0.3 * s); });
+  const Steadiness along_it = strokeAlong(corner, 0.012, [](double s) { return Vec3(0.003 + s, 0.0155 - s, 0.0055 + 0.3 * s); });
   EXPECT_LT(along_it.push, kRightAngle);
-  EXPECT_LT(along_it.place, kTip * kRightAngle);
+  EXPECT_LT(along_it.place, kFinger * kRightAngle);
   EXPECT_EQ((in.status | along_it.status), kQueryOk);
 }
 
 TEST(SurfaceGrooves, IntoAPitAndAroundInIt) {
   const TriangleMesh pit = tests::pitBlock(0.02);
-  const Steadiness in = along(pit, 0.0225, [](double s) { return Vec3(0.0004 + 0.1 * s, 0.0007 + 0.1 * s, 0.03 + kTip - s); });
+  const Steadiness in = strokeAlong(pit, 0.0225, [](double s) { return Vec3(0.0004 + 0.1 * s, 0.0007 + 0.1 * s, 0.03 + kFinger - s); });
   EXPECT_LT(in.push, kRightAngle + 0.6) << "the pit's rim comes first: 1 + depth / height";
-  const Steadiness around = along(pit, 0.02, [](double s) { return Vec3(0.004 * std::cos(300 * s), 0.004 * std::sin(300 * s), 0.0165); });
+  const Steadiness around =
+      strokeAlong(pit, 0.02, [](double s) { return Vec3(0.004 * std::cos(300 * s), 0.004 * std::sin(300 * s), 0.0165); });
   EXPECT_LT(around.push, kRightAngle);
   EXPECT_EQ(around.most, 3);
   EXPECT_EQ((in.status | around.status), kQueryOk);
@@ -153,8 +155,8 @@ TEST(SurfaceGrooves, IntoAPitAndAroundInIt) {
 // In a hole of radius rho the contact turns around the finger by h / (rho - h) of its way: 1 contact, 4 at the most with rho 10 mm.
 TEST(SurfaceGrooves, AroundInATorusHole) {
   for (const double hole : {0.018, 0.010}) {
-    const double off = hole - kTip + 0.0005, depth = 0.0005 + 1e-5;
-    const Steadiness felt = along(torus(hole + 0.012, 0.012, 48, 24), 0.02, [&](double s) {
+    const double off = hole - kFinger + 0.0005, depth = 0.0005 + 1e-5;
+    const Steadiness felt = strokeAlong(torus(hole + 0.012, 0.012, 48, 24), 0.02, [&](double s) {
       return Vec3(off * std::cos(s / off), off * std::sin(s / off), 0.001 * std::sin(200 * s));
     });
     EXPECT_LT(felt.push, 1.1 * depth / off + 0.1) << hole;
@@ -171,7 +173,7 @@ TEST(SurfaceGrooves, ContactsThatComeAndGoInOverlapAreEased) {
     Tip tip(mesh);
     RandomNumbers random(5);
     SurfaceContacts last = tip.at({0.003, 0.004, 0.05});
-    Vec3 C = last.main().p_BS + (kTip - 1e-5) * last.main().n_B, v = Vec3::Zero(), f0 = Vec3::Zero();
+    Vec3 C = last.main().p_BS + (kFinger - 1e-5) * last.main().n_B, v = Vec3::Zero(), f0 = Vec3::Zero();
     last = tip.at(C);
     f0 = pushOf(last);
     for (int i = 0; i < 20000; ++i) {
@@ -185,10 +187,36 @@ TEST(SurfaceGrooves, ContactsThatComeAndGoInOverlapAreEased) {
       C += step;
       last = tip.at(C);
       const Vec3 f = pushOf(last);
-      ASSERT_LT((f - f0).norm(), 6 * step.norm() + 1e-5 * kTip) << mesh.source << ' ' << i;
+      ASSERT_LT((f - f0).norm(), 6 * step.norm() + 1e-5 * kFinger) << mesh.source << ' ' << i;
       ASSERT_EQ(last.cost.held, 0) << mesh.source << ' ' << i;
       f0 = f;
     }
+  }
+}
+
+// Most queries skip the look for further places, because the last one vouches for where the finger is. No answer depends on it.
+TEST(SurfaceGrooves, WhatIsSkippedWouldHaveFoundNothing) {
+  for (const TriangleMesh& mesh : {grooveBlock(M_PI / 3, 0.01, 0.04, 0.04), torus(0.03, 0.012, 48, 24), tests::pitBlock(0.02),
+                                   tests::cornerBlock(0.03), geodesicSphere(0.03, 20), cylinderWithFlat(0.025, 0.03, 0.018, 18, 6)}) {
+    Tip skipping(mesh), looking(mesh);
+    RandomNumbers random(6);
+    Vec3 C = skipping.at({0.003, 0.004, 0.05}).main().p_BS + Vec3(0, 0, kFinger), v = Vec3::Zero();
+    int skipped = 0;
+    for (int i = 0; i < 5000; ++i) {
+      const Vec3 searched = skipping.tracker.p_BC_searched;
+      const double margin = i % 2000 < 1000 ? kMargin : 0;
+      const SurfaceContacts a = skipping.at(C, margin);
+      looking.tracker.vouched = 0;
+      const SurfaceContacts b = looking.at(C, margin);
+      skipped += skipping.tracker.p_BC_searched == searched && skipping.tracker.vouched > 0;
+      ASSERT_EQ(a.count, b.count) << mesh.source << ' ' << i;
+      ASSERT_LT((pushOf(a) - pushOf(b)).norm(), 2e-8) << mesh.source << ' ' << i;
+      v = 0.98 * v + 0.2 * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)) - 0.01 * C / C.norm();
+      Vec3 move = v;
+      if (a.main().phi < -5e-4) move += 1.2 * a.main().n_B;
+      C += 5e-5 * move / std::max(1.0, move.norm());
+    }
+    EXPECT_GT(skipped, 100) << mesh.source;
   }
 }
 

@@ -118,9 +118,11 @@ TEST(SurfaceJudged, NeedlesFansAndSlivers) {
   expectAllRight(cylinder(0.02, 0.06, 60, 1));
 }
 
-TEST(SurfaceJudged, AThousandTimesAsLarge) {
+TEST(SurfaceJudged, AThousandTimesAsLargeAndAsSmall) {
   expectAllRight(icosphere(20, 1), 1e3);
   expectAllRight(cylinderWithFlat(25, 30, 18, 14, 2), 1e3);
+  expectAllRight(icosphere(2e-5, 1), 1e-3);
+  expectAllRight(cylinderWithFlat(2.5e-5, 3e-5, 1.8e-5, 14, 2), 1e-3);
 }
 
 // Where neighbouring normals differ by tens of degrees there may be no answer; there may not be a wrong one.

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <set>
 
+#include "contact/mesh/generated_meshes.h"
 #include "contact/mesh/mesh_report.h"
 #include "contact/surface/edge_cubic.h"
 #include "contact/surface/smooth_mesh.h"
 #include "tests/support/constants.h"
-#include "tests/support/mesh_generators.h"
 
 namespace pincer::contact {
 namespace {

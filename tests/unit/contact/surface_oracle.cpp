@@ -5,11 +5,11 @@
 #include <filesystem>
 #include <limits>
 
+#include "contact/mesh/generated_meshes.h"
 #include "contact/mesh/mesh_reader.h"
 #include "contact/mesh/mesh_report.h"
 #include "contact/surface/smooth_mesh.h"
 #include "contact/surface/surface_net.h"
-#include "tests/support/mesh_generators.h"
 #include "tests/support/random_numbers.h"
 #include "tests/support/random_poses.h"
 #include "tests/support/touch.h"

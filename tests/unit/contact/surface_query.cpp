@@ -3,12 +3,12 @@
 #include <limits>
 #include <thread>
 
+#include "contact/mesh/generated_meshes.h"
 #include "contact/mesh/mesh_reader.h"
 #include "contact/mesh/mesh_writer.h"
 #include "contact/surface/smooth_mesh.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/constants.h"
-#include "tests/support/mesh_generators.h"
 #include "tests/support/touch.h"
 
 namespace pincer::contact {

@@ -26,6 +26,28 @@ Vec3 randomPoint(RandomNumbers& random, double size) {
   return {random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size)};
 }
 
+bool nothingIsKnown(std::int32_t, const PatchBounds&) { return false; }
+
+// A look around a point finds every patch that may face a point nearby: "nothing else" holds there too.
+TEST(SurfaceSearch, VouchesForThePointsAround) {
+  constexpr double kAroundPoint = 0.0005, kBound = 0.009;
+  for (const TriangleMesh& mesh :
+       {torus(0.03, 0.012, 24, 12), cylinderWithFlat(0.025, 0.03, 0.018, 20, 6), box({0.02, 0.015, 0.03}), bumpySphere(0.03, 0.1, 6, 10)}) {
+    const Searched s(mesh);
+    RandomNumbers random(8);
+    for (int i = 0; i < 300; ++i) {
+      const Vec3 p = randomPoint(random, 0.05), q = p + 0.57 * randomPoint(random, kAroundPoint);
+      std::set<std::int32_t> around;
+      const auto remember = [&](std::int32_t t, const PatchBounds&) { return around.insert(t).second; };
+      EXPECT_TRUE(s.search.visitMinima(s.net, p, kBound, kAroundPoint, remember, [](const Foot&) { return true; }));
+      s.search.visitMinima(s.net, q, kBound, 0, nothingIsKnown, [&](const Foot& foot) {
+        EXPECT_TRUE(around.contains(foot.triangle)) << mesh.source << ' ' << i;
+        return true;
+      });
+    }
+  }
+}
+
 // Every local minimum of the flat mesh whose patch could face the point is visited: the tree and its cones leave none out.
 TEST(SurfaceSearch, FindsTheFlatMinimaThatALookAtAllTrianglesFinds) {
   for (const TriangleMesh& mesh : {torus(0.03, 0.012, 24, 12), cylinderWithFlat(0.025, 0.03, 0.018, 20, 6), box({0.02, 0.015, 0.03}),
@@ -36,7 +58,7 @@ TEST(SurfaceSearch, FindsTheFlatMinimaThatALookAtAllTrianglesFinds) {
       const Vec3 p = randomPoint(random, 0.05);
       const double bound = random.uniform(0.005, 0.03);
       std::set<std::int32_t> found;
-      s.search.visitMinima(s.net, p, bound, [&](const Foot& foot, double) { return found.insert(foot.triangle).second; });
+      s.search.visitMinima(s.net, p, bound, 0, nothingIsKnown, [&](const Foot& foot) { return found.insert(foot.triangle).second; });
       for (std::int32_t t = 0; t < s.net.size(); ++t) {
         const FlatPoint flat = closestOnFacet(s.net, t, p);
         // Away from the bound, and where the point is on the facet's or the sharp edge's normal for certain.
@@ -83,7 +105,7 @@ TEST(SurfaceSearch, LooksAtNoMoreOfAFinerMesh) {
     for (int i = 0; i < 300; ++i) {
       const double z = 1 - (2.0 * i + 1) / 300, a = 2.399963229728653 * i;
       const Vec3 p = 0.0265 * Vec3(std::sqrt(1 - z * z) * std::cos(a), std::sqrt(1 - z * z) * std::sin(a), z);
-      s.search.visitMinima(s.net, p, 0.009, [&](const Foot&, double) { return ++looked_at > 0; });
+      s.search.visitMinima(s.net, p, 0.009, 0, nothingIsKnown, [&](const Foot&) { return ++looked_at > 0; });
     }
     EXPECT_GE(looked_at, 300);
     if (level == 3) coarse = looked_at;
@@ -124,7 +146,7 @@ TEST(NormalCone, FacingIsNeverMissed) {
     const Vec3 m = randomPoint(random, 0.1), x = m + R * random.uniform(0, 1) * randomPoint(random, 1).normalized();
     const Vec3 D = x + random.uniform(0, 0.05) * n - m;
     const FacingTest test(NormalCone{axis, cosine});
-    ASSERT_TRUE(test.mayFace(axis.cast<float>().cast<double>().dot(D), D.squaredNorm(), R * R * (1 + 1e-12)));
+    ASSERT_TRUE(test.mayFace(axis.cast<float>().cast<double>().dot(D), D.squaredNorm(), R * (1 + 1e-12)));
   }
 }
 

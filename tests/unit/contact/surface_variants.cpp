@@ -2,12 +2,12 @@
 // how often the published iteration takes how long, and where it fails.
 #include <gtest/gtest.h>
 
+#include "contact/mesh/generated_meshes.h"
 #include "contact/surface/smooth_mesh.h"
 #include "contact/surface/surface_net.h"
 #include "contact/surface/surface_variant.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/constants.h"
-#include "tests/support/mesh_generators.h"
 #include "tests/support/random_numbers.h"
 #include "tests/support/random_poses.h"
 #include "tests/support/touch.h"

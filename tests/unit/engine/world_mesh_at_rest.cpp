@@ -5,12 +5,12 @@
 #include <filesystem>
 #include <string>
 
+#include "contact/mesh/generated_meshes.h"
 #include "contact/mesh/mesh_reader.h"
 #include "contact/mesh/mesh_report.h"
 #include "contact/surface/smooth_mesh.h"
 #include "engine/world/state.h"
 #include "engine/world/step.h"
-#include "tests/support/mesh_generators.h"
 
 namespace pincer::engine {
 namespace {

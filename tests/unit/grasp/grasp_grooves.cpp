@@ -22,8 +22,8 @@ struct Pressed {
   Pressed(const contact::TriangleMesh& mesh, const Vec3& start) : device(start) {
     engine::WorldBuilder builder{engine::WorldOptions{}};
     builder.addBody({"block", contact::Mesh{contact::SmoothMesh::build(mesh)}, false, 0, {0, 0, 0, 0}});
-    model = buildGrasp(builder, {testing::softFinger("finger", kStiffness, kDamping)});
-    state = makeState(model, {testing::startAt(Vec3::Zero())}, {start});
+    model = buildGrasp(builder, {tests::softFinger("finger", kStiffness, kDamping)});
+    state = makeState(model, {tests::startAt(Vec3::Zero())}, {start});
     scratch = std::make_unique<GraspScratch>(model);
   }
   const FingerReport& moveTo(const Vec3& p_WF) {
@@ -123,6 +123,30 @@ TEST(GraspGrooves, ThroughATightHoleTheForceIsContinuous) {
   }
   EXPECT_GE(felt.most, 1);
   EXPECT_LT(felt.force, kLanding * kStiffness);
+}
+
+// A tip without mass nor damping that lands fast on a nearly flat mesh: ticks that move it by its end velocity alternated with a spring taken
+// at the mean of both, and it flew off with 40 N.
+TEST(GraspGrooves, AFingerWithoutDampingStaysWhereItLands) {
+  for (const double mu : {0.0, 0.5}) {
+    engine::WorldOptions options;
+    options.gravity_W = Vec3::Zero();
+    engine::WorldBuilder builder(options);
+    builder.addBody({"cube", contact::Mesh{contact::SmoothMesh::build(contact::roundedCube(0.02, 0.004, 3))}, false, 0, {mu, mu, 0, 0}});
+    const GraspModel model = buildGrasp(builder, {tests::softFinger("finger", kStiffness, 0)});
+    Vec3 device(0.0002, 0.0001, 0.032);
+    GraspState state = makeState(model, {tests::startAt(Vec3::Zero())}, {device});
+    GraspScratch scratch(model);
+    for (int i = 1; i < 300; ++i) {
+      FingerInput input;
+      input.p_WF = Vec3(device.x() + 1e-6 * (i % 7), device.y(), std::max(0.026, device.z() - 2e-4));
+      input.v_WF = (input.p_WF - device) / options.h;
+      device = input.p_WF;
+      step(model, state, scratch, std::span(&input, 1));
+      ASSERT_LT((state.world.points[0].p_W - device).head<2>().norm(), 2e-3) << mu << ' ' << i;
+      ASSERT_LT(scratch.fingers[0].f_contact_W.norm(), 1.2 * kStiffness * 0.0021) << mu << ' ' << i;
+    }
+  }
 }
 
 }  // namespace

@@ -9,12 +9,12 @@
 #include <set>
 #include <sstream>
 
+#include "contact/mesh/generated_meshes.h"
 #include "contact/mesh/mesh_reader.h"
 #include "contact/mesh/mesh_report.h"
 #include "contact/mesh/mesh_writer.h"
 #include "tasks/app/app.h"
 #include "tasks/scene/strict_json.h"
-#include "tests/support/mesh_generators.h"
 #include "tests/support/run_app.h"
 #include "tests/support/temporary_directory.h"
 
