@@ -120,6 +120,9 @@ class Touch {
   double easeOfNew(const ShellContact& contact) const { return eases_ && was_used_ ? std::max(0.0, r_ - contact.h - moved_) : 0; }
   void addNew(const ShellContact& contact) { list_[at(count_++)] = {contact, freeSlot(), true, false, easeOfNew(contact)}; }
   int freeSlot() const;
+  bool isTaken(int slot) const {
+    return std::any_of(list_.data(), list_.data() + count_, [&](const Followed& f) { return f.slot == slot; });
+  }
 
   const TouchedSurface& s_;
   const Vec3 C_;
@@ -145,6 +148,8 @@ class Touch {
 // solutions too.
 void Touch::followSlots() {
   constexpr double kWellAbove = 0.25;  // of r
+  std::array<ShellContact, kMaxSurfaceContacts> others;
+  int other_count = 0;
   for (int slot = 0; slot < kMaxSurfaceContacts; ++slot) {
     if (!isUsed(slot)) continue;
     was_used_ = true;
@@ -164,8 +169,11 @@ void Touch::followSlots() {
       list_[at(count_++)] = {contact, slot, false, false, std::max(0.0, keptIn(slot).ease - moved_)};
     } else {
       lose(slot);
-      if (count_ < kMaxSurfaceContacts) addNew(contact);
+      others[at(other_count++)] = contact;
     }
+  }
+  for (int i = 0; i < other_count; ++i) {
+    if (!isListed(others[at(i)])) addNew(others[at(i)]);
   }
 }
 
@@ -184,6 +192,7 @@ void Touch::lose(int slot) { lost_[at(lost_count_++)] = slot; }
 void Touch::fadeLost() {
   for (int i = 0; i < lost_count_ && count_ < kMaxSurfaceContacts; ++i) {
     const int slot = lost_[at(i)];
+    if (isTaken(slot)) continue;
     Followed plane{planeOf(slot), slot, false, true, keptIn(slot).ease + moved_};
     if (!(plane.shown() < r_)) continue;
     list_[at(count_++)] = plane;
@@ -331,11 +340,9 @@ void Touch::keepDeepestFurther(const ShellContact& candidate) {
 int Touch::freeSlot() const {
   int spare = -1;
   for (int slot = 0; slot < kMaxSurfaceContacts; ++slot) {
-    bool is_taken = false, is_lost = false;
-    for (int i = 0; i < count_; ++i) is_taken |= list_[at(i)].slot == slot;
-    for (int i = 0; i < lost_count_; ++i) is_lost |= lost_[at(i)] == slot;
-    if (!is_taken && !is_lost) return slot;
-    if (!is_taken) spare = slot;
+    if (isTaken(slot)) continue;
+    if (std::find(lost_.begin(), lost_.begin() + lost_count_, slot) == lost_.begin() + lost_count_) return slot;
+    spare = slot;
   }
   return spare;
 }

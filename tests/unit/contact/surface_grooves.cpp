@@ -186,6 +186,7 @@ TEST(SurfaceGrooves, ContactsThatComeAndGoInOverlapAreEased) {
       const Vec3 step = 2 * kMicrometre * move / std::max(1.0, move.norm());
       C += step;
       last = tip.at(C);
+      ASSERT_TRUE(last.count < 2 || last.points[0].feature != last.points[1].feature) << mesh.source << ' ' << i;
       const Vec3 f = pushOf(last);
       ASSERT_LT((f - f0).norm(), 6 * step.norm() + 1e-5 * kFinger) << mesh.source << ' ' << i;
       ASSERT_EQ(last.cost.held, 0) << mesh.source << ' ' << i;
