@@ -1,6 +1,6 @@
-// cone: the Coulomb cone, for contact vectors of three or four rows.
+// cone: the Coulomb cone, for contact vectors of three to six rows.
 //
-//   K_mu = { r : |r_T| <= mu r_n },   r = (r_t1, r_t2, r_n[, r_tau]),   r_T = (r_t1, r_t2[, r_tau])
+//   K_mu = { r : |r_T| <= mu r_n },   r = (r_t1, r_t2, r_n[, r_tau[, r_rho1, r_rho2]]),   r_T = r without r_n
 //
 //   r    impulse [N s], velocity [m/s] or anything in proportion to them, in the contact frame C, whose third axis is the normal
 //   mu   friction coefficient [-], 0 <= mu < inf; 0 gives the half-line r_T = 0, r_n >= 0
@@ -14,17 +14,24 @@
 
 namespace pincer::engine {
 
-// The row of the k-th tangential component; k = 0, 1 and, with torsion, 2.
+// The row of the k-th tangential component; k = 0, 1, with torsion 2, with rolling 3 and 4.
 constexpr int tangentRow(int k) { return k < kNormalRow ? k : k + 1; }
+
+// Of torsion and rolling.
+inline double angularDot(const double* a, const double* b, int rows) {
+  double sum = a[kTorsionRow] * b[kTorsionRow];
+  for (int k = kRollingRow; k < rows; ++k) sum += a[k] * b[k];
+  return sum;
+}
 
 inline double tangentNorm2(const double* v, int rows) {
   const double planar = v[0] * v[0] + v[1] * v[1];
-  return rows == 4 ? planar + v[3] * v[3] : planar;
+  return rows == 3 ? planar : planar + angularDot(v, v, rows);
 }
 
 inline double tangentDot(const double* a, const double* b, int rows) {
   const double planar = a[0] * b[0] + a[1] * b[1];
-  return rows == 4 ? planar + a[3] * b[3] : planar;
+  return rows == 3 ? planar : planar + angularDot(a, b, rows);
 }
 
 // |r_T| <= (1 + slack) mu r_n.

@@ -35,7 +35,8 @@ void gatherImpulses(const WorldModel& model, WorldScratch& scratch) {
   for (PointScratch& point : scratch.points) rest(point);
   for (Contact& c : scratch.contacts) {
     if (!c.active()) continue;
-    const Vec3 moment_W = (c.material.torsion_radius * c.r[3]) * c.n_W();
+    Vec3 moment_W = Vec3::Zero();
+    for (int k = kTorsionRow; k < rowsOf(c.material); ++k) moment_W += (radiusOf(c, k) * c.r[k]) * axisOf(c, k);
     applyImpulse(scratch, c.a, c.arm_a_W, c.impulse_W, moment_W, c.closing);
     applyImpulse(scratch, c.b, c.arm_b_W, -c.impulse_W, -moment_W, c.closing);
   }
@@ -82,8 +83,8 @@ void remember(const WorldScratch& scratch, const Contact& c, double h, ContactMe
   m.sliding = c.sliding;
   m.closing = c.closing;
   if (!m.active || m.sliding) return;
-  const Eigen::Vector4d v_end_C = relativeVelocity(c, mover(scratch, c.a).end, mover(scratch, c.b).end);
-  m.offset_C = c.offset_C + h * (c.closing ? v_end_C : Eigen::Vector4d(0.5 * (c.v_start_C + v_end_C)));
+  const ContactVector v_end_C = relativeVelocity(c, mover(scratch, c.a).end, mover(scratch, c.b).end);
+  m.offset_C = c.offset_C + h * (c.closing ? v_end_C : ContactVector(0.5 * (c.v_start_C + v_end_C)));
   m.offset_C[kNormalRow] = 0;
 }
 

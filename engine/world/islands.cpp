@@ -92,10 +92,9 @@ void fillPointSide(const Contact& c, int rows, double sign, const Vec3& inverse_
 
 void fillBodySide(const Contact& c, int rows, double sign, const Vec3& arm_W, double root_mass, const Mat3& F, ContactSide& out) {
   for (int k = 0; k < rows; ++k) {
-    const Vec3 lin = c.R_WC.col(std::min(k, kNormalRow));
-    const Vec3 ang = k < 3 ? Vec3(arm_W.cross(lin)) : Vec3(c.material.torsion_radius * lin);
+    const Vec3 ang = k < 3 ? Vec3(arm_W.cross(c.R_WC.col(k))) : Vec3(radiusOf(c, k) * axisOf(c, k));
     for (int j = 0; j < 3; ++j) {
-      out.A[k][j] = k < 3 ? sign * root_mass * lin[j] : 0;
+      out.A[k][j] = k < 3 ? sign * root_mass * c.R_WC(j, k) : 0;
       out.A[k][3 + j] = sign * (F(0, j) * ang[0] + F(1, j) * ang[1] + F(2, j) * ang[2]);
     }
   }

@@ -25,6 +25,8 @@ void checkMaterial(const std::string& body, const Material& m) {
   requireRange(body + ".material.restitution", m.restitution, 0, 1, "0 doesn't bounce, 1 keeps all speed.");
   requireRange(body + ".material.torsion_radius", m.torsion_radius, 0, 1,
                "It is about two thirds of the contact patch's radius: a few mm.");
+  requireRange(body + ".material.rolling_radius", m.rolling_radius, 0, 1,
+               "Friction times it is the arm of the force that resists rolling: a hundredth to a tenth of a ball's radius.");
 }
 
 bool isSupportOnly(const contact::Shape& shape) {
@@ -128,6 +130,7 @@ Material combine(const Material& a, const Material& b) {
   m.mu_d = std::min(m.mu_s, std::sqrt(a.mu_d * b.mu_d));
   m.restitution = std::sqrt(a.restitution * b.restitution);
   m.torsion_radius = std::max(a.torsion_radius, b.torsion_radius);
+  m.rolling_radius = std::max(a.rolling_radius, b.rolling_radius);
   return m;
 }
 

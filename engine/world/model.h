@@ -16,14 +16,18 @@
 
 namespace pincer::engine {
 
-// Surface of a body. Between two bodies: friction and restitution are the geometric means, the torsion radius the larger one's.
+// Surface of a body. Between two bodies: friction and restitution are the geometric means, torsion and rolling radius the larger ones.
 // A finger takes the body's values: skin on plastic is a property of the pair.
 struct Material {
   double mu_s = 0.5;          // static friction [-], >= 0
   double mu_d = 0.5;          // dynamic friction [-], 0 <= mu_d <= mu_s
   double restitution = 0;     // of the normal velocity [-], 0 .. 1
   double torsion_radius = 0;  // e_t [m]: the contact carries a torsional moment up to e_t mu f_n; 0 for a point contact
+  double rolling_radius = 0;  // e_r [m]: and one that resists rolling, up to e_r mu f_n. All share one cone (contact_problem.h)
 };
+
+// What the solver sees of a contact: 3 rows, with torsion 4, with rolling 6.
+inline int rowsOf(const Material& m) { return m.rolling_radius > 0 ? kMaxContactRows : m.torsion_radius > 0 ? kRollingRow : kTorsionRow; }
 
 struct BodyModel {
   std::string name;

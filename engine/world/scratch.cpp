@@ -55,9 +55,11 @@ std::uint64_t contactId(int kind, int a, int b, std::uint32_t feature) {
          static_cast<std::uint64_t>(b & 0x7fff) << 32 | feature;
 }
 
-Eigen::Vector4d relativeVelocity(const Contact& c, const Motion& a, const Motion& b) {
-  const Vec3 v_W = a.v_W + a.w_W.cross(c.arm_a_W) - (b.v_W + b.w_W.cross(c.arm_b_W));
-  return {c.R_WC.col(0).dot(v_W), c.R_WC.col(1).dot(v_W), c.R_WC.col(2).dot(v_W), c.R_WC.col(2).dot(a.w_W - b.w_W)};
+ContactVector relativeVelocity(const Contact& c, const Motion& a, const Motion& b) {
+  ContactVector v = ContactVector::Zero();
+  v.head<3>() = c.R_WC.transpose() * (a.v_W + a.w_W.cross(c.arm_a_W) - (b.v_W + b.w_W.cross(c.arm_b_W)));
+  for (int k = kTorsionRow; k < rowsOf(c.material); ++k) v[k] = axisOf(c, k).dot(a.w_W - b.w_W);
+  return v;
 }
 
 Contact* addContact(WorldScratch& scratch, double phi) {

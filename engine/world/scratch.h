@@ -36,14 +36,14 @@ struct Contact {
   // filled by the step:
   double mu = 0;  // in force in this tick
   Vec3 arm_a_W = Vec3::Zero(), arm_b_W = Vec3::Zero();
-  Eigen::Vector4d v_start_C = Eigen::Vector4d::Zero();  // of a relative to b at the start of the tick, see relativeVelocity
-  Eigen::Vector4d offset_C = Eigen::Vector4d::Zero();   // anchored stick, at the start of the tick; see ContactMemory
-  bool closing = false;                                 // it closes in this tick, from a positive gap or with an approaching velocity
-  bool stuck = false;                                   // it stuck in the last tick: its tangential biases undo the offset
-  Eigen::Vector4d bias_C = Eigen::Vector4d::Zero();     // part of q that isn't velocity [m/s], about n [rad/s]
-  Eigen::Vector4d r = Eigen::Vector4d::Zero();          // impulse on a in C, torsion last [N s]
-  Vec3 impulse_W = Vec3::Zero();                        // impulse on a at p_W [N s]; b got exactly its negative
-  Vec3 u_C = Vec3::Zero();                              // velocity of a relative to b at the end of the tick, biases included [m/s]
+  ContactVector v_start_C = ContactVector::Zero();  // of a relative to b at the start of the tick, see relativeVelocity
+  ContactVector offset_C = ContactVector::Zero();   // anchored stick, at the start of the tick; see ContactMemory
+  bool closing = false;                             // it closes in this tick, from a positive gap or with an approaching velocity
+  bool stuck = false;                               // it stuck in the last tick: its tangential biases undo the offset
+  ContactVector bias_C = ContactVector::Zero();     // part of q that isn't velocity [m/s], from torsion on [rad/s]
+  ContactVector r = ContactVector::Zero();          // impulse on a in C [N s]
+  Vec3 impulse_W = Vec3::Zero();                    // impulse on a at p_W [N s]; b got exactly its negative
+  Vec3 u_C = Vec3::Zero();                          // velocity of a relative to b at the end of the tick, biases included [m/s]
   bool sliding = false;
 
   Vec3 n_W() const { return R_WC.col(2); }
@@ -139,8 +139,12 @@ inline const MoverScratch& mover(const WorldScratch& scratch, const Side& side) 
   return scratch.bodies[side.index];
 }
 
-// Velocity of a relative to b where they touch, in C: along t1, t2, n [m/s], and about n [rad/s].
-Eigen::Vector4d relativeVelocity(const Contact& c, const Motion& a, const Motion& b);
+// Row k >= kTorsionRow turns about this axis; the radius makes it a velocity.
+inline Vec3 axisOf(const Contact& c, int k) { return k == kTorsionRow ? c.R_WC.col(2) : c.R_WC.col(k - kRollingRow); }
+inline double radiusOf(const Contact& c, int k) { return k == kTorsionRow ? c.material.torsion_radius : c.material.rolling_radius; }
+
+// Velocity of a relative to b where they touch, in C: along t1, t2, n [m/s]; of rows that the contact has, about n, t1, t2 [rad/s].
+ContactVector relativeVelocity(const Contact& c, const Motion& a, const Motion& b);
 
 inline void mark(WorldScratch& scratch, Stage stage) {
   if (scratch.clock) scratch.clock->mark(stage);
