@@ -16,6 +16,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <span>
+#include <type_traits>
 
 #include "contact/math.h"
 
@@ -30,10 +31,20 @@ constexpr int kMoverFreedoms = 6;
 
 using ContactVector = Eigen::Matrix<double, kMaxContactRows, 1>;  // of one contact; rows that it doesn't have are 0
 
+// Calls act with the number of rows, as a constant where it is three: nearly all contacts have three, and the compiler knows what to do then.
+template <class Act>
+[[gnu::always_inline]] inline void withRows(int rows, const Act& act) {
+  if (rows == kTorsionRow) {
+    act(std::integral_constant<int, kTorsionRow>());
+  } else {
+    act(rows);
+  }
+}
+
 // A's block of one contact and one of the two that touch; rows beyond the contact's are never read.
-struct ContactSide {
-  int mover = -1;  // 0 .. movers - 1; -1: nothing there moves, A isn't read
+struct alignas(16) ContactSide {
   double A[kMaxContactRows][kMoverFreedoms];
+  int mover = -1;  // 0 .. movers - 1; -1: nothing there moves, A isn't read
 };
 using ContactSides = std::array<ContactSide, 2>;  // never both of one mover
 
@@ -44,6 +55,7 @@ struct ContactProblem {
   std::span<const ContactSides> sides;  // size n
   VectorMap q;                          // m
   int movers = 0;
+  bool strict = false;  // the warm start is only taken where it is exact to round-off, see cascade.h
 
   int contactCount() const { return static_cast<int>(mu.size()); }
   int rowCount() const { return static_cast<int>(q.size()); }

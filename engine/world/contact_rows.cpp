@@ -54,6 +54,7 @@ void fillContact(const WorldModel& model, const WorldState& state, WorldScratch&
   const ContactMemory* memory = c.memory >= 0 ? &state.contacts[c.memory] : nullptr;
   ContactVector q = relativeVelocity(c, mover(scratch, c.a).free, mover(scratch, c.b).free);
   c.stuck = memory && memory->active && !memory->sliding;
+  c.closing = false;
   c.bias_C.setZero();
   if (c.stuck) c.bias_C = rate * (c.offset_C + 0.5 * scratch.h * c.v_start_C);
   c.bias_C[kNormalRow] = normalBias(model, state, scratch, c);

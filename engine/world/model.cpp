@@ -38,9 +38,11 @@ void setInertia(const BodySpec& spec, BodyModel& body) {
   const PrincipalInertia inertia = principalInertia(massPropertiesOf(spec.shape, spec.mass));
   body.mass = spec.mass;
   body.inverse_mass = 1 / spec.mass;
+  body.root_inverse_mass = std::sqrt(body.inverse_mass);
   body.moments = inertia.moments;
   body.X_BI = inertia.X_BI;
   body.X_IB = inertia.X_BI.inverse();
+  body.body_is_inertial = inertia.X_BI.p.isZero(0) && inertia.X_BI.q.vec().isZero(0);
   body.rotation = FreeRotation(inertia.moments);
 }
 

@@ -32,14 +32,16 @@ inline int rowsOf(const Material& m) { return m.rolling_radius > 0 ? kMaxContact
 struct BodyModel {
   std::string name;
   contact::Shape shape;
-  bool dynamic = true;          // false: never moves, or is driven
-  bool driven = false;          // follows the motion that the caller gives, whatever touches it
-  int motion = -1;              // of driven bodies: which of the inputs
-  double mass = 0;              // [kg]; 0 for static and driven bodies
-  double inverse_mass = 0;      // [1/kg]
-  Vec3 moments = Vec3::Zero();  // principal moments of inertia [kg m^2]
-  Pose X_BI;                    // inertial frame in B; identity for static and driven bodies
+  bool dynamic = true;           // false: never moves, or is driven
+  bool driven = false;           // follows the motion that the caller gives, whatever touches it
+  int motion = -1;               // of driven bodies: which of the inputs
+  double mass = 0;               // [kg]; 0 for static and driven bodies
+  double inverse_mass = 0;       // [1/kg]
+  double root_inverse_mass = 0;  // its root
+  Vec3 moments = Vec3::Zero();   // principal moments of inertia [kg m^2]
+  Pose X_BI;                     // inertial frame in B; identity for static and driven bodies
   Pose X_IB;
+  bool body_is_inertial = true;  // X_IB is the identity
   FreeRotation rotation;
   Material material;
   double bounding_radius = 0;  // about the centre of mass [m]; infinite for half-spaces
@@ -107,6 +109,7 @@ struct WorldOptions {
   // Position error per tick that is allowed [m], 0 or 1e-12 .. 1; 0: every tick is one part. Costs three times a plain tick, or more.
   double position_tolerance = 0;
   int max_parts = 16;  // that a tick may be cut into for that, 2 .. 1024; rounded down to a power of two
+  bool sleep = true;   // a tick that would repeat the last one to the bit isn't computed (rest.h)
   SolverOptions solver;
 };
 

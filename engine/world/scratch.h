@@ -45,6 +45,8 @@ struct Contact {
   Vec3 impulse_W = Vec3::Zero();                    // impulse on a at p_W [N s]; b got exactly its negative
   Vec3 u_C = Vec3::Zero();                          // velocity of a relative to b at the end of the tick, biases included [m/s]
   bool sliding = false;
+  int settling = 0;    // see ContactMemory; of the last tick before the solve, of this one after it
+  bool quiet = false;  // the last tick's impulses still fit
 
   Vec3 n_W() const { return R_WC.col(2); }
   bool active() const { return r[2] > 0; }
@@ -65,13 +67,14 @@ struct MoverScratch {
   Motion start, free, end;        // at the start of the tick; at its end, were there no contact; at its end (of bodies: if touched)
   Vec3 impulse_W = Vec3::Zero();  // of all contacts [N s]
   bool touched = false;           // some contact pushes on it
+  bool quiet = false;             // and the last tick's impulses still fit for all that do
   bool closing = false;           // and one of those closes in this tick
 };
 struct BodyScratch : MoverScratch {
   Pose X_WI_mid, X_WB_mid;
   Pose X_WB_end;                                // of driven bodies
   Mat3 R_WB_mid = Mat3::Identity();             // X_WB_mid.q: a matrix turns many vectors in half the time
-  Mat3 inverse_inertia_W = Mat3::Zero();        // at the middle
+  Mat3 inverse_inertia_W = Mat3::Zero();        // at the middle; of bodies in joints, and in impacts
   Vec3 angular_impulse_W = Vec3::Zero();        // about the centre of mass [N m s]
   Vec3 joint_angular_impulse_W = Vec3::Zero();  // the part of it that joints would give without contact; its linear part is in `free`
 };
@@ -108,6 +111,15 @@ struct ImpactPair {
   int a = 0, b = 0;
 };
 
+// A tick that ended where it started, to the bit, see rest.h.
+struct RestScratch {
+  WorldState state;  // where
+  std::vector<PointInput> points;
+  std::vector<MotionInput> motions;
+  bool candidate = false;  // `state` is how the last tick ended
+  bool holds = false;      // and how it started, with these inputs
+};
+
 struct WorldScratch {
   explicit WorldScratch(const WorldModel& model);
 
@@ -120,8 +132,9 @@ struct WorldScratch {
   std::vector<ImpactPair> pushed_pairs;  // get that fast in this tick (notePushedPairs); capacity as contacts
   std::vector<ImpactPair> impact_pairs;  // hit each other in this part of the tick, or may (impact.h)
   std::vector<JointGroupScratch> joint_groups;
-  std::vector<bool> struck;                // per body, in an impact
-  WorldState before, coarse;               // the tick's start, and its end in half as many parts
+  std::vector<bool> struck;   // per body, in an impact
+  WorldState before, coarse;  // the tick's start, and its end in half as many parts
+  RestScratch rest;
   double bounce = 1;                       // share of the restitution that acts in an impact: less where all of it would add energy
   std::vector<PointInput> point_inputs;    // at the end of this part of the tick
   std::vector<MotionInput> motion_inputs;  // likewise, one per driven body

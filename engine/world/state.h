@@ -34,6 +34,7 @@ struct ContactMemory {
   bool active = false;        // pushed in the last tick
   bool sliding = false;
   bool closing = false;  // it closed in the last tick
+  int settling = 0;      // for so many ticks a warm start must be exact to round-off (solve/cascade.h)
 };
 
 struct WorldState {

@@ -8,6 +8,7 @@ namespace pincer::engine {
 namespace {
 
 constexpr double kNormalWeight = 10;   // w_n
+constexpr double kFitted = 1e-12;      // of the largest bias: round-off
 constexpr double kRidge = 1e-12;       // relative: motions that no contact sees get none
 constexpr double kSamePlane = 0.9999;  // cosine of the angle between the normals; as in alignFaces
 
@@ -77,6 +78,10 @@ void alignPair(std::span<Contact> pair, int first, double h, double offset_rate,
   const StuckSet set = stuckOf(pair);
   Vec6 xi;
   if (set.count < 2 || set.flat || !fitMotion(pair, set, xi)) return;
+  double largest = 0;
+  for (const Contact& c : pair) {
+    if (c.stuck) largest = std::max(largest, c.bias_C.cwiseAbs().maxCoeff());
+  }
   for (Contact& c : pair) {
     const int row = scratch.first_row[first++];
     if (!c.stuck) continue;
@@ -84,6 +89,7 @@ void alignPair(std::span<Contact> pair, int first, double h, double offset_rate,
       if (k == kNormalRow) continue;
       if (!(unitOf(c, k) > 0)) continue;  // rolling without torsion
       const double bias = -rowOf(c, set.centre, k).dot(xi) / unitOf(c, k);
+      if (std::abs(bias - c.bias_C[k]) <= kFitted * largest) continue;  // so that what rests does so to the bit
       scratch.q[row + k] += unitOf(c, k) * (bias - c.bias_C[k]);
       c.bias_C[k] = bias;
       c.offset_C[k] = bias / offset_rate - 0.5 * h * c.v_start_C[k];

@@ -54,9 +54,9 @@ RC_GTEST_PROP(Cone, SplitsAnyVectorIntoOrthogonalParts, (unsigned seed)) {
 
 // Without friction |y_T| = mu y_n = 0 holds for a pull too; it isn't in the cone.
 TEST(Cone, LetsGoOfAPullWithoutFriction) {
-  Vec4 p = Vec4::Ones();
-  projectOntoCone(Vec4(0, 0, -1e-12, 0).data(), 4, 0, p.data());
-  EXPECT_EQ(p, Vec4::Zero());
+  Eigen::Vector4d p = Eigen::Vector4d::Ones();
+  projectOntoCone(Eigen::Vector4d(0, 0, -1e-12, 0).data(), 4, 0, p.data());
+  EXPECT_EQ(p, Eigen::Vector4d::Zero());
 }
 
 // Brute force: no point of the cone is closer.
@@ -112,7 +112,7 @@ RC_GTEST_PROP(Cone, SlideDerivativeIsThatOfTheCoupledProjections, (unsigned seed
   for (int k = 0; k < s.rows; ++k) {
     const Vec6 dy = Vec6::Unit(k);
     Vec6 dp = Vec6::Zero();
-    derivative.apply(dy.data(), s.rows, dp.data());
+    for (int row = 0; row < s.rows; ++row) dp[row] = derivative.at(row, k);
     const Vec6 difference = (coupled(s.y + 1e-7 * dy) - coupled(s.y - 1e-7 * dy)) / 2e-7;
     RC_ASSERT((difference - dp).norm() <= 1e-6 * (1 + s.mu));
   }
