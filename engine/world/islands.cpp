@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <span>
 
+#include "engine/world/contact_rows.h"
+#include "engine/world/island_bias.h"
 #include "engine/world/island_threads.h"
 #include "engine/world/joints.h"
 #include "engine/world/scratch.h"
@@ -223,7 +225,8 @@ IslandScratch::IslandScratch(IslandScratch&&) noexcept = default;
 
 namespace {
 
-void solveIsland(const WorldModel& model, int k, int thread, IslandScratch& s) {
+void solveIsland(const WorldModel& model, int k, int thread, WorldScratch& scratch) {
+  IslandScratch& s = scratch.islands;
   Island& island = s.islands[k];
   const auto n = static_cast<std::size_t>(island.contacts);
   const ContactProblem problem{{s.first_row.data() + island.place + k, n + 1},
@@ -232,6 +235,10 @@ void solveIsland(const WorldModel& model, int k, int thread, IslandScratch& s) {
                                VectorMap(s.q.data() + island.row, island.rows),
                                island.movers,
                                island.settling > 0};
+  if (scratch.h > 0) {
+    fitIslandBiases(scratch.h, kTangentCorrection / model.options.h, problem, s.r.data() + island.row, s.q.data() + island.row,
+                    {s.order.data() + island.place, n}, scratch.contacts, *s.solvers[thread]);
+  }
   island.result = solveContacts(problem, model.options.solver, *s.solvers[thread], VectorMap(s.r.data() + island.row, island.rows),
                                 VectorMap(s.u.data() + island.row, island.rows));
 }
@@ -256,7 +263,7 @@ void solveIslands(const WorldModel& model, WorldScratch& scratch) {
     gather(model, scratch, k, row, s);
     row += s.islands[k].rows;
   }
-  const auto solve = [&](int k, int thread) { solveIsland(model, k, thread, s); };
+  const auto solve = [&](int k, int thread) { solveIsland(model, k, thread, scratch); };
   if (s.threads && count > 1) {
     s.threads->run(count, solve);
   } else {
