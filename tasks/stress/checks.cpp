@@ -56,7 +56,7 @@ std::string faultOfLaw(const engine::WorldModel& model, const engine::WorldScrat
   constexpr double kContent = 2e-8;  // [m/s] twice what the solver is content with (SolverOptions::content_speed), for w is another here
   double speed = 1e-6, worst = 0;
   for (const engine::Contact& c : scratch.contacts) {
-    const Eigen::Vector4d u_free_C = engine::relativeVelocity(c, engine::mover(scratch, c.a).free, engine::mover(scratch, c.b).free);
+    const engine::ContactVector u_free_C = engine::relativeVelocity(c, engine::mover(scratch, c.a).free, engine::mover(scratch, c.b).free);
     speed = std::max({speed, c.u_C.norm(), u_free_C.head<3>().norm()});
   }
   for (const engine::Contact& c : scratch.contacts) {

@@ -20,7 +20,7 @@ TEST(IslandBias, LetsBallsInABoxComeToRest) {
     builder.addBody({"ball", contact::Sphere{0.01}, true, 0.05, {}});
     const double jitter = 1e-4 * (i * 7 % 5 - 2);
     starts.push_back(
-        testing::startAt({0.0215 * (i % 2 - 0.5) + jitter, 0.0215 * (i / 2 % 2 - 0.5) - 0.7 * jitter, 0.0112 + 0.0215 * (i / 4)}));
+        tests::startAt({0.0215 * (i % 2 - 0.5) + jitter, 0.0215 * (i / 2 % 2 - 0.5) - 0.7 * jitter, 0.0112 + 0.0215 * (i / 4)}));
   }
   const WorldModel model = builder.build();
   WorldState state = makeState(model, starts, {});

@@ -9,7 +9,7 @@
 namespace pincer::engine {
 namespace {
 
-using testing::startAt;
+using tests::startAt;
 
 // A box on a slope that holds it, and another box on the box.
 WorldModel boxesOnASlope(bool sleep) {

@@ -37,7 +37,7 @@ TEST(Rolling, SlowsABallDownEvenly) {
       const Vec3 ahead(std::cos(heading), std::sin(heading), 0);
       const WorldModel model = ballOnSlope(mu, e_r, 0, 0);
       const Vec3 spin = v0 / (kBallRadius + creep) * Vec3::UnitZ().cross(ahead);
-      WorldState state = makeState(model, {testing::startAt(Vec3::Zero()), testing::startAt({0, 0, kBallRadius}, v0 * ahead, spin)}, {});
+      WorldState state = makeState(model, {tests::startAt(Vec3::Zero()), tests::startAt({0, 0, kBallRadius}, v0 * ahead, spin)}, {});
       WorldScratch scratch(model);
       while (state.time < 0.5 * stop) step(model, state, scratch);
       // Forces are constant, so that the scheme is exact but for the solver's 1e-10 per tick.
@@ -56,7 +56,7 @@ TEST(Rolling, HoldsABallOnASlopeUpToItsLimit) {
   const double mu = 0.8, e_r = 2e-3, limit = mu * e_r / std::hypot(kBallRadius, e_r);
   const auto travelled = [&](double share) {
     const WorldModel model = ballOnSlope(mu, e_r, 0, std::atan(share * limit));
-    WorldState state = makeState(model, {testing::startAt(Vec3::Zero()), testing::startAt({0, 0, kBallRadius})}, {});
+    WorldState state = makeState(model, {tests::startAt(Vec3::Zero()), tests::startAt({0, 0, kBallRadius})}, {});
     WorldScratch scratch(model);
     for (int i = 0; i < 5000; ++i) step(model, state, scratch);
     return state.bodies[1].X_WI.p.x();
@@ -70,7 +70,7 @@ TEST(Rolling, HoldsABallOnASlopeUpToItsLimit) {
 TEST(Rolling, TakesEnergyOnly) {
   const WorldModel model = ballOnSlope(0.3, 1e-3, 2e-3, 0);
   WorldState state =
-      makeState(model, {testing::startAt(Vec3::Zero()), testing::startAt({0, 0, kBallRadius}, {0.2, 0.1, 0}, {3, 8, 20})}, {});
+      makeState(model, {tests::startAt(Vec3::Zero()), tests::startAt({0, 0, kBallRadius}, {0.2, 0.1, 0}, {3, 8, 20})}, {});
   WorldScratch scratch(model);
   double energy = kineticEnergy(model, state);
   const double start = energy;

@@ -15,8 +15,8 @@ TEST(FingerRolling, IsFeltAsATangentialForce) {
     const engine::Material material{0.9, 0.9, 0, 0, rolling_radius};
     builder.addBody({"floor", contact::HalfSpace{}, false, 0, material});
     builder.addBody({"ball", contact::Sphere{0.02}, true, 0.1, material});
-    testing::GraspWorld w{buildGrasp(builder, {testing::softFinger("top")}), {}};
-    w.state = makeState(w.model, {testing::startAt(Vec3::Zero()), testing::startAt({0, 0, 0.02})}, {Vec3(0, 0, 0.048)});
+    tests::GraspWorld w{buildGrasp(builder, {tests::softFinger("top")}), {}};
+    w.state = makeState(w.model, {tests::startAt(Vec3::Zero()), tests::startAt({0, 0, 0.02})}, {Vec3(0, 0, 0.048)});
     GraspScratch scratch(w.model);
     std::vector<FingerInput> inputs(1);
     for (int i = 0; i < 350; ++i) {

@@ -7,10 +7,10 @@ namespace pincer::grasp {
 namespace {
 
 TEST(FingerSleep, HoldsAPinchAndWakesAtATouch) {
-  testing::GraspWorld w = testing::pinchedBall(0.05, 0.8), other = testing::pinchedBall(0.05, 0.8);
+  tests::GraspWorld w = tests::pinchedBall(0.05, 0.8), other = tests::pinchedBall(0.05, 0.8);
   other.model.world.options.sleep = false;
   GraspScratch scratch(w.model), other_scratch(other.model);
-  std::vector<FingerInput> inputs = testing::squeezing(2e-3);
+  std::vector<FingerInput> inputs = tests::squeezing(2e-3);
   const auto tick = [&] {
     const bool asleep = step(w.model, w.state, scratch, inputs).asleep;
     step(other.model, other.state, other_scratch, inputs);
