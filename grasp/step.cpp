@@ -63,22 +63,33 @@ void reportFinger(const GraspModel& model, const GraspState& state, const Finger
 // The fingers' contacts, for each part of the tick.
 class FingerContacts final : public engine::ContactSource {
  public:
-  FingerContacts(const GraspModel& model, GraspState& state, GraspScratch& scratch) : model_(model), state_(state), scratch_(scratch) {}
+  FingerContacts(const GraspModel& model, GraspState& state, GraspScratch& scratch, std::span<const FingerInput> inputs)
+      : model_(model), state_(state), scratch_(scratch), inputs_(inputs) {}
   void addContacts(engine::WorldScratch&) override {
     findFingerContacts(model_, state_, scratch_);
     engine::mark(scratch_.world, engine::Stage::kFingerContacts);
+  }
+  // What the pads feel turns with them.
+  bool repeatsItself() const override {
+    return std::equal(inputs_.begin(), inputs_.end(), scratch_.orientations.begin(), scratch_.orientations.end(),
+                      [](const FingerInput& input, const Quat& last) { return input.q_WF.coeffs() == last.coeffs(); });
   }
 
  private:
   const GraspModel& model_;
   GraspState& state_;
   GraspScratch& scratch_;
+  std::span<const FingerInput> inputs_;
 };
 
 }  // namespace
 
 GraspScratch::GraspScratch(const GraspModel& model)
-    : world(model.world), inputs(model.fingers.size()), nearest_n_W(model.fingers.size()), fingers(model.fingers.size()) {}
+    : world(model.world),
+      inputs(model.fingers.size()),
+      nearest_n_W(model.fingers.size()),
+      fingers(model.fingers.size()),
+      orientations(model.fingers.size()) {}
 
 GraspState makeState(const GraspModel& model, const std::vector<engine::BodyStart>& starts, const std::vector<Vec3>& fingers) {
   GraspState state{engine::makeState(model.world, starts, fingers), {}};
@@ -89,9 +100,13 @@ GraspState makeState(const GraspModel& model, const std::vector<engine::BodyStar
 engine::StepReport step(const GraspModel& model, GraspState& state, GraspScratch& scratch, std::span<const FingerInput> inputs,
                         std::span<const engine::MotionInput> motions) {
   setInputs(inputs, scratch);
-  FingerContacts contacts(model, state, scratch);
+  FingerContacts contacts(model, state, scratch, inputs);
   const engine::StepReport report = engine::step(model.world, state.world, scratch.world, {scratch.inputs, motions}, &contacts);
-  for (int i = 0; i < static_cast<int>(inputs.size()); ++i) reportFinger(model, state, inputs[i], i, scratch);
+  if (report.asleep) return report;  // and the fingers' reports are those of the last tick
+  for (int i = 0; i < static_cast<int>(inputs.size()); ++i) {
+    reportFinger(model, state, inputs[i], i, scratch);
+    scratch.orientations[i] = inputs[i].q_WF;
+  }
   engine::mark(scratch.world, engine::Stage::kFingerReport);
   return report;
 }

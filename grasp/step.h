@@ -44,6 +44,7 @@ struct GraspScratch {
   std::vector<engine::PointInput> inputs;
   std::vector<Vec3> nearest_n_W;      // per finger, of the nearest body
   std::vector<FingerReport> fingers;  // the tick's result
+  std::vector<Quat> orientations;     // of the fingers in it
 };
 
 // State with every body at `starts` and every finger's device at `fingers` [m].

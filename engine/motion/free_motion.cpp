@@ -90,7 +90,8 @@ Quat quatOfStep(const Vec3& a) {
 
 }  // namespace
 
-FreeRotation::FreeRotation(const Vec3& moments) : inverse_moments(moments.cwiseInverse()) {
+FreeRotation::FreeRotation(const Vec3& moments)
+    : inverse_moments(moments.cwiseInverse()), root_inverse_moments(inverse_moments.cwiseSqrt()) {
   double least = INFINITY;
   for (int axis = 0; axis < 3; ++axis) {
     const double difference = std::abs(inverse_moments[(axis + 1) % 3] - inverse_moments[(axis + 2) % 3]);

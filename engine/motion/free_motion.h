@@ -20,7 +20,8 @@ struct FreeRotation {
   enum class Kind : unsigned char { kSpherical, kSymmetric, kTriaxial };
   Kind kind = Kind::kSpherical;
   int k = 2, i = 0, j = 1;  // principal axes, right-handed: k is the symmetry axis, or the one whose removal leaves the two closest moments
-  Vec3 inverse_moments = Vec3::Ones();  // [1/(kg m^2)]
+  Vec3 inverse_moments = Vec3::Ones();       // [1/(kg m^2)]
+  Vec3 root_inverse_moments = Vec3::Ones();  // their roots
 
   // Moments that agree to 1e-13 count as equal.  moments  each > 0 [kg m^2]
   explicit FreeRotation(const Vec3& moments);

@@ -53,11 +53,13 @@ bool invert(double* A) {
     const double inverse = 1 / value;
     A[kB * k + k] = 1;
     for (int j = 0; j < kB; ++j) A[kB * k + j] *= inverse;
+    double row[kB];
+    std::copy(A + kB * k, A + kB * (k + 1), row);
     for (int i = 0; i < kB; ++i) {
       if (i == k) continue;
       const double factor = A[kB * i + k];
       A[kB * i + k] = 0;
-      for (int j = 0; j < kB; ++j) A[kB * i + j] -= factor * A[kB * k + j];
+      for (int j = 0; j < kB; ++j) A[kB * i + j] -= factor * row[j];
     }
   }
   for (int k = kB - 1; k >= 0; --k) {
@@ -131,6 +133,11 @@ bool BlockLu::eliminate(int node) {
 
 bool BlockLu::order() {
   if (nodes_ > max_nodes_) return false;
+  if (nodes_ == 1) {  // one body on many contacts
+    slots_[0] = order_[0] = first_later_[0] = first_later_[1] = 0;
+    used_ = 1;
+    return max_blocks_ > 0;
+  }
   std::fill(slots_.begin(), slots_.begin() + nodes_ * nodes_, -1);
   used_ = 0;
   std::array<bool, kMaxNodes> done{};

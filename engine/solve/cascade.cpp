@@ -13,9 +13,11 @@ namespace {
 
 constexpr double kConeRoundOff =
     1e-14;  // relative: an impulse on the cone isn't projected again, so a warm start that fits stays, to the bit
+constexpr int kPolishSteps = 2;
 constexpr double kNearSolution = 1e-8;   // residual from which Newton's method needs a step or two
 constexpr double kShiftedGap = 1e-6;     // of a problem with frozen shift, itself an approximation
 constexpr int kSweepsPerRound = 15;      // enough to leave the basin in which Newton's method failed
+constexpr int kSweepsPerLook = 5;        // a look at the residual costs as much as a sweep
 constexpr int kAffordableContacts = 20;  // beyond, only one attempt from the interior
 constexpr int kCostlyContacts = 80;      // beyond, an interior point costs milliseconds; the next tick begins where this one gives up
 constexpr int kDenseContacts = 40;       // beyond, a dense matrix costs more than any graph of movers that fits
@@ -26,17 +28,20 @@ double contentResidual(const SolverOptions& options, double reference_speed) {
   return std::max(options.contentment, options.content_speed / reference_speed);
 }
 
-// Puts `r` into the cones; a contact whose impulse isn't finite gets none.
-void project(const ContactProblem& problem, double* r) {
+// Puts `r` into the cones; a contact whose impulse isn't finite gets none. True if it was there already.
+bool project(const ContactProblem& problem, double* r) {
+  bool inside = true;
   for (int i = 0; i < problem.contactCount(); ++i) {
     const int rows = problem.rows(i);
     double* const r_i = r + problem.firstRow(i);
     if (isInCone(r_i, rows, problem.friction(i), kConeRoundOff)) continue;
+    inside = false;
     projectOntoCone(r_i, rows, problem.friction(i), r_i);
     double check = 0;
     for (int k = 0; k < rows; ++k) check += r_i[k];
     if (!std::isfinite(check)) std::fill(r_i, r_i + rows, 0.0);
   }
+  return inside;
 }
 
 // The iterates of one solve, in scaled variables.
@@ -45,6 +50,7 @@ class Search {
   // r, u, residual: the warm start, evaluated
   Search(const ContactProblem& problem, SolverScratch& scratch, const double* r, const double* u, double residual)
       : form_(chooseForm(problem, scratch)),
+        unscaled_(problem),
         problem_(scaleProblem(problem, form_ == EquationForm::kContacts, scratch)),
         equations_(problem_, form_, scratch),
         scratch_(scratch) {
@@ -73,6 +79,7 @@ class Search {
     if (finish(options)) return SolveMethod::kInteriorPoint;
     if (problem_.contactCount() > kAffordableContacts) return sweep(options);
     if (iterateOnShift(options)) return SolveMethod::kInteriorPoint;
+    scaleSides(unscaled_, scratch_);
     for (int sweeps = 0; sweeps < options.gauss_seidel_sweeps; sweeps += kSweepsPerRound) {
       restartFromBest();
       sweepGaussSeidel(problem_, kSweepsPerRound, scratch_, current_);
@@ -82,25 +89,39 @@ class Search {
     return SolveMethod::kNotConverged;
   }
 
+  // What is within the tolerance already, brought to round-off.
+  SolveMethod polish(const SolverOptions& options) {
+    keepBest();
+    if (form_ == EquationForm::kTooLarge) return SolveMethod::kWarmStart;
+    iterations_ += iterateNewton(problem_, kStrictness * options.tolerance, kPolishSteps, equations_, scratch_, current_, trial_);
+    keepBest();
+    return SolveMethod::kNewton;
+  }
+
   // Too large for the costlier methods, or for linear equations at all: Gauss-Seidel, warm-started from tick to tick.
   SolveMethod sweep(const SolverOptions& options) {
+    if (problem_.W) scaleSides(unscaled_, scratch_);
     keepBest();
     restartFromBest();
     const double enough = contentResidual(options, problem_.speed);
-    for (int sweeps = 0; sweeps < options.large_sweeps && !(best_.residual <= enough); ++sweeps) {
-      sweepGaussSeidel(problem_, 1, scratch_, current_);
-      ++iterations_;
+    for (int sweeps = 0; sweeps < options.large_sweeps && !(best_.residual <= enough); sweeps += kSweepsPerLook) {
+      sweepGaussSeidel(problem_, kSweepsPerLook, scratch_, current_);
+      iterations_ += kSweepsPerLook;
       keepBest();
     }
     return best_.residual <= enough ? SolveMethod::kGaussSeidel : SolveMethod::kNotConverged;
   }
 
-  // The best impulses, in the caller's variables; none if nothing finite was found.
-  void write(double* r) const {
+  // The best impulses and their velocities, in the caller's variables; none if nothing finite was found.
+  void write(double* r, double* u) const {
     const bool found = std::isfinite(best_.residual);
     for (int i = 0; i < problem_.contactCount(); ++i)
-      for (int row = problem_.firstRow(i); row < problem_.firstRow(i + 1); ++row) r[row] = found ? best_.r[row] / problem_.scale[i] : 0;
+      for (int row = problem_.firstRow(i); row < problem_.firstRow(i + 1); ++row) {
+        r[row] = found ? best_.r[row] / problem_.scale[i] : 0;
+        u[row] = best_.u[row] * problem_.scale[i];
+      }
   }
+  double residual() const { return best_.residual; }
   int iterations() const { return iterations_; }
 
  private:
@@ -136,11 +157,13 @@ class Search {
   void keepBest() {
     if (!(current_.residual < best_.residual)) return;
     std::copy(current_.r, current_.r + problem_.rowCount(), best_.r);
+    std::copy(current_.u, current_.u + problem_.rowCount(), best_.u);
     best_.residual = current_.residual;
   }
   void restartFromBest() { std::copy(best_.r, best_.r + problem_.rowCount(), current_.r); }
 
   EquationForm form_;
+  const ContactProblem& unscaled_;
   ScaledProblem problem_;
   ContactEquations equations_;
   SolverScratch& scratch_;
@@ -176,6 +199,7 @@ SolverScratch::SolverScratch(int contacts, int movers)
   for (std::vector<double>& vector : impulses) vector.resize(m);
   for (std::vector<double>& vector : velocities) vector.resize(m);
   y.resize(kMoverFreedoms * static_cast<std::size_t>(movers));
+  weight.resize(n);
   rhs.resize(std::max(m, y.size()));
   interior.resize(kInteriorPointVectors * m);
   pivots.resize(rows);
@@ -190,19 +214,21 @@ SolverScratch::SolverScratch(int contacts, int movers)
 SolveResult solveContacts(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch, VectorMap r, VectorMap u) {
   if (problem.contactCount() == 0) return {};
   project(problem, r.data());
-  double residual = contactResidual(problem, r, scratch, u);
-  if (residual <= options.tolerance) return {SolveMethod::kWarmStart, 0, residual, true};
-  Search search(problem, scratch, r.data(), u.data(), residual);
-  SolveMethod method = search.run(options);
-  search.write(r.data());
-  project(problem, r.data());
-  residual = contactResidual(problem, r, scratch, u);
+  weighContacts(problem, scratch);
+  const double start = weighedResidual(problem, r.data(), scratch, u.data());
+  const bool is_close = start <= options.tolerance;
+  if (is_close && !(problem.strict && start > kStrictness * options.tolerance)) return {SolveMethod::kWarmStart, 0, start, start, true};
+  Search search(problem, scratch, r.data(), u.data(), start);
+  SolveMethod method = is_close ? search.polish(options) : search.run(options);
+  search.write(r.data(), u.data());
+  double residual = search.residual();
+  if (!project(problem, r.data()) || method == SolveMethod::kNotConverged) residual = weighedResidual(problem, r.data(), scratch, u.data());
   if (!(residual <= std::max(options.tolerance, contentResidual(options, referenceSpeed(problem))))) {
     method = SolveMethod::kNotConverged;
     removeAddedEnergy(problem, r, u);
-    residual = contactResidual(problem, r, scratch, u);
+    residual = weighedResidual(problem, r.data(), scratch, u.data());
   }
-  return {method, search.iterations(), residual, method != SolveMethod::kNotConverged};
+  return {method, search.iterations(), residual, start, method != SolveMethod::kNotConverged};
 }
 
 }  // namespace pincer::engine

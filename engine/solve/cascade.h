@@ -3,6 +3,10 @@
 //   warm start's residual -> semi-smooth Newton (Alart-Curnier) -> the same with a proximal term -> interior point -> interior point with frozen shift, updated ->
 //   projected Gauss-Seidel with exact local solves -> best iterate, flagged.     Newton's method finishes what the others begin.
 //
+// A body that has come to rest under impulses that are off by less than the tolerance drifts until they aren't, then is put right, in a cycle
+// without end. So after an answer that took iterations the next ones are `strict`: a warm start must be exact to round-off, for as many ticks as
+// that takes to reach (engine/world). What rests then needs no iteration any more.
+//
 // Never throws, allocates or prints; deterministic.
 #pragma once
 #include <array>
@@ -34,6 +38,7 @@ struct SolveResult {
   SolveMethod method = SolveMethod::kNoContact;
   int iterations = 0;   // of all methods together
   double residual = 0;  // of the returned impulses [-]
+  double start = 0;     // residual of the warm start [-]
   bool converged =
       true;  // to the tolerance, or to contentment by the costlier methods; false: the returned r is the best iterate in the cones, scaled so that it adds no energy
 };
@@ -55,7 +60,8 @@ struct SolverScratch {
   int max_contacts, dense_contacts;  // dense_contacts: up to so many may be treated as a dense matrix
   std::vector<ContactSides> sides;   // the scaled problem (scaled_problem.h)
   std::vector<double> W, q, scale, y;
-  std::vector<double> shift;  // |u_T| at which interior_point.h freezes it
+  std::vector<double> weight;  // w_i, mean of W_ii's diagonal [1/kg]
+  std::vector<double> shift;   // |u_T| at which interior_point.h freezes it
   std::vector<double> jacobian, step, rhs, response, interior,
       shift_centre;                                         // linear equations and vectors of newton.h and interior_point.h
   std::array<std::vector<double>, 3> impulses, velocities;  // current, trial and best iterate
@@ -67,6 +73,9 @@ struct SolverScratch {
 
 // The slowest motion that counts as motion; residuals are relative to the speeds of the problem, but never to less [m/s].
 constexpr double kVelocityFloor = 1e-6;
+
+// Of the tolerance: what a strict problem asks of its warm start.
+constexpr double kStrictness = 1e-4;
 
 // Relative natural-map residual: max_i w_i |r_i - P_K(r_i - u~_i / w_i)| / max(|q|_inf, kVelocityFloor, 1e-4 max_i w_i r_in), with
 // u~_i = u_i + mu_i |u_iT| e_n and w_i the mean of W_ii's diagonal. The last term of the maximum speaks up only where W r cancels to less than

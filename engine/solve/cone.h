@@ -1,6 +1,6 @@
-// cone: the Coulomb cone, for contact vectors of three or four rows.
+// cone: the Coulomb cone, for contact vectors of three to six rows.
 //
-//   K_mu = { r : |r_T| <= mu r_n },   r = (r_t1, r_t2, r_n[, r_tau]),   r_T = (r_t1, r_t2[, r_tau])
+//   K_mu = { r : |r_T| <= mu r_n },   r = (r_t1, r_t2, r_n[, r_tau[, r_rho1, r_rho2]]),   r_T = r without r_n
 //
 //   r    impulse [N s], velocity [m/s] or anything in proportion to them, in the contact frame C, whose third axis is the normal
 //   mu   friction coefficient [-], 0 <= mu < inf; 0 gives the half-line r_T = 0, r_n >= 0
@@ -14,17 +14,24 @@
 
 namespace pincer::engine {
 
-// The row of the k-th tangential component; k = 0, 1 and, with torsion, 2.
+// The row of the k-th tangential component; k = 0, 1, with torsion 2, with rolling 3 and 4.
 constexpr int tangentRow(int k) { return k < kNormalRow ? k : k + 1; }
 
-inline double tangentNorm2(const double* v, int rows) {
-  const double planar = v[0] * v[0] + v[1] * v[1];
-  return rows == 4 ? planar + v[3] * v[3] : planar;
+// Of torsion and rolling.
+[[gnu::always_inline]] inline double angularDot(const double* a, const double* b, int rows) {
+  double sum = a[kTorsionRow] * b[kTorsionRow];
+  for (int k = kRollingRow; k < rows; ++k) sum += a[k] * b[k];
+  return sum;
 }
 
-inline double tangentDot(const double* a, const double* b, int rows) {
+[[gnu::always_inline]] inline double tangentNorm2(const double* v, int rows) {
+  const double planar = v[0] * v[0] + v[1] * v[1];
+  return rows == 3 ? planar : planar + angularDot(v, v, rows);
+}
+
+[[gnu::always_inline]] inline double tangentDot(const double* a, const double* b, int rows) {
   const double planar = a[0] * b[0] + a[1] * b[1];
-  return rows == 4 ? planar + a[3] * b[3] : planar;
+  return rows == 3 ? planar : planar + angularDot(a, b, rows);
 }
 
 // |r_T| <= (1 + slack) mu r_n.
@@ -33,13 +40,13 @@ inline bool isInCone(const double* r, int rows, double mu, double slack = 0) {
   return r[kNormalRow] >= 0 && tangentNorm2(r, rows) <= radius * radius;
 }
 
-inline void setVector(double* v, int rows, double tangent_scale, const double* direction, double normal) {
+[[gnu::always_inline]] inline void setVector(double* v, int rows, double tangent_scale, const double* direction, double normal) {
   for (int k = 0; k < rows; ++k) v[k] = tangent_scale * direction[k];
   v[kNormalRow] = normal;
 }
 
 // p = the point of K_mu closest to y. p may be y itself.
-inline void projectOntoCone(const double* y, int rows, double mu, double* p) {
+[[gnu::always_inline]] inline void projectOntoCone(const double* y, int rows, double mu, double* p) {
   const double yT = std::sqrt(tangentNorm2(y, rows));
   const double yn = y[kNormalRow];
   if (mu * yT <= -yn) return setVector(p, rows, 0, y, 0);  // in the polar cone; asked first: a pull without friction has yT = mu yn = 0
@@ -51,27 +58,25 @@ inline void projectOntoCone(const double* y, int rows, double mu, double* p) {
 // The three ways in which Alart and Curnier's coupled projections act on y: off (y_n <= 0), inside the disc of radius mu y_n, or onto its rim.
 enum class ContactMode : unsigned char { kOpen, kStick, kSlide };
 
-inline ContactMode contactMode(const double* y, int rows, double mu) {
+[[gnu::always_inline]] inline ContactMode contactMode(const double* y, int rows, double mu) {
   const double yn = y[kNormalRow];
   if (!(yn > 0)) return ContactMode::kOpen;
   return tangentNorm2(y, rows) <= mu * mu * yn * yn ? ContactMode::kStick : ContactMode::kSlide;
 }
 
-// Derivative of the coupled projections of a sliding y:  dp_T = s (I - t t^T) dy_T + mu t dy_n,  dp_n = dy_n,  t = y_T / |y_T|,  s = mu y_n / |y_T|.
+// Derivative D of the coupled projections of a sliding y:  dp_T = s (I - t t^T) dy_T + mu t dy_n,  dp_n = dy_n,  t = y_T / |y_T|,  s = mu y_n / |y_T|.
 struct SlideDerivative {
   double t[kMaxContactRows];  // [-]; its normal row is 0
   double s;                   // [-], 0 <= s < 1
   double mu;                  // [-]
 
-  void apply(const double* dy, int rows, double* dp) const {
-    const double along = tangentDot(t, dy, rows);
-    const double normal = dy[kNormalRow];
-    for (int k = 0; k < rows; ++k) dp[k] = s * (dy[k] - along * t[k]) + mu * normal * t[k];
-    dp[kNormalRow] = normal;
+  double at(int k, int l) const {
+    if (l == kNormalRow) return k == kNormalRow ? 1 : mu * t[k];
+    return (k == l ? s : 0) - s * t[k] * t[l];
   }
 };
 
-inline SlideDerivative slideDerivative(const double* y, int rows, double mu) {
+[[gnu::always_inline]] inline SlideDerivative slideDerivative(const double* y, int rows, double mu) {
   const double inverse = 1 / std::sqrt(tangentNorm2(y, rows));
   SlideDerivative d{};
   setVector(d.t, rows, inverse, y, 0);
@@ -83,13 +88,15 @@ inline SlideDerivative slideDerivative(const double* y, int rows, double mu) {
 // Squared natural map |w r - P_K(w r - u~)|^2 of the frictional contact law, u~ = u + mu |u_T| e_n; 0 iff r and u obey it [(m/s)^2].
 //   w  > 0: scale that turns impulses into velocities [1/kg]. K is a cone, so w P_K(y) = P_K(w y): no division.
 inline double naturalMap2(const double* r, const double* u, int rows, double mu, double w) {
-  double y[kMaxContactRows];
-  double p[kMaxContactRows];
-  for (int k = 0; k < rows; ++k) y[k] = w * r[k] - u[k];
-  y[kNormalRow] -= mu * std::sqrt(tangentNorm2(u, rows));
-  projectOntoCone(y, rows, mu, p);
   double sum = 0;
-  for (int k = 0; k < rows; ++k) sum += (w * r[k] - p[k]) * (w * r[k] - p[k]);
+  withRows(rows, [&](auto count) {
+    double y[kMaxContactRows] = {};
+    double p[kMaxContactRows];
+    for (int k = 0; k < count; ++k) y[k] = w * r[k] - u[k];
+    y[kNormalRow] -= mu * std::sqrt(tangentNorm2(u, count));
+    projectOntoCone(y, count, mu, p);
+    for (int k = 0; k < count; ++k) sum += (w * r[k] - p[k]) * (w * r[k] - p[k]);
+  });
   return sum;
 }
 

@@ -1,6 +1,7 @@
 #include "engine/solve/contact_equations.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "engine/solve/linear.h"
 #include "engine/solve/mobility.h"
@@ -12,24 +13,51 @@ constexpr int kStride = kMaxContactRows;
 
 // C = A B over rows x rows.
 void multiplyBlocks(const double* A, const double* B, int rows, double* C) {
-  for (int i = 0; i < rows; ++i) {
-    for (int j = 0; j < rows; ++j) {
-      double sum = 0;
-      for (int k = 0; k < rows; ++k) sum += A[kStride * i + k] * B[kStride * k + j];
-      C[kStride * i + j] = sum;
+  withRows(rows, [&](auto count) {
+    for (int i = 0; i < count; ++i) {
+      for (int j = 0; j < count; ++j) {
+        double sum = 0;
+        for (int k = 0; k < count; ++k) sum += A[kStride * i + k] * B[kStride * k + j];
+        C[kStride * i + j] = sum;
+      }
     }
-  }
+  });
 }
 
-void multiplyVector(const double* A, const double* x, int rows, double* y) {
-  for (int i = 0; i < rows; ++i) {
-    y[i] = 0;
-    for (int k = 0; k < rows; ++k) y[i] += A[kStride * i + k] * x[k];
+inline void multiplyVector(const double* A, const double* x, int rows, double* y) {
+  withRows(rows, [&](auto count) {
+    for (int i = 0; i < count; ++i) {
+      y[i] = 0;
+      for (int k = 0; k < count; ++k) y[i] += A[kStride * i + k] * x[k];
+    }
+  });
+}
+
+void clearBlock(double* A, int rows) {
+  for (int k = 0; k < kStride * rows; ++k) A[k] = 0;
+}
+
+// A becomes its inverse, by the adjugate. False if it is singular or not finite.
+bool invertBlock3(double* A) {
+  const double* const a = A;
+  const double* const b = A + kStride;
+  const double* const c = A + 2 * kStride;
+  const double bc[3] = {b[1] * c[2] - b[2] * c[1], b[2] * c[0] - b[0] * c[2], b[0] * c[1] - b[1] * c[0]};
+  const double ca[3] = {c[1] * a[2] - c[2] * a[1], c[2] * a[0] - c[0] * a[2], c[0] * a[1] - c[1] * a[0]};
+  const double ab[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+  const double inverse = 1 / (a[0] * bc[0] + a[1] * bc[1] + a[2] * bc[2]);
+  if (!std::isfinite(inverse)) return false;
+  for (int i = 0; i < 3; ++i) {
+    A[kStride * i] = inverse * bc[i];
+    A[kStride * i + 1] = inverse * ca[i];
+    A[kStride * i + 2] = inverse * ab[i];
   }
+  return true;
 }
 
 // A becomes its inverse. False if it is singular or not finite.
 bool invertBlock(double* A, int rows) {
+  if (rows == 3) return invertBlock3(A);
   double LU[kStride * kStride], inverse[kStride * kStride];
   int pivots[kStride];
   for (int j = 0; j < rows; ++j) {
@@ -86,7 +114,7 @@ ContactEquations::ContactEquations(const ScaledProblem& problem, EquationForm fo
   if (form != EquationForm::kMovers) return;
   for (int i = 0; i < problem.contactCount(); ++i) {
     ContactTerms& t = terms_[i];
-    std::fill(t.R, t.R + kStride * kStride, 0.0);
+    clearBlock(t.R, problem.rows(i));
     t.has_R = false;
     for (const ContactSide& side : problem.sides[static_cast<std::size_t>(i)]) {
       if (side.mover < 0 || nodeOf(scratch, side) >= 0) continue;
@@ -104,8 +132,10 @@ void ContactEquations::identify(int i, double epsilon) {
 void ContactEquations::setGeneral(int i, const double* E, const double* P) {
   ContactTerms& t = terms_[i];
   t.coupling = Coupling::kGeneral;
-  std::copy(E, E + kStride * kStride, t.E);
-  std::copy(P, P + kStride * kStride, t.P);
+  for (int k = 0; k < kStride * problem_.rows(i); ++k) {
+    t.E[k] = E[k];
+    t.P[k] = P[k];
+  }
 }
 
 bool ContactEquations::factorise() { return form_ == EquationForm::kContacts ? factoriseContacts() : factoriseMovers(); }
@@ -121,6 +151,11 @@ bool ContactEquations::factoriseContacts() {
     active_[active_count_++] = i;
     size_ += problem_.rows(i);
   }
+  if (symmetric_ && active_count_ == problem_.contactCount()) {
+    for (int k = 0; k < size_ * size_; ++k) A_[k] = problem_.W[k];
+    for (int k = 0; k < size_; ++k) A_[(size_ + 1) * k] += terms_[active_[0]].epsilon;
+    return factoriseLdlt(A_, size_);
+  }
   int row = 0;
   for (int a = 0; a < active_count_; ++a) row += assembleRows(active_[a], row);
   return symmetric_ ? factoriseLdlt(A_, size_) : factoriseLu(A_, size_, scratch_.pivots.data());
@@ -130,19 +165,21 @@ bool ContactEquations::factoriseContacts() {
 int ContactEquations::assembleRows(int i, int row) {
   const ContactTerms& t = terms_[i];
   const int m = problem_.rowCount(), rows = problem_.rows(i), first = problem_.firstRow(i);
-  double* out = A_ + row;
   int diagonal = 0;  // number of the first column of contact i's own block
   for (int a = 0; active_[a] != i; ++a) diagonal += problem_.rows(active_[a]);
-  for (int a = 0; a < active_count_; ++a) {
-    for (int column = problem_.firstRow(active_[a]); column < problem_.firstRow(active_[a] + 1); ++column, out += size_) {
-      const double* const W = problem_.W + column * m + first;
-      if (t.coupling == Coupling::kIdentity) {
-        for (int k = 0; k < rows; ++k) out[k] = W[k];
-      } else {
-        multiplyVector(t.P, W, rows, out);
+  const bool is_identity = t.coupling == Coupling::kIdentity;
+  withRows(rows, [&](auto count) {
+    double* out = A_ + row;
+    for (int a = 0; a < active_count_; ++a) {
+      for (int column = problem_.firstRow(active_[a]); column < problem_.firstRow(active_[a] + 1); ++column, out += size_) {
+        const double* const W = problem_.W + column * m + first;
+        for (int k = 0; k < count; ++k) {
+          out[k] = is_identity ? W[k] : 0;
+          for (int l = 0; l < count && !is_identity; ++l) out[k] += t.P[kStride * k + l] * W[l];
+        }
       }
     }
-  }
+  });
   double* const block = A_ + diagonal * size_ + row;
   for (int k = 0; k < rows; ++k) {
     if (t.coupling == Coupling::kIdentity) {
@@ -157,6 +194,7 @@ int ContactEquations::assembleRows(int i, int row) {
 void ContactEquations::solveContacts(double* x) {
   const int m = problem_.rowCount();
   double* const b = scratch_.rhs.data();
+  if (active_count_ == problem_.contactCount() && symmetric_) return solveLdlt(A_, size_, x);
   // what is known already goes to the right
   double* const known = scratch_.response.data();
   std::fill(known, known + m, 0.0);
@@ -189,21 +227,22 @@ void ContactEquations::eliminate(int i) {
   ContactTerms& t = terms_[i];
   const int rows = problem_.rows(i);
   if (t.coupling == Coupling::kIdentity) {
-    std::copy(t.R, t.R + kStride * kStride, t.K_inverse);
-    for (int k = 0; k < rows; ++k) t.K_inverse[kStride * k + k] += t.epsilon;
     if (t.has_R) {
-      if (!invertBlock(t.K_inverse, rows)) std::fill(t.K_inverse, t.K_inverse + kStride * kStride, 0.0);
+      for (int k = 0; k < kStride * rows; ++k) t.K_inverse[k] = t.R[k];
+      for (int k = 0; k < rows; ++k) t.K_inverse[kStride * k + k] += t.epsilon;
+      if (!invertBlock(t.K_inverse, rows)) clearBlock(t.K_inverse, rows);
     } else {
+      clearBlock(t.K_inverse, rows);
       for (int k = 0; k < rows; ++k) t.K_inverse[kStride * k + k] = 1 / t.epsilon;
     }
-    std::copy(t.K_inverse, t.K_inverse + kStride * kStride, t.G);
+    for (int k = 0; k < kStride * rows; ++k) t.G[k] = t.K_inverse[k];
     return;
   }
   multiplyBlocks(t.P, t.R, rows, t.K_inverse);
   for (int k = 0; k < rows; ++k) {
     for (int l = 0; l < rows; ++l) t.K_inverse[kStride * k + l] += t.E[kStride * k + l];
   }
-  if (!invertBlock(t.K_inverse, rows)) std::fill(t.K_inverse, t.K_inverse + kStride * kStride, 0.0);
+  if (!invertBlock(t.K_inverse, rows)) clearBlock(t.K_inverse, rows);
   multiplyBlocks(t.K_inverse, t.P, rows, t.G);
 }
 
@@ -211,25 +250,33 @@ void ContactEquations::eliminate(int i) {
 void ContactEquations::addToMovers(int i) {
   const ContactTerms& t = terms_[i];
   const int rows = problem_.rows(i);
+  const bool is_scalar = t.coupling == Coupling::kIdentity && !t.has_R;  // G is a multiple of the identity
   for (const ContactSide& b : problem_.sides[static_cast<std::size_t>(i)]) {
     const int column = nodeOf(scratch_, b);
     if (column < 0) continue;
     double GA[kStride][kMoverFreedoms];
-    for (int k = 0; k < rows; ++k) {
-      for (int j = 0; j < kMoverFreedoms; ++j) {
-        GA[k][j] = 0;
-        for (int l = 0; l < rows; ++l) GA[k][j] += t.G[kStride * k + l] * b.A[l][j];
+    withRows(rows, [&](auto count) {
+      for (int k = 0; k < count; ++k) {
+        for (int j = 0; j < kMoverFreedoms; ++j) GA[k][j] = t.G[kStride * k + (is_scalar ? k : 0)] * b.A[is_scalar ? k : 0][j];
+        for (int l = 1; l < count && !is_scalar; ++l) {
+          for (int j = 0; j < kMoverFreedoms; ++j) GA[k][j] += t.G[kStride * k + l] * b.A[l][j];
+        }
       }
-    }
+    });
     for (const ContactSide& a : problem_.sides[static_cast<std::size_t>(i)]) {
       const int row = nodeOf(scratch_, a);
       if (row < 0) continue;
-      double* H = scratch_.movers_lu.block(row, column);
-      for (int k = 0; k < kMoverFreedoms; ++k, H += kMoverFreedoms) {
-        for (int l = 0; l < rows; ++l) {
-          for (int j = 0; j < kMoverFreedoms; ++j) H[j] += a.A[l][k] * GA[l][j];
+      double* const H = scratch_.movers_lu.block(row, column);
+      withRows(rows, [&](auto count) {
+        for (int k = 0; k < kMoverFreedoms; ++k) {
+          double sum[kMoverFreedoms];
+          std::copy(H + kMoverFreedoms * k, H + kMoverFreedoms * (k + 1), sum);
+          for (int l = 0; l < count; ++l) {
+            for (int j = 0; j < kMoverFreedoms; ++j) sum[j] += a.A[l][k] * GA[l][j];
+          }
+          std::copy(sum, sum + kMoverFreedoms, H + kMoverFreedoms * k);
         }
-      }
+      });
     }
   }
 }
@@ -271,9 +318,11 @@ void ContactEquations::solveMovers(double* x) {
       multiplyVector(terms_[i].K_inverse, b, rows, x_i);
     }
     forNodes(i, [&](const ContactSide& side, double* y_b) {
-      for (int k = 0; k < rows; ++k) {
-        for (int j = 0; j < kMoverFreedoms; ++j) y_b[j] += side.A[k][j] * x_i[k];
-      }
+      withRows(rows, [&](auto count) {
+        for (int k = 0; k < count; ++k) {
+          for (int j = 0; j < kMoverFreedoms; ++j) y_b[j] += side.A[k][j] * x_i[k];
+        }
+      });
     });
   }
   scratch_.movers_lu.solve(y);
@@ -282,7 +331,9 @@ void ContactEquations::solveMovers(double* x) {
     const int rows = problem_.rows(i);
     double u[kStride] = {}, G_u[kStride];
     forNodes(i, [&](const ContactSide& side, const double* y_b) {
-      for (int k = 0; k < rows; ++k) u[k] += dot6(side.A[k], y_b);
+      withRows(rows, [&](auto count) {
+        for (int k = 0; k < count; ++k) u[k] += dot6(side.A[k], y_b);
+      });
     });
     multiplyVector(terms_[i].G, u, rows, G_u);
     for (int k = 0; k < rows; ++k) x[problem_.firstRow(i) + k] -= G_u[k];

@@ -7,8 +7,8 @@
 //   A  how contact i's velocity follows mover b's scaled velocity M_b^1/2 v_b [kg^-1/2]; M^-1/2 any factor with M^-1/2 M^-T/2 = M^-1
 //   q  contact velocity that the step would end with if no contact acted, plus biases [m/s]
 //   r  contact impulses [N s];  u  contact velocities [m/s]
-// A contact has 3 rows (t1, t2, n), or 4: (t1, t2, n, torsion), the torsional row scaled by the patch's equivalent radius so that it,
-// too, is in m/s and N s. K_mu = { |(r_t1, r_t2[, r_tau])| <= mu r_n }. The shift mu |u_T| e_n is de Saxce's: with it sliding is tangential
+// A contact has 3 rows (t1, t2, n), 4 (and torsion, about n), or 6 (and rolling, about t1 and t2). Torsion is scaled by its equivalent radius e_t,
+// rolling by e_r, so that they, too, are in m/s and N s. K_mu = { |(r_t1, r_t2[, r_tau[, r_rho1, r_rho2]])| <= mu r_n }. The shift mu |u_T| e_n is de Saxce's: with it sliding is tangential
 // (no dilation). A mover that doesn't move has no block. Compliance is inertia: a mover of its own.
 // Source: G. De Saxce, Z.-Q. Feng, Math. Comput. Modelling 28 (1998) 225-245; notation of V. Acary, F. Cadoux, C. Lemarechal, J. Malick,
 // ZAMM 91 (2011) 155-175, eq. (10).
@@ -16,6 +16,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <span>
+#include <type_traits>
 
 #include "contact/math.h"
 
@@ -24,23 +25,37 @@ namespace pincer::engine {
 using VectorMap = Eigen::Map<Eigen::VectorXd>;
 
 constexpr int kNormalRow = 2;
-constexpr int kMaxContactRows = 4;
+constexpr int kMaxContactRows = 6;
+constexpr int kTorsionRow = 3, kRollingRow = 4;  // about n; the first of two, about t1 and t2
 constexpr int kMoverFreedoms = 6;
 
+using ContactVector = Eigen::Matrix<double, kMaxContactRows, 1>;  // of one contact; rows that it doesn't have are 0
+
+// Calls act with the number of rows, as a constant where it is three: nearly all contacts have three, and the compiler knows what to do then.
+template <class Act>
+[[gnu::always_inline]] inline void withRows(int rows, const Act& act) {
+  if (rows == kTorsionRow) {
+    act(std::integral_constant<int, kTorsionRow>());
+  } else {
+    act(rows);
+  }
+}
+
 // A's block of one contact and one of the two that touch; rows beyond the contact's are never read.
-struct ContactSide {
-  int mover = -1;  // 0 .. movers - 1; -1: nothing there moves, A isn't read
+struct alignas(16) ContactSide {
   double A[kMaxContactRows][kMoverFreedoms];
+  int mover = -1;  // 0 .. movers - 1; -1: nothing there moves, A isn't read
 };
 using ContactSides = std::array<ContactSide, 2>;  // never both of one mover
 
 // Views onto memory that somebody else owns (engine/world's scratch). n contacts, m rows in all.
 struct ContactProblem {
-  std::span<const int> first_row;       // size n + 1; contact i owns rows first_row[i] .. first_row[i + 1] - 1 (3 or 4 of them)
+  std::span<const int> first_row;       // size n + 1; contact i owns rows first_row[i] .. first_row[i + 1] - 1
   std::span<const double> mu;           // size n, each >= 0 [-]
   std::span<const ContactSides> sides;  // size n
   VectorMap q;                          // m
   int movers = 0;
+  bool strict = false;  // the warm start is only taken where it is exact to round-off, see cascade.h
 
   int contactCount() const { return static_cast<int>(mu.size()); }
   int rowCount() const { return static_cast<int>(q.size()); }

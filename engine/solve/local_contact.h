@@ -11,7 +11,7 @@
 
 namespace pincer::engine {
 
-// r = the solution for the `rows` x `rows` block W (column-major with column stride `stride`) and q; rows is 3 or 4.
+// r = the solution for the `rows` x `rows` block W (column-major with column stride `stride`) and q; rows is 3, 4 or 6.
 // Where W makes several solutions possible (large mu W_nT), one of them. r is in the cone to round-off.
 void solveOneContact(const double* W, int stride, const double* q, int rows, double mu, double* r);
 

@@ -18,7 +18,7 @@ constexpr int kTrials = 6;                    // step lengths 1, 1/2, .. 1/32
 constexpr double kSufficientDecrease = 1e-4;  // Armijo's, on |Phi|^2
 
 // Phi of one contact, y, and how the contact acts.
-ContactMode alartCurnier(const double* r, const double* u, int rows, double mu, double* y, double* phi) {
+[[gnu::always_inline]] inline ContactMode alartCurnier(const double* r, const double* u, int rows, double mu, double* y, double* phi) {
   for (int k = 0; k < rows; ++k) y[k] = r[k] - u[k];
   const ContactMode mode = contactMode(y, rows, mu);
   if (mode == ContactMode::kOpen) {
@@ -47,7 +47,7 @@ void velocityAt(const Iterate& it, const Centre& centre, int first, int rows, do
 
 double merit(const ScaledProblem& problem, const Centre& centre, const Iterate& it) {
   double sum = 0;
-  double y[kMaxContactRows];
+  double y[kMaxContactRows] = {};
   double phi[kMaxContactRows];
   for (int i = 0; i < problem.contactCount(); ++i) {
     const int first = problem.firstRow(i), rows = problem.rows(i);
@@ -90,15 +90,17 @@ class NewtonStep {
   // r = P_K(r + t dr)
   void step(double t, double* r) const {
     for (int i = 0; i < problem_.contactCount(); ++i) {
-      const int first = problem_.firstRow(i), rows = problem_.rows(i);
-      for (int k = first; k < first + rows; ++k) r[k] = it_.r[k] + t * dr_[k];
-      projectOntoCone(r + first, rows, problem_.friction(i), r + first);
+      const int first = problem_.firstRow(i);
+      withRows(problem_.rows(i), [&](auto rows) {
+        for (int k = first; k < first + rows; ++k) r[k] = it_.r[k] + t * dr_[k];
+        projectOntoCone(r + first, rows, problem_.friction(i), r + first);
+      });
     }
   }
 
  private:
   void linearise(int i) {
-    double y[kMaxContactRows];
+    double y[kMaxContactRows] = {};
     const int first = problem_.firstRow(i), rows = problem_.rows(i);
     double u[kMaxContactRows];
     velocityAt(it_, centre_, first, rows, u);
@@ -107,14 +109,12 @@ class NewtonStep {
     if (mode == ContactMode::kOpen) return equations_.decouple(i);
     if (mode == ContactMode::kStick) return equations_.identify(i, epsilon_);
     const SlideDerivative slide = slideDerivative(y, rows, problem_.friction(i));
-    double E[ContactTerms::kSize] = {}, D[ContactTerms::kSize] = {};
-    for (int l = 0; l < rows; ++l) {
-      double unit[kMaxContactRows] = {}, column[kMaxContactRows];
-      unit[l] = 1;
-      slide.apply(unit, rows, column);
-      for (int k = 0; k < rows; ++k) {
-        D[kMaxContactRows * k + l] = column[k];
-        E[kMaxContactRows * k + l] = (k == l ? 1 : 0) - column[k] + epsilon_ * (centre_.r ? column[k] : k == l ? 1 : 0);
+    double E[ContactTerms::kSize], D[ContactTerms::kSize];
+    for (int k = 0; k < rows; ++k) {
+      for (int l = 0; l < rows; ++l) {
+        const double d = slide.at(k, l), unit = k == l ? 1 : 0;
+        D[kMaxContactRows * k + l] = d;
+        E[kMaxContactRows * k + l] = unit - d + epsilon_ * (centre_.r ? d : unit);
       }
     }
     equations_.setGeneral(i, E, D);

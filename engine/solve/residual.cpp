@@ -1,18 +1,19 @@
 #include "engine/solve/residual.h"
 
-#include "engine/solve/cascade.h"
 #include "engine/solve/mobility.h"
 
 namespace pincer::engine {
 
-double meanDiagonal(const ContactProblem& problem, int contact) {
-  const int rows = problem.rows(contact);
-  double sum = 0;
-  for (const ContactSide& side : problem.sides[static_cast<std::size_t>(contact)]) {
-    if (side.mover < 0) continue;
-    for (int k = 0; k < rows; ++k) sum += dot6(side.A[k], side.A[k]);
+void weighContacts(const ContactProblem& problem, SolverScratch& scratch) {
+  for (int i = 0; i < problem.contactCount(); ++i) {
+    const int rows = problem.rows(i);
+    double sum = 0;
+    for (const ContactSide& side : problem.sides[static_cast<std::size_t>(i)]) {
+      if (side.mover < 0) continue;
+      for (int k = 0; k < rows; ++k) sum += dot6(side.A[k], side.A[k]);
+    }
+    scratch.weight[static_cast<std::size_t>(i)] = sum / rows;
   }
-  return sum / rows;
 }
 
 double referenceSpeed(const ContactProblem& problem) {
@@ -21,18 +22,21 @@ double referenceSpeed(const ContactProblem& problem) {
   return speed;
 }
 
-double contactResidual(const ContactProblem& problem, const Eigen::Ref<const Eigen::VectorXd>& r, SolverScratch& scratch,
-                       Eigen::Ref<Eigen::VectorXd> u) {
-  contactVelocities(problem.sides, problem.first_row, problem.q.data(), r.data(), problem.movers, scratch.y.data(), u.data());
+double weighedResidual(const ContactProblem& problem, const double* r, SolverScratch& scratch, double* u) {
+  contactVelocities(problem.sides, problem.first_row, problem.q.data(), r, problem.movers, scratch.y.data(), u);
   WorstResidual worst;
   for (int i = 0; i < problem.contactCount(); ++i) {
     const int first = problem.firstRow(i);
-    const int rows = problem.rows(i);
-    const double* const u_i = u.data() + first;
-    const double w = meanDiagonal(problem, i);
-    worst.add(naturalMap2(r.data() + first, u_i, rows, problem.friction(i), w), u_i[kNormalRow], w * r.data()[first + kNormalRow]);
+    const double w = scratch.weight[static_cast<std::size_t>(i)];
+    worst.add(naturalMap2(r + first, u + first, problem.rows(i), problem.friction(i), w), u[first + kNormalRow], w * r[first + kNormalRow]);
   }
   return worst.relativeTo(referenceSpeed(problem));
+}
+
+double contactResidual(const ContactProblem& problem, const Eigen::Ref<const Eigen::VectorXd>& r, SolverScratch& scratch,
+                       Eigen::Ref<Eigen::VectorXd> u) {
+  weighContacts(problem, scratch);
+  return weighedResidual(problem, r.data(), scratch, u.data());
 }
 
 }  // namespace pincer::engine

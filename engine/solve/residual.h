@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/solve/cascade.h"
 #include "engine/solve/cone.h"
 
 namespace pincer::engine {
@@ -31,8 +32,11 @@ class WorstResidual {
   double check_ = 0;
 };
 
-// w_i, the mean of W_ii's diagonal [1/kg].
-double meanDiagonal(const ContactProblem& problem, int contact);
+// Fills scratch.weight: w_i, the means of W_ii's diagonals [1/kg].
+void weighContacts(const ContactProblem& problem, SolverScratch& scratch);
+
+// contactResidual where the weights are known.
+double weighedResidual(const ContactProblem& problem, const double* r, SolverScratch& scratch, double* u);
 
 // max(|q|_inf, kVelocityFloor) [m/s].
 double referenceSpeed(const ContactProblem& problem);

@@ -6,29 +6,50 @@
 namespace pincer::engine {
 namespace {
 
-void scaleSides(const ContactSides& from, int rows, double factor, ContactSides& to) {
+void scaleContact(const ContactSides& from, int rows, double factor, ContactSides& to) {
   for (std::size_t s = 0; s < 2; ++s) {
     to[s].mover = from[s].mover;
     if (from[s].mover < 0) continue;
-    for (int k = 0; k < rows; ++k) {
-      for (int j = 0; j < kMoverFreedoms; ++j) to[s].A[k][j] = factor * from[s].A[k][j];
-    }
+    withRows(rows, [&](auto count) {
+      for (int k = 0; k < count; ++k) {
+        for (int j = 0; j < kMoverFreedoms; ++j) to[s].A[k][j] = factor * from[s].A[k][j];
+      }
+    });
   }
 }
 
 // W^'s block of contacts i and j, and its transpose.
-void fillBlock(const ScaledProblem& problem, int i, int j, double* W) {
-  const int m = problem.rowCount(), rows = problem.rows(i), columns = problem.rows(j);
-  double* const block = W + problem.firstRow(i) * m + problem.firstRow(j);
-  for (int k = 0; k < rows; ++k) std::fill(block + k * m, block + k * m + columns, 0.0);
+void fillBlock(const ContactProblem& problem, const double* scale, int i, int j, double* W) {
+  const int m = problem.rowCount(), columns = problem.rows(j);
+  double block[kMaxContactRows * kMaxContactRows] = {};
   for (const ContactSide& x : problem.sides[static_cast<std::size_t>(i)]) {
     for (const ContactSide& y : problem.sides[static_cast<std::size_t>(j)]) {
-      if (x.mover >= 0 && x.mover == y.mover) addCoupling(x, rows, y, columns, block, m);
+      if (x.mover >= 0 && x.mover == y.mover) addCoupling(x, problem.rows(i), y, columns, block, kMaxContactRows);
     }
   }
-  double* const transposed = W + problem.firstRow(j) * m + problem.firstRow(i);
-  for (int k = 0; k < rows; ++k) {
-    for (int l = 0; l < columns; ++l) transposed[l * m + k] = block[k * m + l];
+  const double factor = 1 / (scale[i] * scale[j]);
+  double* const upper = W + problem.firstRow(i) * m + problem.firstRow(j);
+  double* const lower = W + problem.firstRow(j) * m + problem.firstRow(i);
+  withRows(problem.rows(i), [&](auto rows) {
+    for (int k = 0; k < rows; ++k) {
+      for (int l = 0; l < columns; ++l) upper[k * m + l] = lower[l * m + k] = factor * block[kMaxContactRows * k + l];
+    }
+  });
+}
+
+// out = W r, column by column; two contacts of three rows, the usual grasp, in registers.
+void multiplyDense(const double* W, const double* r, int m, double* out) {
+  if (m == 6) {
+    double sum[6] = {};
+    for (int l = 0; l < 6; ++l) {
+      for (int row = 0; row < 6; ++row) sum[row] += W[6 * l + row] * r[l];
+    }
+    std::copy(sum, sum + 6, out);
+    return;
+  }
+  for (int row = 0; row < m; ++row) out[row] = 0;
+  for (int l = 0; l < m; ++l, W += m) {
+    for (int row = 0; row < m; ++row) out[row] += W[row] * r[l];
   }
 }
 
@@ -37,8 +58,7 @@ void fillBlock(const ScaledProblem& problem, int i, int j, double* W) {
 ScaledProblem scaleProblem(const ContactProblem& problem, bool dense, SolverScratch& scratch) {
   const int n = problem.contactCount();
   for (int i = 0; i < n; ++i) {
-    const double scale = scratch.scale[i] = std::sqrt(meanDiagonal(problem, i));
-    scaleSides(problem.sides[static_cast<std::size_t>(i)], problem.rows(i), 1 / scale, scratch.sides[i]);
+    const double scale = scratch.scale[i] = std::sqrt(scratch.weight[static_cast<std::size_t>(i)]);
     for (int row = problem.firstRow(i); row < problem.firstRow(i + 1); ++row) scratch.q[row] = problem.q.data()[row] / scale;
   }
   ScaledProblem scaled{problem.first_row,
@@ -50,24 +70,26 @@ ScaledProblem scaleProblem(const ContactProblem& problem, bool dense, SolverScra
                        scratch.y.data(),
                        referenceSpeed(problem),
                        problem.movers};
-  if (!dense) return scaled;
+  if (!dense) {
+    scaleSides(problem, scratch);
+    return scaled;
+  }
   for (int i = 0; i < n; ++i) {
-    for (int j = i; j < n; ++j) fillBlock(scaled, i, j, scratch.W.data());
+    for (int j = i; j < n; ++j) fillBlock(problem, scratch.scale.data(), i, j, scratch.W.data());
   }
   scaled.W = scratch.W.data();
   return scaled;
 }
 
+void scaleSides(const ContactProblem& problem, SolverScratch& scratch) {
+  for (int i = 0; i < problem.contactCount(); ++i)
+    scaleContact(problem.sides[static_cast<std::size_t>(i)], problem.rows(i), 1 / scratch.scale[i], scratch.sides[i]);
+}
+
 void multiply(const ScaledProblem& problem, const double* r, double* out) {
   const int m = problem.rowCount();
+  if (problem.W) return multiplyDense(problem.W, r, m, out);
   for (int row = 0; row < m; ++row) out[row] = 0;
-  if (problem.W) {
-    const double* column = problem.W;
-    for (int l = 0; l < m; ++l, column += m) {
-      for (int row = 0; row < m; ++row) out[row] += column[row] * r[l];
-    }
-    return;
-  }
   std::fill(problem.y, problem.y + kMoverFreedoms * problem.movers, 0.0);
   for (int i = 0; i < problem.contactCount(); ++i) {
     addImpulse(problem.sides[static_cast<std::size_t>(i)], problem.rows(i), r + problem.firstRow(i), problem.y);

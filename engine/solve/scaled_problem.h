@@ -13,7 +13,7 @@ namespace pincer::engine {
 struct ScaledProblem {
   std::span<const int> first_row;
   std::span<const double> mu;
-  std::span<const ContactSides> sides;  // A^ [-]
+  std::span<const ContactSides> sides;  // A^ [-]; with W^, only once scaleSides has been called
   const double* W = nullptr;            // W^, m x m [-]; null where the problem is better treated mover by mover (contact_equations.h)
   const double* q = nullptr;            // [sqrt(J)]
   const double* scale = nullptr;        // s, one per contact [1/sqrt(kg)]
@@ -28,8 +28,12 @@ struct ScaledProblem {
   double friction(int contact) const { return mu[static_cast<std::size_t>(contact)]; }
 };
 
-// Scales `problem` into `scratch`; W^ as well if `dense`. Where some w_i isn't positive and finite, no iterate has a finite residual.
+// Scales `problem`, its contacts weighed (residual.h), into `scratch`; W^ as well if `dense`. Where some w_i isn't positive and finite, no iterate has
+// a finite residual.
 ScaledProblem scaleProblem(const ContactProblem& problem, bool dense, SolverScratch& scratch);
+
+// Fills the scaled problem's sides, where that is done without W^ as well.
+void scaleSides(const ContactProblem& problem, SolverScratch& scratch);
 
 // An attempt at a solution, in scaled variables; the arrays belong to SolverScratch.
 struct Iterate {

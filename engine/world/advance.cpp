@@ -1,16 +1,19 @@
 // From impulses to momenta, from momenta to poses, and what each contact remembers of it.
 #include "engine/world/contact_rows.h"
 #include "engine/world/joints.h"
+#include "engine/world/rest.h"
 #include "engine/world/step.h"
 
 namespace pincer::engine {
 namespace {
 
-void applyImpulse(WorldScratch& scratch, const Side& side, const Vec3& arm_W, const Vec3& impulse_W, const Vec3& moment_W, bool closing) {
+void applyImpulse(WorldScratch& scratch, const Side& side, const Vec3& arm_W, const Vec3& impulse_W, const Vec3& moment_W,
+                  const Contact& c) {
   const auto push = [&](MoverScratch& mover) {
     mover.impulse_W += impulse_W;
+    mover.quiet = c.quiet && (mover.quiet || !mover.touched);
     mover.touched = true;
-    mover.closing = mover.closing || closing;
+    mover.closing = mover.closing || c.closing;
   };
   if (side.kind == SideKind::kPoint) return push(scratch.points[side.index]);
   BodyScratch& body = scratch.bodies[side.index];
@@ -20,7 +23,7 @@ void applyImpulse(WorldScratch& scratch, const Side& side, const Vec3& arm_W, co
 
 void rest(MoverScratch& mover) {
   mover.impulse_W.setZero();
-  mover.touched = mover.closing = false;
+  mover.touched = mover.closing = mover.quiet = false;
 }
 
 void advanceDriven(const BodyScratch& scratch, BodyState& s) { s = {scratch.X_WB_end, scratch.free.v_W, scratch.free.w_W}; }
@@ -35,19 +38,36 @@ void gatherImpulses(const WorldModel& model, WorldScratch& scratch) {
   for (PointScratch& point : scratch.points) rest(point);
   for (Contact& c : scratch.contacts) {
     if (!c.active()) continue;
-    const Vec3 moment_W = (c.material.torsion_radius * c.r[3]) * c.n_W();
-    applyImpulse(scratch, c.a, c.arm_a_W, c.impulse_W, moment_W, c.closing);
-    applyImpulse(scratch, c.b, c.arm_b_W, -c.impulse_W, -moment_W, c.closing);
+    Vec3 moment_W = Vec3::Zero();
+    for (int k = kTorsionRow; k < rowsOf(c.material); ++k) moment_W += (radiusOf(c, k) * c.r[k]) * axisOf(c, k);
+    applyImpulse(scratch, c.a, c.arm_a_W, c.impulse_W, moment_W, c);
+    applyImpulse(scratch, c.b, c.arm_b_W, -c.impulse_W, -moment_W, c);
   }
   if (!model.joints.empty()) gatherJointImpulses(model, scratch);
 }
 
 namespace {
 
+bool isSlow(const Vec3& v, double arm = 1) { return arm * arm * v.squaredNorm() <= kRestSpeed * kRestSpeed; }
+
+// Rest, see rest.h.
+bool comesToRest(const BodyModel& body, const BodyScratch& scratch, const Vec3& v_W, const Vec3& L_W) {
+  if (!scratch.quiet || body.joint_group >= 0) return false;
+  if (!isSlow(v_W) || !isSlow(scratch.start.v_W)) return false;
+  const double arm = body.bounding_radius * body.rotation.inverse_moments.maxCoeff();
+  return isSlow(L_W, arm) && isSlow(scratch.start.w_W, body.bounding_radius);
+}
+
 void advanceBody(const BodyModel& body, double h, BodyScratch& scratch, BodyState& s) {
   const Vec3 v_old = s.v_W, L_old = s.L_W;
   s.v_W = scratch.free.v_W + body.inverse_mass * scratch.impulse_W;
   s.L_W += scratch.angular_impulse_W;
+  if (comesToRest(body, scratch, s.v_W, s.L_W)) {
+    s.v_W.setZero();
+    s.L_W.setZero();
+    scratch.end = {s.v_W, s.L_W};
+    return;
+  }
   s.X_WI.p += scratch.closing ? Vec3(h * s.v_W) : Vec3((0.5 * h) * (v_old + s.v_W));
   const Vec3 L_mean = scratch.closing ? s.L_W : Vec3(0.5 * (L_old + s.L_W));
   if (!L_mean.isZero(0)) rotateFreely(body.rotation, L_mean, h, s.X_WI.q);
@@ -56,7 +76,9 @@ void advanceBody(const BodyModel& body, double h, BodyScratch& scratch, BodyStat
 
 void advancePoint(const std::array<AxisForm, 3>& forms, double h, PointScratch& scratch, PointState& s) {
   const Vec3 v_old = s.v_W;
-  s.v_W = scratch.end.v_W = scratch.free.v_W + scratch.inverse_mass.cwiseProduct(scratch.impulse_W);
+  s.v_W = scratch.free.v_W + scratch.inverse_mass.cwiseProduct(scratch.impulse_W);
+  if (scratch.quiet && isSlow(s.v_W) && isSlow(v_old)) s.v_W.setZero();
+  scratch.end.v_W = s.v_W;
   for (int i = 0; i < 3; ++i) {
     const bool second_order = !scratch.closing && (forms[i] == AxisForm::kFourthOrder || s.touching);
     if (forms[i] == AxisForm::kLocked) {
@@ -82,11 +104,14 @@ void remember(const WorldScratch& scratch, const Contact& c, double h, ContactMe
   m.active = c.active();
   m.sliding = c.sliding;
   m.closing = c.closing;
+  m.settling = c.settling;
   if (!m.active || m.sliding) return;
-  const Eigen::Vector4d v_end_C = relativeVelocity(c, mover(scratch, c.a).end, mover(scratch, c.b).end);
-  m.offset_C = c.offset_C + h * (c.closing ? v_end_C : Eigen::Vector4d(0.5 * (c.v_start_C + v_end_C)));
+  const ContactVector v_end_C = relativeVelocity(c, mover(scratch, c.a).end, mover(scratch, c.b).end);
+  m.offset_C = c.offset_C + h * (c.closing ? v_end_C : ContactVector(0.5 * (c.v_start_C + v_end_C)));
   m.offset_C[kNormalRow] = 0;
 }
+
+constexpr double kAligned = 1e-12;  // of the offsets: round-off
 
 bool isStuckAlike(const ContactMemory& x, const ContactMemory& y) {
   constexpr double kSamePlane = 0.9999;  // cosine of the angle between the normals
@@ -110,8 +135,15 @@ void alignOffsets(std::span<ContactMemory> face) {
     spread += rho.squaredNorm();
   }
   const double theta = spread > 0 ? turn / spread : 0;
+  const auto fitted_W = [&](const ContactMemory& m) { return Vec3(d + theta * m.n_W.cross(m.arm_a_W - centre)); };
+  double largest = 0, change = 0;
+  for (const ContactMemory& m : face) {
+    largest = std::max(largest, offset_W(m).squaredNorm());
+    change = std::max(change, (fitted_W(m) - offset_W(m)).squaredNorm());
+  }
+  if (change <= kAligned * kAligned * largest) return;  // so that what rests does so to the bit
   for (ContactMemory& m : face) {
-    const Vec3 offset = d + theta * m.n_W.cross(m.arm_a_W - centre);
+    const Vec3 offset = fitted_W(m);
     m.offset_C[0] = m.t1_W.dot(offset);
     m.offset_C[1] = m.n_W.cross(m.t1_W).dot(offset);
   }

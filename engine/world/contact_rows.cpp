@@ -52,13 +52,14 @@ void fillContact(const WorldModel& model, const WorldState& state, WorldScratch&
   Contact& c = scratch.contacts[i];
   const int first = scratch.first_row[i], count = scratch.first_row[i + 1] - first;
   const ContactMemory* memory = c.memory >= 0 ? &state.contacts[c.memory] : nullptr;
-  Eigen::Vector4d q = relativeVelocity(c, mover(scratch, c.a).free, mover(scratch, c.b).free);
+  ContactVector q = relativeVelocity(c, mover(scratch, c.a).free, mover(scratch, c.b).free);
   c.stuck = memory && memory->active && !memory->sliding;
+  c.closing = false;
   c.bias_C.setZero();
   if (c.stuck) c.bias_C = rate * (c.offset_C + 0.5 * scratch.h * c.v_start_C);
   c.bias_C[kNormalRow] = normalBias(model, state, scratch, c);
   q += c.bias_C;
-  q[3] *= c.material.torsion_radius;
+  for (int k = kTorsionRow; k < count; ++k) q[k] *= radiusOf(c, k);
   for (int k = 0; k < count; ++k) scratch.q[first + k] = q[k];
   const double longer = memory ? scratch.h / state.h_last : 0;  // than the last part of a tick: impulses grow with it
   for (int k = 0; k < count; ++k) scratch.r[first + k] = memory ? longer * memory->r[k] : 0;
@@ -71,7 +72,7 @@ void fillContacts(const WorldModel& model, const WorldState& state, WorldScratch
   const int n = static_cast<int>(scratch.contacts.size());
   scratch.first_row[0] = 0;
   for (int i = 0; i < n; ++i) {
-    scratch.first_row[i + 1] = scratch.first_row[i] + (scratch.contacts[i].material.torsion_radius > 0 ? kMaxContactRows : 3);
+    scratch.first_row[i + 1] = scratch.first_row[i] + rowsOf(scratch.contacts[i].material);
     fillContact(model, state, scratch, i);
   }
   if (scratch.h > 0) alignStickBiases(scratch.h, kTangentCorrection / model.options.h, scratch);

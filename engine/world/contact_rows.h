@@ -9,6 +9,9 @@
 //                                                                distance of two material points: that grows by R (w h)^3 / 24 per tick in
 //                                                                pure rolling, and would brake it
 // A correction pushes apart with at most kLargestCorrection, so that deep overlap doesn't explode.
+// Torsion and rolling stick likewise, by the angles that a has turned past b. What resists rolling shares the cone with friction, so that a ball
+// that rolls against it creeps: v = (R + k) w with R k^2 + (I/m + R^2 - e_r^2) k - R e_r^2 = 0, k ~ (5/7) e_r^2 / R for a solid ball. It slows down
+// by mu g k / sqrt(k^2 + e_r^2) ~ (5/7) mu e_r g / R, and stays on a slope iff tan th <= mu e_r / sqrt(R^2 + e_r^2).
 // With the gap taken at the predicted middle, d' = d + h (u + u')/2 and u' = -gamma (d + h u/2)/h, an error decays by 1 - gamma per tick
 // without ringing, for any gamma <= 1.
 #pragma once

@@ -1,13 +1,18 @@
 #include "engine/world/islands.h"
 
 #include <algorithm>
+#include <span>
 
+#include "engine/world/contact_rows.h"
+#include "engine/world/island_bias.h"
 #include "engine/world/island_threads.h"
 #include "engine/world/joints.h"
 #include "engine/world/scratch.h"
 
 namespace pincer::engine {
 namespace {
+
+constexpr int kSettlingTicks = 24;  // stick offsets halve per tick: from the tolerance to round-off
 
 // The number of what moves there in IslandScratch's arrays per mover; -1 for what doesn't.
 int moverOf(const WorldModel& model, const WorldScratch& scratch, const Side& side) {
@@ -24,36 +29,47 @@ int rootOf(std::vector<int>& parent, int mover) {
   return mover;
 }
 
-struct Ends {
-  int a, b;
-};
-Ends endsOf(const WorldModel& model, const WorldScratch& scratch, const Contact& c) {
-  return {moverOf(model, scratch, c.a), moverOf(model, scratch, c.b)};
-}
-
-void uniteMovers(const WorldModel& model, const WorldScratch& scratch, IslandScratch& s) {
-  for (const Contact& c : scratch.contacts) {
-    const Ends ends = endsOf(model, scratch, c);
-    for (const int mover : {ends.a, ends.b}) {
+void findEnds(const WorldModel& model, const WorldScratch& scratch, IslandScratch& s) {
+  const std::size_t n = scratch.contacts.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    s.ends[i] = {moverOf(model, scratch, scratch.contacts[i].a), moverOf(model, scratch, scratch.contacts[i].b)};
+    for (const int mover : {s.ends[i].a, s.ends[i].b}) {
       if (mover < 0) continue;
       s.parent[mover] = mover;
       s.number[mover] = s.island_of[mover] = -1;
     }
   }
-  for (const Contact& c : scratch.contacts) {
-    const Ends ends = endsOf(model, scratch, c);
+}
+
+bool touches(const ContactEnds& ends, int mover) { return ends.a == mover || ends.b == mover; }
+
+// All contacts touch one mover, as in a grasp: they are one island.
+bool haveCommonMover(std::span<const ContactEnds> all) {
+  for (const int mover : {all[0].a, all[0].b}) {
+    if (mover >= 0 && std::all_of(all.begin(), all.end(), [mover](const ContactEnds& ends) { return touches(ends, mover); })) return true;
+  }
+  return false;
+}
+
+void uniteMovers(std::span<const ContactEnds> all, IslandScratch& s) {
+  for (const ContactEnds& ends : all) {
     if (ends.a < 0 || ends.b < 0) continue;
     const int a = rootOf(s.parent, ends.a), b = rootOf(s.parent, ends.b);
     s.parent[std::max(a, b)] = std::min(a, b);
   }
 }
 
-void sortContacts(const WorldModel& model, const WorldScratch& scratch, IslandScratch& s) {
-  const int n = static_cast<int>(scratch.contacts.size());
+void makeOneIsland(int contacts, IslandScratch& s) {
+  s.islands.clear();
+  s.islands.emplace_back().contacts = contacts;
+  for (int i = 0; i < contacts; ++i) s.order[i] = i;
+}
+
+void sortContacts(std::span<const ContactEnds> all, IslandScratch& s) {
+  const int n = static_cast<int>(all.size());
   s.islands.clear();
   for (int i = 0; i < n; ++i) {
-    const Ends ends = endsOf(model, scratch, scratch.contacts[i]);
-    const int root = rootOf(s.parent, std::max(ends.a, ends.b));
+    const int root = rootOf(s.parent, std::max(all[i].a, all[i].b));
     if (s.island_of[root] < 0) {
       s.island_of[root] = static_cast<int>(s.islands.size());
       s.islands.emplace_back();
@@ -75,27 +91,26 @@ void sortContacts(const WorldModel& model, const WorldScratch& scratch, IslandSc
 
 // Of a body: F = R diag(1 / sqrt(I_k)).
 Mat3 rootOfInertia(const FreeRotation& rotation, const Quat& q_WI) {
-  if (rotation.kind == FreeRotation::Kind::kSpherical) return std::sqrt(rotation.inverse_moments[0]) * Mat3::Identity();
-  Mat3 F = q_WI.toRotationMatrix();
-  for (int k = 0; k < 3; ++k) F.col(k) *= std::sqrt(rotation.inverse_moments[k]);
-  return F;
+  if (rotation.kind == FreeRotation::Kind::kSpherical) return rotation.root_inverse_moments[0] * Mat3::Identity();
+  return q_WI.toRotationMatrix() * rotation.root_inverse_moments.asDiagonal();
 }
 
 void fillPointSide(const Contact& c, int rows, double sign, const Vec3& inverse_mass, ContactSide& out) {
+  const Vec3 root = sign * inverse_mass.cwiseSqrt();
   for (int k = 0; k < rows; ++k) {
     for (int j = 0; j < 3; ++j) {
-      out.A[k][j] = k < 3 ? sign * std::sqrt(inverse_mass[j]) * c.R_WC(j, k) : 0;
+      out.A[k][j] = k < 3 ? root[j] * c.R_WC(j, k) : 0;
       out.A[k][3 + j] = 0;
     }
   }
 }
 
 void fillBodySide(const Contact& c, int rows, double sign, const Vec3& arm_W, double root_mass, const Mat3& F, ContactSide& out) {
+  const double linear = sign * root_mass;
   for (int k = 0; k < rows; ++k) {
-    const Vec3 lin = c.R_WC.col(std::min(k, kNormalRow));
-    const Vec3 ang = k < 3 ? Vec3(arm_W.cross(lin)) : Vec3(c.material.torsion_radius * lin);
+    const Vec3 ang = k < 3 ? Vec3(arm_W.cross(c.R_WC.col(k))) : Vec3(radiusOf(c, k) * axisOf(c, k));
     for (int j = 0; j < 3; ++j) {
-      out.A[k][j] = k < 3 ? sign * root_mass * lin[j] : 0;
+      out.A[k][j] = k < 3 ? linear * c.R_WC(j, k) : 0;
       out.A[k][3 + j] = sign * (F(0, j) * ang[0] + F(1, j) * ang[1] + F(2, j) * ang[2]);
     }
   }
@@ -107,12 +122,12 @@ void fillSide(const WorldModel& model, const WorldScratch& scratch, const Contac
   if (mover < 0) return;
   const Side& side = is_a ? c.a : c.b;
   const double sign = is_a ? 1 : -1;
-  if (side.kind == SideKind::kBody && model.bodies[side.index].joint_group >= 0) {
-    for (int k = 0; k < rows; ++k) std::fill(out.A[k], out.A[k] + kMoverFreedoms, 0.0);
-    return addJointedSide(model, scratch, c, rows, sign, side.index, is_a ? c.arm_a_W : c.arm_b_W, out);
-  }
   if (side.kind == SideKind::kPoint) return fillPointSide(c, rows, sign, scratch.points[side.index].inverse_mass, out);
-  fillBodySide(c, rows, sign, is_a ? c.arm_a_W : c.arm_b_W, std::sqrt(model.bodies[side.index].inverse_mass), s.root_inertia[mover], out);
+  const BodyModel& body = model.bodies[side.index];
+  const Vec3& arm_W = is_a ? c.arm_a_W : c.arm_b_W;
+  if (body.joint_group < 0) return fillBodySide(c, rows, sign, arm_W, body.root_inverse_mass, s.root_inertia[mover], out);
+  for (int k = 0; k < rows; ++k) std::fill(out.A[k], out.A[k] + kMoverFreedoms, 0.0);
+  addJointedSide(model, scratch, c, rows, sign, side.index, arm_W, out);
 }
 
 // Two joined bodies that touch each other are one mover: what they do is one block.
@@ -141,13 +156,14 @@ void gather(const WorldModel& model, const WorldScratch& scratch, int k, int row
   for (int n = 0; n < island.contacts; ++n) {
     const int i = s.order[island.place + n], from = scratch.first_row[i], rows = scratch.first_row[i + 1] - from;
     const Contact& c = scratch.contacts[i];
-    const Ends ends = endsOf(model, scratch, c);
+    const ContactEnds ends = s.ends[i];
     ContactSides& sides = s.sides[island.place + n];
     fillSide(model, scratch, c, rows, true, ends.a, numberOf(model, scratch, c.a, ends.a, island, s), s, sides[0]);
     fillSide(model, scratch, c, rows, false, ends.b, numberOf(model, scratch, c.b, ends.b, island, s), s, sides[1]);
     if (ends.a >= 0 && ends.a == ends.b) joinSides(rows, sides);
     first_row[n] = island.rows;
     s.mu[island.place + n] = scratch.mu[i];
+    island.settling = std::max(island.settling, c.settling);
     for (int l = 0; l < rows; ++l) {
       s.q[row + island.rows + l] = scratch.q[from + l];
       s.r[row + island.rows + l] = scratch.r[from + l];
@@ -157,10 +173,20 @@ void gather(const WorldModel& model, const WorldScratch& scratch, int k, int row
   first_row[island.contacts] = island.rows;
 }
 
-void scatter(const IslandScratch& s, const Island& island, WorldScratch& scratch) {
+// Until when warm starts have to be exact to round-off: from an answer that took iterations until one that is, or until it is clear that none comes.
+int nextSettling(const Island& island, double tolerance) {
+  if (!(island.result.start <= tolerance)) return kSettlingTicks;
+  return island.result.method == SolveMethod::kWarmStart ? 0 : island.settling - 1;
+}
+
+void scatter(const IslandScratch& s, const Island& island, double tolerance, WorldScratch& scratch) {
   int from = island.row;
+  const int settling = nextSettling(island, tolerance);
+  const bool quiet = island.result.method == SolveMethod::kWarmStart;
   for (int n = 0; n < island.contacts; ++n) {
     const int i = s.order[island.place + n];
+    scratch.contacts[i].settling = settling;
+    scratch.contacts[i].quiet = quiet;
     for (int row = scratch.first_row[i]; row < scratch.first_row[i + 1]; ++row, ++from) {
       scratch.r[row] = s.r[from];
       scratch.u[row] = s.u[from];
@@ -182,6 +208,7 @@ IslandScratch::IslandScratch(const WorldModel& model) {
   const std::size_t movers = model.bodies.size() + model.points.size();
   islands.reserve(n);
   for (std::vector<int>* per_contact : {&order, &contact_island}) per_contact->resize(n);
+  ends.resize(n);
   for (std::vector<int>* per_mover : {&parent, &number, &island_of}) per_mover->resize(movers);
   first_row.resize(2 * n + 1);
   sides.resize(n);
@@ -198,14 +225,20 @@ IslandScratch::IslandScratch(IslandScratch&&) noexcept = default;
 
 namespace {
 
-void solveIsland(const WorldModel& model, int k, int thread, IslandScratch& s) {
+void solveIsland(const WorldModel& model, int k, int thread, WorldScratch& scratch) {
+  IslandScratch& s = scratch.islands;
   Island& island = s.islands[k];
   const auto n = static_cast<std::size_t>(island.contacts);
   const ContactProblem problem{{s.first_row.data() + island.place + k, n + 1},
                                {s.mu.data() + island.place, n},
                                {s.sides.data() + island.place, n},
                                VectorMap(s.q.data() + island.row, island.rows),
-                               island.movers};
+                               island.movers,
+                               island.settling > 0};
+  if (scratch.h > 0) {
+    fitIslandBiases(scratch.h, kTangentCorrection / model.options.h, problem, s.r.data() + island.row, s.q.data() + island.row,
+                    {s.order.data() + island.place, n}, scratch.contacts, *s.solvers[thread]);
+  }
   island.result = solveContacts(problem, model.options.solver, *s.solvers[thread], VectorMap(s.r.data() + island.row, island.rows),
                                 VectorMap(s.u.data() + island.row, island.rows));
 }
@@ -216,22 +249,28 @@ void solveIslands(const WorldModel& model, WorldScratch& scratch) {
   IslandScratch& s = scratch.islands;
   scratch.solve = {};
   if (scratch.contacts.empty()) return;
-  uniteMovers(model, scratch, s);
-  sortContacts(model, scratch, s);
+  findEnds(model, scratch, s);
+  const std::span<const ContactEnds> ends(s.ends.data(), scratch.contacts.size());
+  if (haveCommonMover(ends)) {
+    makeOneIsland(static_cast<int>(ends.size()), s);
+  } else {
+    uniteMovers(ends, s);
+    sortContacts(ends, s);
+  }
   int row = 0;
   const int count = static_cast<int>(s.islands.size());
   for (int k = 0; k < count; ++k) {
     gather(model, scratch, k, row, s);
     row += s.islands[k].rows;
   }
-  const auto solve = [&](int k, int thread) { solveIsland(model, k, thread, s); };
+  const auto solve = [&](int k, int thread) { solveIsland(model, k, thread, scratch); };
   if (s.threads && count > 1) {
     s.threads->run(count, solve);
   } else {
     for (int k = 0; k < count; ++k) solve(k, 0);
   }
   for (const Island& island : s.islands) {
-    scatter(s, island, scratch);
+    scatter(s, island, model.options.solver.tolerance, scratch);
     addResult(island.result, scratch.solve);
   }
 }

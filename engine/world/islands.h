@@ -20,7 +20,13 @@ class IslandThreads;
 // Contacts place .. place + contacts - 1 of IslandScratch's arrays.
 struct Island {
   int place = 0, contacts = 0, row = 0, rows = 0, movers = 0;
+  int settling = 0;  // the most of its contacts (state.h)
   SolveResult result;
+};
+
+// Movers of a contact; -1 for what doesn't move.
+struct ContactEnds {
+  int a, b;
 };
 
 // Working memory. All arrays but `order` and those per mover are in the order of islands.
@@ -34,7 +40,8 @@ struct IslandScratch {
   std::vector<int> parent, number;  // per mover: union-find; its number within its island
   std::vector<int> island_of;       // per root mover; per contact, while sorting
   std::vector<int> contact_island;
-  std::vector<int> first_row;  // island by island, each from 0: entries place + index of the island ..
+  std::vector<ContactEnds> ends;  // per contact, in the order of scratch.contacts
+  std::vector<int> first_row;     // island by island, each from 0: entries place + index of the island ..
   std::vector<ContactSides> sides;
   std::vector<Mat3> root_inertia;  // per mover of the world: F with F F^T = I^-1, in W [kg^-1/2 m^-1]
   std::vector<double> mu, q, r, u;
@@ -43,7 +50,7 @@ struct IslandScratch {
 };
 
 // Sorts scratch.contacts into islands, solves each from scratch.q, mu and r, and fills scratch.r, u and solve (the worst of all islands'
-// methods and residuals, the sum of their iterations). Allocates nothing.
+// methods and residuals, the sum of their iterations), and the contacts' `settling` and `quiet`. Allocates nothing.
 void solveIslands(const WorldModel& model, WorldScratch& scratch);
 
 }  // namespace pincer::engine

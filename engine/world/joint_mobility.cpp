@@ -165,8 +165,8 @@ void addJointedSide(const WorldModel& model, const WorldScratch& scratch, const 
   const JointGroupScratch& group = scratch.joint_groups[n];
   const double* const F = group.factor.data() + std::ptrdiff_t{6} * kMoverFreedoms * placeInGroup(model.joint_groups[n], body);
   for (int k = 0; k < rows; ++k) {
-    const Vec3 n_W = c.R_WC.col(std::min(k, kNormalRow));
-    const Vec3 lin = k < 3 ? n_W : Vec3::Zero(), ang = k < 3 ? Vec3(arm_W.cross(n_W)) : Vec3(c.material.torsion_radius * n_W);
+    const Vec3 lin = k < 3 ? Vec3(c.R_WC.col(k)) : Vec3::Zero();
+    const Vec3 ang = k < 3 ? Vec3(arm_W.cross(lin)) : Vec3(radiusOf(c, k) * axisOf(c, k));
     for (int j = 0; j < kMoverFreedoms; ++j) {
       const double* const column = F + std::ptrdiff_t{6} * j;
       double sum = 0;

@@ -25,6 +25,8 @@ void checkMaterial(const std::string& body, const Material& m) {
   requireRange(body + ".material.restitution", m.restitution, 0, 1, "0 doesn't bounce, 1 keeps all speed.");
   requireRange(body + ".material.torsion_radius", m.torsion_radius, 0, 1,
                "It is about two thirds of the contact patch's radius: a few mm.");
+  requireRange(body + ".material.rolling_radius", m.rolling_radius, 0, 1,
+               "Friction times it is the arm of the force that resists rolling: a hundredth to a tenth of a ball's radius.");
 }
 
 bool isSupportOnly(const contact::Shape& shape) {
@@ -36,9 +38,11 @@ void setInertia(const BodySpec& spec, BodyModel& body) {
   const PrincipalInertia inertia = principalInertia(massPropertiesOf(spec.shape, spec.mass));
   body.mass = spec.mass;
   body.inverse_mass = 1 / spec.mass;
+  body.root_inverse_mass = std::sqrt(body.inverse_mass);
   body.moments = inertia.moments;
   body.X_BI = inertia.X_BI;
   body.X_IB = inertia.X_BI.inverse();
+  body.body_is_inertial = inertia.X_BI.p.isZero(0) && inertia.X_BI.q.vec().isZero(0);
   body.rotation = FreeRotation(inertia.moments);
 }
 
@@ -128,6 +132,7 @@ Material combine(const Material& a, const Material& b) {
   m.mu_d = std::min(m.mu_s, std::sqrt(a.mu_d * b.mu_d));
   m.restitution = std::sqrt(a.restitution * b.restitution);
   m.torsion_radius = std::max(a.torsion_radius, b.torsion_radius);
+  m.rolling_radius = std::max(a.rolling_radius, b.rolling_radius);
   return m;
 }
 

@@ -16,26 +16,32 @@
 
 namespace pincer::engine {
 
-// Surface of a body. Between two bodies: friction and restitution are the geometric means, the torsion radius the larger one's.
+// Surface of a body. Between two bodies: friction and restitution are the geometric means, torsion and rolling radius the larger ones.
 // A finger takes the body's values: skin on plastic is a property of the pair.
 struct Material {
   double mu_s = 0.5;          // static friction [-], >= 0
   double mu_d = 0.5;          // dynamic friction [-], 0 <= mu_d <= mu_s
   double restitution = 0;     // of the normal velocity [-], 0 .. 1
   double torsion_radius = 0;  // e_t [m]: the contact carries a torsional moment up to e_t mu f_n; 0 for a point contact
+  double rolling_radius = 0;  // e_r [m]: and one that resists rolling, up to e_r mu f_n. All share one cone (contact_problem.h)
 };
+
+// What the solver sees of a contact: 3 rows, with torsion 4, with rolling 6.
+inline int rowsOf(const Material& m) { return m.rolling_radius > 0 ? kMaxContactRows : m.torsion_radius > 0 ? kRollingRow : kTorsionRow; }
 
 struct BodyModel {
   std::string name;
   contact::Shape shape;
-  bool dynamic = true;          // false: never moves, or is driven
-  bool driven = false;          // follows the motion that the caller gives, whatever touches it
-  int motion = -1;              // of driven bodies: which of the inputs
-  double mass = 0;              // [kg]; 0 for static and driven bodies
-  double inverse_mass = 0;      // [1/kg]
-  Vec3 moments = Vec3::Zero();  // principal moments of inertia [kg m^2]
-  Pose X_BI;                    // inertial frame in B; identity for static and driven bodies
+  bool dynamic = true;           // false: never moves, or is driven
+  bool driven = false;           // follows the motion that the caller gives, whatever touches it
+  int motion = -1;               // of driven bodies: which of the inputs
+  double mass = 0;               // [kg]; 0 for static and driven bodies
+  double inverse_mass = 0;       // [1/kg]
+  double root_inverse_mass = 0;  // its root
+  Vec3 moments = Vec3::Zero();   // principal moments of inertia [kg m^2]
+  Pose X_BI;                     // inertial frame in B; identity for static and driven bodies
   Pose X_IB;
+  bool body_is_inertial = true;  // X_IB is the identity
   FreeRotation rotation;
   Material material;
   double bounding_radius = 0;  // about the centre of mass [m]; infinite for half-spaces
@@ -103,6 +109,7 @@ struct WorldOptions {
   // Position error per tick that is allowed [m], 0 or 1e-12 .. 1; 0: every tick is one part. Costs three times a plain tick, or more.
   double position_tolerance = 0;
   int max_parts = 16;  // that a tick may be cut into for that, 2 .. 1024; rounded down to a power of two
+  bool sleep = true;   // a tick that would repeat the last one to the bit isn't computed (rest.h)
   SolverOptions solver;
 };
 

@@ -20,7 +20,7 @@ void predictRotation(const FreeRotation& rotation, const BodyState& s, double h,
 }
 
 void place(const BodyModel& body, BodyScratch& out) {
-  out.X_WB_mid = out.X_WI_mid * body.X_IB;
+  out.X_WB_mid = body.body_is_inertial ? out.X_WI_mid : out.X_WI_mid * body.X_IB;
   out.R_WB_mid = out.X_WB_mid.q.toRotationMatrix();
 }
 
@@ -31,7 +31,7 @@ void predictBody(const BodyModel& body, const BodyState& s, const Vec3& dv_gravi
   out.X_WI_mid.p = s.X_WI.p + (0.5 * h) * s.v_W;
   predictRotation(body.rotation, s, h, out);
   place(body, out);
-  out.inverse_inertia_W = inverseInertia(body.rotation, out.X_WI_mid.q);
+  if (body.joint_group >= 0) out.inverse_inertia_W = inverseInertia(body.rotation, out.X_WI_mid.q);
 }
 
 void predictDriven(const BodyState& s, const MotionInput& in, double h, BodyScratch& out) {

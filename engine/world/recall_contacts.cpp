@@ -10,7 +10,12 @@ Vec3 centre(const WorldScratch& scratch, const Side& side) {
 }
 
 // Keeps the first tangent as close as possible to the one remembered, so that the warm start keeps its meaning.
-Mat3 carriedFrame(const Vec3& n_W, const Vec3& t1_old_W) {
+Mat3 carriedFrame(const Vec3& n_W, const Vec3& n_old_W, const Vec3& t1_old_W) {
+  if (n_W == n_old_W) {
+    Mat3 R;
+    R << t1_old_W, n_W.cross(t1_old_W), n_W;
+    return R;
+  }
   const Vec3 t1 = t1_old_W - n_W * n_W.dot(t1_old_W);
   const double length = t1.norm();
   if (length < 0.1) return frameFromNormal(n_W);
@@ -24,11 +29,12 @@ Mat3 carriedFrame(const Vec3& n_W, const Vec3& t1_old_W) {
 void recall(const WorldState& state, WorldScratch& scratch, Contact& c) {
   const ContactMemory* memory = c.memory >= 0 ? &state.contacts[c.memory] : nullptr;
   const Vec3 n_W = c.R_WC.col(2);
-  c.R_WC = memory ? carriedFrame(n_W, memory->t1_W) : frameFromNormal(n_W);
+  c.R_WC = memory ? carriedFrame(n_W, memory->n_W, memory->t1_W) : frameFromNormal(n_W);
   c.arm_a_W = c.p_W - centre(scratch, c.a);
   c.arm_b_W = c.p_W - centre(scratch, c.b);
   c.mu = memory && memory->sliding ? c.material.mu_d : c.material.mu_s;
   c.v_start_C = relativeVelocity(c, mover(scratch, c.a).start, mover(scratch, c.b).start);
+  c.settling = memory ? memory->settling : 0;
   c.offset_C.setZero();
   if (memory && memory->active && !memory->sliding) c.offset_C = memory->offset_C;
 }

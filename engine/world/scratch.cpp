@@ -40,6 +40,11 @@ WorldScratch::WorldScratch(const WorldModel& model) : h(model.options.h), patche
     copy->contacts.resize(contact_count);
   }
   struck.resize(model.bodies.size());
+  rest.state.bodies.resize(model.bodies.size());
+  rest.state.points.resize(model.points.size());
+  rest.state.contacts.resize(contact_count);
+  rest.points.resize(model.points.size());
+  rest.motions.resize(static_cast<std::size_t>(model.driven_count));
   point_inputs.resize(model.points.size());
   motion_inputs.resize(static_cast<std::size_t>(model.driven_count));
   first_row.resize(contact_count + 1);
@@ -55,9 +60,14 @@ std::uint64_t contactId(int kind, int a, int b, std::uint32_t feature) {
          static_cast<std::uint64_t>(b & 0x7fff) << 32 | feature;
 }
 
-Eigen::Vector4d relativeVelocity(const Contact& c, const Motion& a, const Motion& b) {
-  const Vec3 v_W = a.v_W + a.w_W.cross(c.arm_a_W) - (b.v_W + b.w_W.cross(c.arm_b_W));
-  return {c.R_WC.col(0).dot(v_W), c.R_WC.col(1).dot(v_W), c.R_WC.col(2).dot(v_W), c.R_WC.col(2).dot(a.w_W - b.w_W)};
+ContactVector relativeVelocity(const Contact& c, const Motion& a, const Motion& b) {
+  Vec3 v_W = a.v_W - b.v_W;
+  if (!a.w_W.isZero(0)) v_W += a.w_W.cross(c.arm_a_W);
+  if (!b.w_W.isZero(0)) v_W -= b.w_W.cross(c.arm_b_W);
+  ContactVector v = ContactVector::Zero();
+  for (int k = 0; k < 3; ++k) v[k] = c.R_WC.col(k).dot(v_W);
+  for (int k = kTorsionRow; k < rowsOf(c.material); ++k) v[k] = axisOf(c, k).dot(a.w_W - b.w_W);
+  return v;
 }
 
 Contact* addContact(WorldScratch& scratch, double phi) {

@@ -36,15 +36,17 @@ struct Contact {
   // filled by the step:
   double mu = 0;  // in force in this tick
   Vec3 arm_a_W = Vec3::Zero(), arm_b_W = Vec3::Zero();
-  Eigen::Vector4d v_start_C = Eigen::Vector4d::Zero();  // of a relative to b at the start of the tick, see relativeVelocity
-  Eigen::Vector4d offset_C = Eigen::Vector4d::Zero();   // anchored stick, at the start of the tick; see ContactMemory
-  bool closing = false;                                 // it closes in this tick, from a positive gap or with an approaching velocity
-  bool stuck = false;                                   // it stuck in the last tick: its tangential biases undo the offset
-  Eigen::Vector4d bias_C = Eigen::Vector4d::Zero();     // part of q that isn't velocity [m/s], about n [rad/s]
-  Eigen::Vector4d r = Eigen::Vector4d::Zero();          // impulse on a in C, torsion last [N s]
-  Vec3 impulse_W = Vec3::Zero();                        // impulse on a at p_W [N s]; b got exactly its negative
-  Vec3 u_C = Vec3::Zero();                              // velocity of a relative to b at the end of the tick, biases included [m/s]
+  ContactVector v_start_C = ContactVector::Zero();  // of a relative to b at the start of the tick, see relativeVelocity
+  ContactVector offset_C = ContactVector::Zero();   // anchored stick, at the start of the tick; see ContactMemory
+  bool closing = false;                             // it closes in this tick, from a positive gap or with an approaching velocity
+  bool stuck = false;                               // it stuck in the last tick: its tangential biases undo the offset
+  ContactVector bias_C = ContactVector::Zero();     // part of q that isn't velocity [m/s], from torsion on [rad/s]
+  ContactVector r = ContactVector::Zero();          // impulse on a in C [N s]
+  Vec3 impulse_W = Vec3::Zero();                    // impulse on a at p_W [N s]; b got exactly its negative
+  Vec3 u_C = Vec3::Zero();                          // velocity of a relative to b at the end of the tick, biases included [m/s]
   bool sliding = false;
+  int settling = 0;    // see ContactMemory; of the last tick before the solve, of this one after it
+  bool quiet = false;  // the last tick's impulses still fit
 
   Vec3 n_W() const { return R_WC.col(2); }
   bool active() const { return r[2] > 0; }
@@ -65,13 +67,14 @@ struct MoverScratch {
   Motion start, free, end;        // at the start of the tick; at its end, were there no contact; at its end (of bodies: if touched)
   Vec3 impulse_W = Vec3::Zero();  // of all contacts [N s]
   bool touched = false;           // some contact pushes on it
+  bool quiet = false;             // and the last tick's impulses still fit for all that do
   bool closing = false;           // and one of those closes in this tick
 };
 struct BodyScratch : MoverScratch {
   Pose X_WI_mid, X_WB_mid;
   Pose X_WB_end;                                // of driven bodies
   Mat3 R_WB_mid = Mat3::Identity();             // X_WB_mid.q: a matrix turns many vectors in half the time
-  Mat3 inverse_inertia_W = Mat3::Zero();        // at the middle
+  Mat3 inverse_inertia_W = Mat3::Zero();        // at the middle; of bodies in joints, and in impacts
   Vec3 angular_impulse_W = Vec3::Zero();        // about the centre of mass [N m s]
   Vec3 joint_angular_impulse_W = Vec3::Zero();  // the part of it that joints would give without contact; its linear part is in `free`
 };
@@ -108,6 +111,15 @@ struct ImpactPair {
   int a = 0, b = 0;
 };
 
+// A tick that ended where it started, to the bit, see rest.h.
+struct RestScratch {
+  WorldState state;  // where
+  std::vector<PointInput> points;
+  std::vector<MotionInput> motions;
+  bool candidate = false;  // `state` is how the last tick ended
+  bool holds = false;      // and how it started, with these inputs
+};
+
 struct WorldScratch {
   explicit WorldScratch(const WorldModel& model);
 
@@ -120,8 +132,9 @@ struct WorldScratch {
   std::vector<ImpactPair> pushed_pairs;  // get that fast in this tick (notePushedPairs); capacity as contacts
   std::vector<ImpactPair> impact_pairs;  // hit each other in this part of the tick, or may (impact.h)
   std::vector<JointGroupScratch> joint_groups;
-  std::vector<bool> struck;                // per body, in an impact
-  WorldState before, coarse;               // the tick's start, and its end in half as many parts
+  std::vector<bool> struck;   // per body, in an impact
+  WorldState before, coarse;  // the tick's start, and its end in half as many parts
+  RestScratch rest;
   double bounce = 1;                       // share of the restitution that acts in an impact: less where all of it would add energy
   std::vector<PointInput> point_inputs;    // at the end of this part of the tick
   std::vector<MotionInput> motion_inputs;  // likewise, one per driven body
@@ -139,8 +152,12 @@ inline const MoverScratch& mover(const WorldScratch& scratch, const Side& side) 
   return scratch.bodies[side.index];
 }
 
-// Velocity of a relative to b where they touch, in C: along t1, t2, n [m/s], and about n [rad/s].
-Eigen::Vector4d relativeVelocity(const Contact& c, const Motion& a, const Motion& b);
+// Row k >= kTorsionRow turns about this axis; the radius makes it a velocity.
+inline Vec3 axisOf(const Contact& c, int k) { return k == kTorsionRow ? c.R_WC.col(2) : c.R_WC.col(k - kRollingRow); }
+inline double radiusOf(const Contact& c, int k) { return k == kTorsionRow ? c.material.torsion_radius : c.material.rolling_radius; }
+
+// Velocity of a relative to b where they touch, in C: along t1, t2, n [m/s]; of rows that the contact has, about n, t1, t2 [rad/s].
+ContactVector relativeVelocity(const Contact& c, const Motion& a, const Motion& b);
 
 inline void mark(WorldScratch& scratch, Stage stage) {
   if (scratch.clock) scratch.clock->mark(stage);

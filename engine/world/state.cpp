@@ -33,10 +33,12 @@ class Fnv1a {
 
 void add(Fnv1a& hash, const ContactMemory& c) {
   hash.add(c.id);
-  for (int i = 0; i < 4; ++i) hash.add(c.r[i]);
-  for (int i = 0; i < 4; ++i) hash.add(c.offset_C[i]);
+  for (const ContactVector* v : {&c.r, &c.offset_C}) {
+    for (const double x : *v) hash.add(x);
+  }
   for (const Vec3& v : {c.t1_W, c.n_W, c.arm_a_W, c.arm_b_W}) hash.add(v);
-  hash.add(static_cast<std::uint64_t>(c.active) | static_cast<std::uint64_t>(c.sliding) << 1 | static_cast<std::uint64_t>(c.closing) << 2);
+  hash.add(static_cast<std::uint64_t>(c.active) | static_cast<std::uint64_t>(c.sliding) << 1 | static_cast<std::uint64_t>(c.closing) << 2 |
+           static_cast<std::uint64_t>(c.settling) << 3);
 }
 
 bool isFinite(const BodyStart& s) {

@@ -24,15 +24,17 @@ struct PointState {
 
 // What a contact remembers from tick to tick. Sorted by id.
 struct ContactMemory {
-  std::uint64_t id = 0;                         // see contactId
-  Eigen::Vector4d r = Eigen::Vector4d::Zero();  // impulse in C (t1, t2, n, torsion) [N s]; warm start
-  Vec3 t1_W = Vec3::UnitX();                    // first tangent of C, so that r keeps its meaning when n turns
+  std::uint64_t id = 0;                     // see contactId
+  ContactVector r = ContactVector::Zero();  // impulse in C (t1, t2, n, torsion, rolling) [N s]; warm start
+  Vec3 t1_W = Vec3::UnitX();                // first tangent of C, so that r keeps its meaning when n turns
   Vec3 n_W = Vec3::UnitZ();
   Vec3 arm_a_W = Vec3::Zero(), arm_b_W = Vec3::Zero();  // contact point from the two centres [m]
-  Eigen::Vector4d offset_C = Eigen::Vector4d::Zero();   // how far a has moved past b since they stuck: along t1, t2 [m], -, about n [rad]
-  bool active = false;                                  // pushed in the last tick
+  ContactVector offset_C =
+      ContactVector::Zero();  // how far a has moved past b since they stuck: along t1, t2 [m], -, about n, t1, t2 [rad]
+  bool active = false;        // pushed in the last tick
   bool sliding = false;
   bool closing = false;  // it closed in the last tick
+  int settling = 0;      // for so many ticks a warm start must be exact to round-off (solve/cascade.h)
 };
 
 struct WorldState {

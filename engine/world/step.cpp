@@ -1,7 +1,6 @@
 #include "engine/world/step.h"
 
-#include <cmath>
-
+#include "engine/solve/cone.h"
 #include "engine/world/contact_rows.h"
 
 namespace pincer::engine {
@@ -16,10 +15,9 @@ void readSolution(const WorldScratch& scratch, int i, Contact& c) {
   for (int k = 0; k < count; ++k) c.r[k] = scratch.r[first + k];
   c.u_C = Eigen::Map<const Vec3>(&scratch.u[first]);
   c.impulse_W = c.R_WC * c.r.head<3>();
-  const double spin = count > 3 ? scratch.u[first + 3] : 0;
-  const double friction = std::sqrt(c.r[0] * c.r[0] + c.r[1] * c.r[1] + c.r[3] * c.r[3]);
-  const double speed = std::sqrt(c.u_C[0] * c.u_C[0] + c.u_C[1] * c.u_C[1] + spin * spin);
-  c.sliding = c.active() && friction >= kOnCone * c.mu * c.r[2] && speed > kSlidingSpeed;
+  const double on_cone = kOnCone * c.mu * c.r[2];
+  c.sliding = c.active() && tangentNorm2(c.r.data(), count) >= on_cone * on_cone &&
+              tangentNorm2(&scratch.u[first], count) > kSlidingSpeed * kSlidingSpeed;
 }
 
 }  // namespace

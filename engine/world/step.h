@@ -37,9 +37,10 @@ enum StepStatus : std::uint32_t {
 
 struct StepReport {
   std::uint32_t status = kStepOk;
-  int contacts = 0;   // in the last part of the tick
-  SolveResult solve;  // likewise
-  int parts = 1;      // that the tick was cut into
+  int contacts = 0;     // in the last part of the tick
+  SolveResult solve;    // likewise
+  int parts = 1;        // that the tick was cut into
+  bool asleep = false;  // the tick repeats the last one (rest.h); scratch holds its contacts
 };
 
 // Finds contacts that the engine doesn't know of, those of driven points: adds them to scratch.contacts (addContact) at the poses in `scratch`.
@@ -47,6 +48,8 @@ struct StepReport {
 class ContactSource {
  public:
   virtual void addContacts(WorldScratch& scratch) = 0;
+  // Whether it would add what it added to the last tick, from the same state and inputs.
+  virtual bool repeatsItself() const { return true; }
 
  protected:
   ~ContactSource() = default;

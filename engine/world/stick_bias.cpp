@@ -8,6 +8,7 @@ namespace pincer::engine {
 namespace {
 
 constexpr double kNormalWeight = 10;   // w_n
+constexpr double kFitted = 1e-12;      // of the largest bias: round-off
 constexpr double kRidge = 1e-12;       // relative: motions that no contact sees get none
 constexpr double kSamePlane = 0.9999;  // cosine of the angle between the normals; as in alignFaces
 
@@ -43,8 +44,8 @@ StuckSet stuckOf(std::span<const Contact> pair) {
 // The row of J that gives component k of contact c's velocity from xi, torsion in m/s.
 Vec6 rowOf(const Contact& c, const Vec3& centre, int k) {
   Vec6 row = Vec6::Zero();
-  if (k == 3) {
-    row.tail<3>() = c.material.torsion_radius * c.n_W();
+  if (k >= kTorsionRow) {
+    row.tail<3>() = radiusOf(c, k) * axisOf(c, k);
     return row;
   }
   row.head<3>() = c.R_WC.col(k);
@@ -52,8 +53,7 @@ Vec6 rowOf(const Contact& c, const Vec3& centre, int k) {
   return row;
 }
 
-double unitOf(const Contact& c, int k) { return k == 3 ? c.material.torsion_radius : 1; }
-int rowsOf(const Contact& c) { return c.material.torsion_radius > 0 ? 4 : 3; }
+double unitOf(const Contact& c, int k) { return k >= kTorsionRow ? radiusOf(c, k) : 1; }
 
 // False if the equations can't be solved (something isn't finite).
 bool fitMotion(std::span<const Contact> pair, const StuckSet& set, Vec6& xi) {
@@ -61,7 +61,7 @@ bool fitMotion(std::span<const Contact> pair, const StuckSet& set, Vec6& xi) {
   xi.setZero();
   for (const Contact& c : pair) {
     if (!c.stuck) continue;
-    for (int k = 0; k < rowsOf(c); ++k) {
+    for (int k = 0; k < rowsOf(c.material); ++k) {
       const double weight = k == kNormalRow ? kNormalWeight * kNormalWeight : 1;
       const Vec6 row = rowOf(c, set.centre, k);
       for (int j = 0; j < 6; ++j) {
@@ -78,12 +78,18 @@ void alignPair(std::span<Contact> pair, int first, double h, double offset_rate,
   const StuckSet set = stuckOf(pair);
   Vec6 xi;
   if (set.count < 2 || set.flat || !fitMotion(pair, set, xi)) return;
+  double largest = 0;
+  for (const Contact& c : pair) {
+    if (c.stuck) largest = std::max(largest, c.bias_C.cwiseAbs().maxCoeff());
+  }
   for (Contact& c : pair) {
     const int row = scratch.first_row[first++];
     if (!c.stuck) continue;
-    for (int k = 0; k < rowsOf(c); ++k) {
+    for (int k = 0; k < rowsOf(c.material); ++k) {
       if (k == kNormalRow) continue;
+      if (!(unitOf(c, k) > 0)) continue;  // rolling without torsion
       const double bias = -rowOf(c, set.centre, k).dot(xi) / unitOf(c, k);
+      if (std::abs(bias - c.bias_C[k]) <= kFitted * largest) continue;  // so that what rests does so to the bit
       scratch.q[row + k] += unitOf(c, k) * (bias - c.bias_C[k]);
       c.bias_C[k] = bias;
       c.offset_C[k] = bias / offset_rate - 0.5 * h * c.v_start_C[k];

@@ -2,8 +2,8 @@
 //
 //   minimise over xi  sum_i  w_n^2 (n_i . xi_i - a_in)^2 + |P_i xi_i - a_iT|^2 + (e_t n_i . Omega - a_it)^2,   xi_i = V + Omega x rho_i
 //
-//   a_i   velocity of a relative to b at contact i that its biases ask for: along the normal to correct the gap, along the tangents (and,
-//         torsion radius e_t > 0, about the normal) to undo its stick offset [m/s]
+//   a_i   velocity of a relative to b at contact i that its biases ask for: along the normal to correct the gap, along the tangents (with torsion or rolling
+//         radius, about the axes as well) to undo its stick offset [m/s]
 //   P_i   projection onto the contact's tangents;  rho_i  contact point from the mean of them all [m]
 //   w_n   weight of the normals [-]: a gap is geometry and stays as it is, an offset is memory and follows
 //   xi    V [m/s], Omega [rad/s]: the six unknowns

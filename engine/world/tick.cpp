@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "engine/world/impact.h"
+#include "engine/world/rest.h"
 #include "engine/world/step.h"
 
 namespace pincer::engine {
@@ -44,6 +45,7 @@ class Tick {
       : model_(model), state_(state), scratch_(scratch), inputs_(inputs), source_(source), left_(model.options.h) {}
 
   StepReport run() {
+    if (model_.options.sleep && repeatsItself(state_, scratch_, inputs_) && (!source_ || source_->repeatsItself())) return sleep();
     scratch_.contacts_dropped = false;
     for (std::size_t i = 0; i < state_.points.size(); ++i) scratch_.points[i].v_tick_W = state_.points[i].v_W;
     if (model_.options.position_tolerance > 0) {
@@ -57,10 +59,22 @@ class Tick {
     report_.solve = scratch_.solve;
     if (scratch_.contacts_dropped) report_.status |= kContactsDropped;
     if (!isFinite(state_)) report_.status |= kStateNotFinite;
+    if (model_.options.sleep) noteRest(state_, inputs_, report_.status == kStepOk && impacts_ == 0, scratch_);
     return report_;
   }
 
  private:
+  // The contacts of the last tick are those of this one.
+  StepReport sleep() {
+    ++state_.tick;
+    state_.time = static_cast<double>(state_.tick) * model_.options.h;
+    report_.contacts = static_cast<int>(scratch_.contacts.size());
+    report_.solve = scratch_.solve;
+    report_.parts = state_.parts;
+    report_.asleep = true;
+    return report_;
+  }
+
   // Doubles the parts until what they change is within the tolerance: halving a second-order step leaves a third of the change as error. The
   // next tick begins with half of what this one needed.
   void runToTolerance() {

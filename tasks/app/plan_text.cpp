@@ -57,9 +57,11 @@ std::string bodyForm(const engine::BodyModel& body) {
   return fmt::format("{}, {:.4g} g; {}{}", shape, 1e3 * body.mass, rotationForm(body), touch);
 }
 
-std::string torsionText(double torsion_radius) {
-  return torsion_radius > 0 ? fmt::format("4 rows each, torsion up to {:g} mm x friction", 1e3 * torsion_radius)
-                            : "3 rows each, no torsion";
+std::string rowsText(const engine::Material& m) {
+  std::string text = fmt::format("{} rows each, {}", engine::rowsOf(m), m.torsion_radius > 0 ? "" : "no torsion");
+  if (m.torsion_radius > 0) text += fmt::format("torsion up to {:g} mm x friction", 1e3 * m.torsion_radius);
+  if (m.rolling_radius > 0) text += fmt::format(", against rolling up to {:g} mm x friction", 1e3 * m.rolling_radius);
+  return text;
 }
 
 std::string pairForm(const Bodies& bodies, const engine::PairModel& pair) {
@@ -67,8 +69,7 @@ std::string pairForm(const Bodies& bodies, const engine::PairModel& pair) {
   const bool mesh = isMesh(a) || isMesh(b);
   const bool sphere = isSphere(a) || isSphere(b);
   const char* form = !mesh ? "closed form" : sphere ? "sphere on the smooth surface" : "corners of the mesh's convex hull";
-  return fmt::format("{}; {}, mu_s {:g}, mu_d {:g}", form, torsionText(pair.material.torsion_radius), pair.material.mu_s,
-                     pair.material.mu_d);
+  return fmt::format("{}; {}, mu_s {:g}, mu_d {:g}", form, rowsText(pair.material), pair.material.mu_s, pair.material.mu_d);
 }
 
 std::string couplingForm(const engine::DrivenPointModel& coupling, const std::array<engine::AxisForm, 3>& forms) {
@@ -87,7 +88,7 @@ std::string surfaceForm(const contact::Shape& shape) {
 }
 
 std::string touchForm(const engine::BodyModel& body) {
-  return fmt::format("{}; {}, mu_s {:g}, mu_d {:g}", surfaceForm(body.shape), torsionText(body.material.torsion_radius), body.material.mu_s,
+  return fmt::format("{}; {}, mu_s {:g}, mu_d {:g}", surfaceForm(body.shape), rowsText(body.material), body.material.mu_s,
                      body.material.mu_d);
 }
 

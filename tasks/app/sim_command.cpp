@@ -52,6 +52,7 @@ void addSimCommand(CLI::App& app, int& exit_code) {
   command->add_option("--out", arguments->options.csv, "Write the recorded quantities to this CSV file");
   command->add_flag("--grasp", arguments->options.grasp,
                     "Say how well the fingers hold each body at the end: slip margins, force closure, epsilon");
+  command->add_flag("--awake", arguments->options.awake, "Compute every tick, also those that would repeat the last one");
   command->add_flag("--json", arguments->json, "Print the result as JSON");
   command->footer(kSimExample);
   command->callback([arguments, &exit_code] { exit_code = runSim(*arguments); });

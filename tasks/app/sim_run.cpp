@@ -54,6 +54,7 @@ std::int64_t ticksOf(const char* option, double seconds, double tick) {
 }  // namespace
 
 void applyOptions(const SimOptions& options, Scene& scene) {
+  if (options.awake) scene.options.sleep = false;
   if (options.every) scene.record.every = ticksOf("--every", *options.every, scene.options.h);
   if (options.duration) {
     ticksOf("--duration", *options.duration, scene.options.h);

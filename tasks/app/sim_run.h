@@ -16,6 +16,7 @@ struct SimOptions {
   std::optional<double> every;     // in place of the scene's recording interval [s]
   std::string csv;                 // file for the recorded quantities; empty: none
   bool grasp = false;              // say how well the fingers hold at the end
+  bool awake = false;              // no sleep
 };
 
 struct SimResult {

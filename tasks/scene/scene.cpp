@@ -30,6 +30,7 @@ void readSolver(const JsonValue& json, engine::WorldOptions& options) {
   if (const JsonValue* v = json.find("max_contacts")) options.max_contacts = v->integer(4, 256, "A whole number of contacts.");
   if (const JsonValue* v = json.find("position_tolerance")) options.position_tolerance = v->number(kPositionTolerance);
   if (const JsonValue* v = json.find("max_parts")) options.max_parts = v->integer(2, 1024, "How many parts a tick may be cut into.");
+  if (const JsonValue* v = json.find("sleep")) options.sleep = v->boolean();
   if (const JsonValue* v = json.find("contact_margin")) options.contact_margin = v->number(kLength);
 }
 

@@ -13,6 +13,8 @@ constexpr NumberRule kDensity = {
 constexpr NumberRule kFriction = {.min = 0, .remedy = "A friction coefficient can't be negative; typical: skin on plastic 0.6."};
 constexpr NumberRule kRestitution = {.min = 0, .max = 1, .remedy = "0 doesn't bounce, 1 loses nothing; typical: plastic on wood 0.5."};
 constexpr NumberRule kTorsionRadius = {.min = 0, .max = 1, .remedy = "In metres; 0 for a point contact, a fingertip's is about 0.0033."};
+constexpr NumberRule kRollingRadius = {
+    .min = 0, .max = 1, .remedy = "In metres; 0 rolls freely, a hundredth of a ball's radius is a soft floor."};
 constexpr NumberRule kVelocity = {.min = -1e3, .max = 1e3, .remedy = "Velocities are in m/s."};
 constexpr NumberRule kRotation = {.min = -100, .max = 100, .remedy = "An axis times an angle in radians."};
 constexpr NumberRule kSpin = {.min = -1e4, .max = 1e4, .remedy = "Angular velocities are in rad/s."};
@@ -27,6 +29,7 @@ engine::Material readMaterial(const JsonValue& json) {
   }
   if (const JsonValue* v = json.find("restitution")) material.restitution = v->number(kRestitution);
   if (const JsonValue* v = json.find("torsion_radius")) material.torsion_radius = v->number(kTorsionRadius);
+  if (const JsonValue* v = json.find("rolling_radius")) material.rolling_radius = v->number(kRollingRadius);
   return material;
 }
 

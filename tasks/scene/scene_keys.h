@@ -9,7 +9,7 @@ using Word = std::string_view;
 
 inline constexpr std::array<Word, 12> kScene = {"version", "description", "gravity", "tick",    "duration", "solver",
                                                 "bodies",  "pairs",       "joints",  "fingers", "record",   "expect"};
-inline constexpr std::array<Word, 5> kSolver = {"tolerance", "max_contacts", "contact_margin", "position_tolerance", "max_parts"};
+inline constexpr std::array<Word, 6> kSolver = {"tolerance", "max_contacts", "contact_margin", "position_tolerance", "max_parts", "sleep"};
 inline constexpr std::array<Word, 11> kBody = {"name",       "shape",    "static",           "mass",    "density", "position", "rotation",
                                                "trajectory", "velocity", "angular_velocity", "material"};
 inline constexpr std::array<Word, 1> kBodyTrajectory = {"keyframes"};
@@ -17,7 +17,7 @@ inline constexpr std::array<Word, 3> kBodyKeyframe = {"time", "position", "rotat
 inline constexpr std::array<Word, 6> kJoint = {"type", "body", "to", "point", "axis", "damping"};
 inline constexpr std::array<Word, 4> kJointTypes = {"pivot", "slider", "ball", "weld"};
 inline constexpr std::array<Word, 3> kPair = {"bodies", "touch", "material"};
-inline constexpr std::array<Word, 4> kMaterial = {"mu_s", "mu_d", "restitution", "torsion_radius"};
+inline constexpr std::array<Word, 5> kMaterial = {"mu_s", "mu_d", "restitution", "torsion_radius", "rolling_radius"};
 inline constexpr std::array<Word, 9> kFinger = {"name",   "radius", "mass",     "stiffness", "damping",
                                                 "locked", "force",  "position", "trajectory"};
 inline constexpr std::array<Word, 2> kTrajectory = {"keyframes", "csv"};

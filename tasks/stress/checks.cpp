@@ -42,8 +42,7 @@ std::string faultOfState(const engine::WorldModel& model, const engine::WorldSta
 std::string faultOfCones(const engine::WorldScratch& scratch) {
   constexpr double kTolerance = 1e-9;  // relative; the projection rounds to 1e-15
   for (const engine::Contact& c : scratch.contacts) {
-    const double e = c.material.torsion_radius;
-    const double friction = std::sqrt(c.r.head<2>().squaredNorm() + (e > 0 ? c.r[3] * c.r[3] : 0));
+    const double friction = std::sqrt(c.r.head<2>().squaredNorm() + c.r.tail<3>().squaredNorm());
     if (!(c.r[2] >= 0)) return fmt::format("a contact pulls with {:.3g} N s", -c.r[2]);
     if (!(friction <= c.mu * c.r[2] * (1 + kTolerance) + 1e-300))
       return fmt::format("friction {:.17g} over mu r_n = {:.17g} N s", friction, c.mu * c.r[2]);
@@ -51,17 +50,17 @@ std::string faultOfCones(const engine::WorldScratch& scratch) {
   return {};
 }
 
-// Contacts with torsion have a fourth row, which u_C doesn't hold; they are left to the solver's own tests.
+// Contacts with torsion or rolling have more rows, which u_C doesn't hold; they are left to the solver's own tests.
 std::string faultOfLaw(const engine::WorldModel& model, const engine::WorldScratch& scratch) {
   constexpr double kTolerance = 1e-6;
   constexpr double kContent = 2e-8;  // [m/s] twice what the solver is content with (SolverOptions::content_speed), for w is another here
   double speed = 1e-6, worst = 0;
   for (const engine::Contact& c : scratch.contacts) {
-    const Eigen::Vector4d u_free_C = engine::relativeVelocity(c, engine::mover(scratch, c.a).free, engine::mover(scratch, c.b).free);
+    const engine::ContactVector u_free_C = engine::relativeVelocity(c, engine::mover(scratch, c.a).free, engine::mover(scratch, c.b).free);
     speed = std::max({speed, c.u_C.norm(), u_free_C.head<3>().norm()});
   }
   for (const engine::Contact& c : scratch.contacts) {
-    if (c.material.torsion_radius > 0) continue;
+    if (engine::rowsOf(c.material) > 3) continue;
     const double w = inverseMass(model, c.a) + inverseMass(model, c.b);
     const Vec3 u = c.u_C + Vec3(0, 0, c.mu * c.u_C.head<2>().norm());
     speed = std::max(speed, w * c.r.head<3>().norm());

@@ -10,21 +10,31 @@
 namespace pincer::engine {
 namespace {
 
-using Vec4 = Eigen::Vector4d;
+using Vec6 = ContactVector;
+
+constexpr int kRowsOfContacts[] = {3, 4, 6};
+
+Vec6 anyVector(tests::RandomScenes& random, int rows) {
+  Vec6 v = Vec6::Zero();  // rows that the contact doesn't have are 0
+  v.head<3>() = random.vector(1);
+  for (int k = 3; k < rows; ++k) v[k] = random.uniform(-1, 1);
+  return v;
+}
 
 constexpr double kRoundOff = 1e-15;  // 4 ulp of a number of size 1
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 struct Sample {
-  Vec4 y = Vec4::Zero();  // the fourth is 0 in a contact of three rows
+  Vec6 y = Vec6::Zero();
   int rows = 3;
   double mu = 0;
 
-  explicit Sample(tests::RandomScenes& random) : rows(random.integer(3, 4)), mu(random.integer(0, 9) == 0 ? 0 : random.uniform(0, 5)) {
-    y << random.vector(1), rows == 4 ? random.uniform(-1, 1) : 0;
+  explicit Sample(tests::RandomScenes& random)
+      : rows(kRowsOfContacts[random.integer(0, 2)]), mu(random.integer(0, 9) == 0 ? 0 : random.uniform(0, 5)) {
+    y = anyVector(random, rows);
   }
-  Vec4 projected() const {
-    Vec4 p = Vec4::Zero();
+  Vec6 projected() const {
+    Vec6 p = Vec6::Zero();
     projectOntoCone(y.data(), rows, mu, p.data());
     return p;
   }
@@ -35,8 +45,8 @@ struct Sample {
 RC_GTEST_PROP(Cone, SplitsAnyVectorIntoOrthogonalParts, (unsigned seed)) {
   tests::RandomScenes random(seed);
   const Sample s(random);
-  const Vec4 p = s.projected();
-  const Vec4 rest = s.y - p;
+  const Vec6 p = s.projected();
+  const Vec6 rest = s.y - p;
   RC_ASSERT(isInCone(p.data(), s.rows, s.mu, kRoundOff));
   RC_ASSERT(rest[2] <= -s.mu * std::sqrt(tangentNorm2(rest.data(), s.rows)) + 4 * kRoundOff * s.size());
   RC_ASSERT(std::abs(p.dot(rest)) <= 8 * kRoundOff * s.size() * s.size());
@@ -44,9 +54,9 @@ RC_GTEST_PROP(Cone, SplitsAnyVectorIntoOrthogonalParts, (unsigned seed)) {
 
 // Without friction |y_T| = mu y_n = 0 holds for a pull too; it isn't in the cone.
 TEST(Cone, LetsGoOfAPullWithoutFriction) {
-  Vec4 p = Vec4::Ones();
-  projectOntoCone(Vec4(0, 0, -1e-12, 0).data(), 4, 0, p.data());
-  EXPECT_EQ(p, Vec4::Zero());
+  Eigen::Vector4d p = Eigen::Vector4d::Ones();
+  projectOntoCone(Eigen::Vector4d(0, 0, -1e-12, 0).data(), 4, 0, p.data());
+  EXPECT_EQ(p, Eigen::Vector4d::Zero());
 }
 
 // Brute force: no point of the cone is closer.
@@ -56,8 +66,7 @@ RC_GTEST_PROP(Cone, ProjectsOntoTheClosestPoint, (unsigned seed)) {
   const double distance = (s.y - s.projected()).norm();
   for (int n = 0; n < 200; ++n) {
     const double normal = random.uniform(0, 3);
-    Vec4 other = Vec4::Zero();
-    other << random.vector(1), s.rows == 4 ? random.uniform(-1, 1) : 0;
+    Vec6 other = anyVector(random, s.rows);
     other[2] = 0;
     if (other.norm() > s.mu * normal) other *= s.mu * normal / other.norm();
     other[2] = normal;
@@ -94,17 +103,17 @@ RC_GTEST_PROP(Cone, SlideDerivativeIsThatOfTheCoupledProjections, (unsigned seed
   const Sample s(random);
   RC_PRE(contactMode(s.y.data(), s.rows, s.mu) == ContactMode::kSlide);
   RC_PRE(tangentNorm2(s.y.data(), s.rows) > 0.01);
-  const auto coupled = [&](const Vec4& y) {
-    Vec4 p = y * (s.mu * y[2] / std::sqrt(tangentNorm2(y.data(), s.rows)));
+  const auto coupled = [&](const Vec6& y) {
+    Vec6 p = y * (s.mu * y[2] / std::sqrt(tangentNorm2(y.data(), s.rows)));
     p[2] = y[2];
     return p;
   };
   const SlideDerivative derivative = slideDerivative(s.y.data(), s.rows, s.mu);
   for (int k = 0; k < s.rows; ++k) {
-    const Vec4 dy = Vec4::Unit(k);
-    Vec4 dp = Vec4::Zero();
-    derivative.apply(dy.data(), s.rows, dp.data());
-    const Vec4 difference = (coupled(s.y + 1e-7 * dy) - coupled(s.y - 1e-7 * dy)) / 2e-7;
+    const Vec6 dy = Vec6::Unit(k);
+    Vec6 dp = Vec6::Zero();
+    for (int row = 0; row < s.rows; ++row) dp[row] = derivative.at(row, k);
+    const Vec6 difference = (coupled(s.y + 1e-7 * dy) - coupled(s.y - 1e-7 * dy)) / 2e-7;
     RC_ASSERT((difference - dp).norm() <= 1e-6 * (1 + s.mu));
   }
 }

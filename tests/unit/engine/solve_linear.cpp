@@ -12,7 +12,7 @@
 namespace pincer::engine {
 namespace {
 
-using Vec4 = Eigen::Vector4d;
+constexpr int kRowCounts[] = {3, 4, 6};
 
 Eigen::MatrixXd randomMatrix(tests::RandomScenes& random, int n) {
   Eigen::MatrixXd A(n, n);
@@ -68,18 +68,18 @@ TEST(Linear, LuSwapsRowsWhereAPivotIsZero) {
 }
 
 // A point inside the cone.
-Vec4 inside(tests::RandomScenes& random, int rows) {
-  Vec4 v = Vec4::Zero();
-  v << random.vector(1), rows == 4 ? random.uniform(-1, 1) : 0;
+ContactVector inside(tests::RandomScenes& random, int rows) {
+  ContactVector v = ContactVector::Zero();
+  for (int k = 0; k < rows; ++k) v[k] = random.uniform(-1, 1);
   v[2] = std::sqrt(tangentNorm2(v.data(), rows)) + random.uniform(0.01, 2);
   return v;
 }
 
 RC_GTEST_PROP(Lorentz, DivisionUndoesTheProduct, (unsigned seed)) {
   tests::RandomScenes random(seed);
-  const int rows = random.integer(3, 4);
-  const Vec4 a = inside(random, rows), x = inside(random, rows) - inside(random, rows);
-  Vec4 ax = Vec4::Zero(), back = Vec4::Zero();
+  const int rows = kRowCounts[random.integer(0, 2)];
+  const ContactVector a = inside(random, rows), x = inside(random, rows) - inside(random, rows);
+  ContactVector ax = ContactVector::Zero(), back = ContactVector::Zero();
   jordanProduct(a.data(), x.data(), rows, ax.data());
   jordanDivide(a.data(), ax.data(), rows, back.data());
   RC_ASSERT((back - x).norm() <= 1e-12 * (1 + x.norm()));  // a is no closer to the boundary than 1e-3 of its size
@@ -88,10 +88,10 @@ RC_GTEST_PROP(Lorentz, DivisionUndoesTheProduct, (unsigned seed)) {
 // N maps x and N^-1 maps z onto the same point, and N^-1 undoes N.
 RC_GTEST_PROP(Lorentz, NesterovToddScalingBalancesTheTwo, (unsigned seed)) {
   tests::RandomScenes random(seed);
-  const int rows = random.integer(3, 4);
-  const Vec4 x = inside(random, rows), z = inside(random, rows);
+  const int rows = kRowCounts[random.integer(0, 2)];
+  const ContactVector x = inside(random, rows), z = inside(random, rows);
   const NesterovTodd N(x.data(), z.data(), rows);
-  Vec4 Nx = Vec4::Zero(), Nz = Vec4::Zero(), back = Vec4::Zero();
+  ContactVector Nx = ContactVector::Zero(), Nz = ContactVector::Zero(), back = ContactVector::Zero();
   N.apply(x.data(), rows, Nx.data());
   N.applyInverse(z.data(), rows, Nz.data());
   N.applyInverse(Nx.data(), rows, back.data());
@@ -101,11 +101,11 @@ RC_GTEST_PROP(Lorentz, NesterovToddScalingBalancesTheTwo, (unsigned seed)) {
 
 RC_GTEST_PROP(Lorentz, StepEndsOnTheBoundary, (unsigned seed)) {
   tests::RandomScenes random(seed);
-  const int rows = random.integer(3, 4);
-  const Vec4 v = inside(random, rows), dv = inside(random, rows) - inside(random, rows);
+  const int rows = kRowCounts[random.integer(0, 2)];
+  const ContactVector v = inside(random, rows), dv = inside(random, rows) - inside(random, rows);
   const double t = stepToBoundary(v.data(), dv.data(), rows);
   RC_ASSERT(t > 0);
-  const Vec4 before = v + (1 - 1e-9) * t * dv, after = v + (1 + 1e-6) * t * dv;
+  const ContactVector before = v + (1 - 1e-9) * t * dv, after = v + (1 + 1e-6) * t * dv;
   RC_ASSERT(isInCone(before.data(), rows, 1));
   RC_ASSERT(t >= 1e3 || !isInCone(after.data(), rows, 1));
 }

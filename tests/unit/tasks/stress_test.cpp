@@ -38,11 +38,11 @@ TEST(Stress, ChecksNameAContactThatPullsOrSlipsOutOfItsCone) {
   engine::WorldScratch scratch(model);
   engine::Contact* const c = engine::addContact(scratch, 0);
   c->mu = 0.5;
-  c->r = {0.5, 0, 1, 0};
+  c->r << 0.5, 0, 1, 0, 0, 0;
   EXPECT_EQ(faultOfCones(scratch), "");
-  c->r = {0.51, 0, 1, 0};
+  c->r << 0.51, 0, 1, 0, 0, 0;
   EXPECT_NE(faultOfCones(scratch), "");
-  c->r = {0, 0, -1, 0};
+  c->r << 0, 0, -1, 0, 0, 0;
   EXPECT_NE(faultOfCones(scratch), "");
 }
 

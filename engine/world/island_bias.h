@@ -1,0 +1,24 @@
+// island_bias: makes what the touching contacts of an island ask for the motion of its bodies.
+//
+//   minimise over z  sum_i w_i^2 |A_i z + b_i|^2,   b_i <- -A_i z
+//
+//   A_i  of ContactProblem: how contact i's velocity follows the movers' scaled velocities z [kg^-1/2]
+//   b_i  bias of contact i [m/s]: along the normal it corrects the gap, along the tangents the stick offset. Of sliding contacts the normal alone
+//   w_i  10 along normals, 1 along the rest [-], as in stick_bias.h
+//
+// Around loops of bodies (balls in a box) gaps and offsets can ask for what no motion gives. Rigid contacts then press against each other without
+// limit, and the solver finds no answer because there is none. What is left here can be had: by the motion z, at which all of these contacts stay
+// shut. Where the contacts don't contradict each other b stays what it is. Pairs alone are made consistent by stick_bias.h, at less cost.
+// Source: conjugate gradients on the normal equations (M. Hestenes, E. Stiefel, J. Res. Natl. Bur. Stand. 49 (1952) 409-436, section 10).
+#pragma once
+#include "engine/world/scratch.h"
+
+namespace pincer::engine {
+
+// Fits bias_C and the stick offsets of the island's contacts, and corrects problem.q through `q`. `r`: impulses of the last tick; `order`: which of
+// `contacts` the problem's are; `memory` is working memory. Allocates nothing.
+//   offset_rate  bias_T = offset_rate (offset_T + h v_start_T / 2) [1/s]
+void fitIslandBiases(double h, double offset_rate, const ContactProblem& problem, const double* r, double* q, std::span<const int> order,
+                     std::vector<Contact>& contacts, SolverScratch& memory);
+
+}  // namespace pincer::engine

@@ -1,0 +1,80 @@
+#include "engine/world/rest.h"
+
+#include <algorithm>
+
+namespace pincer::engine {
+namespace {
+
+bool same(const Quat& a, const Quat& b) { return a.coeffs() == b.coeffs(); }
+bool same(const BodyState& a, const BodyState& b) {
+  return a.X_WI.p == b.X_WI.p && same(a.X_WI.q, b.X_WI.q) && a.v_W == b.v_W && a.L_W == b.L_W;
+}
+bool same(const PointState& a, const PointState& b) {
+  return a.p_W == b.p_W && a.v_W == b.v_W && a.p_target_W == b.p_target_W && a.v_target_W == b.v_target_W && a.touching == b.touching;
+}
+bool same(const ContactMemory& a, const ContactMemory& b) {
+  return a.id == b.id && a.r == b.r && a.offset_C == b.offset_C && a.t1_W == b.t1_W && a.n_W == b.n_W && a.arm_a_W == b.arm_a_W &&
+         a.arm_b_W == b.arm_b_W && a.active == b.active && a.sliding == b.sliding && a.closing == b.closing && a.settling == b.settling;
+}
+bool same(const PointInput& a, const PointInput& b) {
+  return a.p_target_W == b.p_target_W && a.v_target_W == b.v_target_W && a.f_W == b.f_W;
+}
+bool same(const MotionInput& a, const MotionInput& b) {
+  return a.X_WB.p == b.X_WB.p && same(a.X_WB.q, b.X_WB.q) && a.motion.v_W == b.motion.v_W && a.motion.w_W == b.motion.w_W;
+}
+
+template <class Range>
+bool sameRange(const Range& a, const Range& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& x, const auto& y) { return same(x, y); });
+}
+
+std::span<const ContactMemory> contactsOf(const WorldState& state) {
+  return {state.contacts.data(), static_cast<std::size_t>(state.contact_count)};
+}
+
+// All but the time.
+bool sameState(const WorldState& a, const WorldState& b) {
+  return a.h_last == b.h_last && a.parts == b.parts && sameRange(a.bodies, b.bodies) && sameRange(a.points, b.points) &&
+         sameRange(contactsOf(a), contactsOf(b));
+}
+
+void copyState(const WorldState& from, WorldState& to) {
+  to.h_last = from.h_last;
+  to.parts = from.parts;
+  to.contact_count = from.contact_count;
+  std::copy(from.bodies.begin(), from.bodies.end(), to.bodies.begin());
+  std::copy(from.points.begin(), from.points.end(), to.points.begin());
+  std::copy(from.contacts.begin(), from.contacts.begin() + from.contact_count, to.contacts.begin());
+}
+
+bool isStill(const WorldState& state) {
+  const auto stands = [](const auto& s) { return s.v_W.isZero(0); };
+  return std::all_of(state.bodies.begin(), state.bodies.end(), stands) && std::all_of(state.points.begin(), state.points.end(), stands);
+}
+
+}  // namespace
+
+bool repeatsItself(const WorldState& state, const WorldScratch& scratch, const StepInputs& inputs) {
+  const RestScratch& rest = scratch.rest;
+  return rest.holds && sameRange(inputs.points, std::span<const PointInput>(rest.points)) &&
+         sameRange(inputs.motions, std::span<const MotionInput>(rest.motions)) && sameState(state, rest.state);
+}
+
+void noteRest(const WorldState& state, const StepInputs& inputs, bool calm, WorldScratch& scratch) {
+  RestScratch& rest = scratch.rest;
+  rest.holds = false;
+  if (!calm || inputs.points.size() != rest.points.size() || inputs.motions.size() != rest.motions.size() || !isStill(state)) {
+    rest.candidate = false;
+    return;
+  }
+  if (rest.candidate && sameState(state, rest.state)) {
+    rest.holds = true;
+    std::copy(inputs.points.begin(), inputs.points.end(), rest.points.begin());
+    std::copy(inputs.motions.begin(), inputs.motions.end(), rest.motions.begin());
+    return;
+  }
+  rest.candidate = true;
+  copyState(state, rest.state);
+}
+
+}  // namespace pincer::engine

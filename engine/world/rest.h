@@ -1,0 +1,23 @@
+// rest: what has come to rest stays there to the bit, and a tick that would repeat the last one isn't computed.
+//
+// At rest is a body or point on which contacts push whose impulses of the last tick still obey the contact law (no iteration was needed), and
+// which is slower than kRestSpeed, now and a tick ago: its velocity becomes 0 and its pose stays (advance.cpp). What that takes away is less than
+// what the solver's tolerance leaves open. It holds whether sleep is on or off.
+//
+// Sleep is exact, no heuristic: a tick is a function of state and inputs. Where it ended in the state that it started from, bit by bit, the next one
+// from the same state with the same inputs does so too. Any change of either (a finger, a target, a force, a driven body, a state set from outside)
+// is a difference, and the tick is computed. Costs a comparison of the state; all of the world sleeps, or nothing.
+#pragma once
+#include "engine/world/step.h"
+
+namespace pincer::engine {
+
+constexpr double kRestSpeed = 1e-13;  // 3 um in a year [m/s]
+
+// Whether the tick from `state` with these inputs ends where it starts.
+bool repeatsItself(const WorldState& state, const WorldScratch& scratch, const StepInputs& inputs);
+
+// Notes how a tick with these inputs ended. `calm`: nothing happened in it that state and inputs don't show.
+void noteRest(const WorldState& state, const StepInputs& inputs, bool calm, WorldScratch& scratch);
+
+}  // namespace pincer::engine
