@@ -57,7 +57,7 @@ std::string faultOfLaw(const engine::WorldModel& model, const engine::WorldScrat
   double speed = 1e-6, worst = 0;
   for (const engine::Contact& c : scratch.contacts) {
     const engine::ContactVector u_free_C = engine::relativeVelocity(c, engine::mover(scratch, c.a).free, engine::mover(scratch, c.b).free);
-    speed = std::max({speed, c.u_C.norm(), u_free_C.head<3>().norm()});
+    speed = std::max({speed, c.u_C.norm(), u_free_C.norm()});
   }
   for (const engine::Contact& c : scratch.contacts) {
     if (engine::rowsOf(c.material) > 3) continue;

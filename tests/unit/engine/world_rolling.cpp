@@ -9,7 +9,7 @@
 namespace pincer::engine {
 namespace {
 
-constexpr double kBallRadius = 0.02, kBallMass = 0.1, kStandardGravity = 9.81;
+constexpr double kRollerRadius = 0.02, kBallMass = 0.1, kStandardGravity = 9.81;
 
 // A ball on a slope: gravity leans by `angle` towards +x.
 WorldModel ballOnSlope(double mu, double rolling_radius, double torsion_radius, double angle) {
@@ -18,15 +18,15 @@ WorldModel ballOnSlope(double mu, double rolling_radius, double torsion_radius, 
   WorldBuilder builder(options);
   const Material material{mu, mu, 0, torsion_radius, rolling_radius};
   builder.addBody({"floor", contact::HalfSpace{}, false, 0, material});
-  builder.addBody({"ball", contact::Sphere{kBallRadius}, true, kBallMass, material});
+  builder.addBody({"ball", contact::Sphere{kRollerRadius}, true, kBallMass, material});
   return builder.build();
 }
 
 // v = (R + k) w solves the motion with one k for ever: m v' = -f, I w' = f R - e_r^2 f w / (k w), f = mu m g k / sqrt(k^2 + e_r^2), with I = 2/5 m R^2.
 // (f and the moment share the cone and are opposite to creep k w and turning e_r w; v' = (R + k) w' gives R k^2 + (7/5 R^2 - e_r^2) k - R e_r^2 = 0.)
 double creepOf(double e_r) {
-  const double b = 1.4 * kBallRadius * kBallRadius - e_r * e_r, c = kBallRadius * e_r * e_r;
-  return 2 * c / (b + std::sqrt(b * b + 4 * kBallRadius * c));
+  const double b = 1.4 * kRollerRadius * kRollerRadius - e_r * e_r, c = kRollerRadius * e_r * e_r;
+  return 2 * c / (b + std::sqrt(b * b + 4 * kRollerRadius * c));
 }
 
 TEST(Rolling, SlowsABallDownEvenly) {
@@ -36,8 +36,8 @@ TEST(Rolling, SlowsABallDownEvenly) {
       const double deceleration = mu * kStandardGravity * creep / std::hypot(creep, e_r), stop = v0 / deceleration;
       const Vec3 ahead(std::cos(heading), std::sin(heading), 0);
       const WorldModel model = ballOnSlope(mu, e_r, 0, 0);
-      const Vec3 spin = v0 / (kBallRadius + creep) * Vec3::UnitZ().cross(ahead);
-      WorldState state = makeState(model, {tests::startAt(Vec3::Zero()), tests::startAt({0, 0, kBallRadius}, v0 * ahead, spin)}, {});
+      const Vec3 spin = v0 / (kRollerRadius + creep) * Vec3::UnitZ().cross(ahead);
+      WorldState state = makeState(model, {tests::startAt(Vec3::Zero()), tests::startAt({0, 0, kRollerRadius}, v0 * ahead, spin)}, {});
       WorldScratch scratch(model);
       while (state.time < 0.5 * stop) step(model, state, scratch);
       // Forces are constant, so that the scheme is exact but for the solver's 1e-10 per tick.
@@ -53,10 +53,10 @@ TEST(Rolling, SlowsABallDownEvenly) {
 
 // At rest friction f = m g sin th and moment f R share the cone: tan th <= mu e_r / sqrt(R^2 + e_r^2).
 TEST(Rolling, HoldsABallOnASlopeUpToItsLimit) {
-  const double mu = 0.8, e_r = 2e-3, limit = mu * e_r / std::hypot(kBallRadius, e_r);
+  const double mu = 0.8, e_r = 2e-3, limit = mu * e_r / std::hypot(kRollerRadius, e_r);
   const auto travelled = [&](double share) {
     const WorldModel model = ballOnSlope(mu, e_r, 0, std::atan(share * limit));
-    WorldState state = makeState(model, {tests::startAt(Vec3::Zero()), tests::startAt({0, 0, kBallRadius})}, {});
+    WorldState state = makeState(model, {tests::startAt(Vec3::Zero()), tests::startAt({0, 0, kRollerRadius})}, {});
     WorldScratch scratch(model);
     for (int i = 0; i < 5000; ++i) step(model, state, scratch);
     return state.bodies[1].X_WI.p.x();
@@ -69,8 +69,7 @@ TEST(Rolling, HoldsABallOnASlopeUpToItsLimit) {
 // of stopping counts as stick offset and is undone, at less than a thousandth of its speed.)
 TEST(Rolling, TakesEnergyOnly) {
   const WorldModel model = ballOnSlope(0.3, 1e-3, 2e-3, 0);
-  WorldState state =
-      makeState(model, {tests::startAt(Vec3::Zero()), tests::startAt({0, 0, kBallRadius}, {0.2, 0.1, 0}, {3, 8, 20})}, {});
+  WorldState state = makeState(model, {tests::startAt(Vec3::Zero()), tests::startAt({0, 0, kRollerRadius}, {0.2, 0.1, 0}, {3, 8, 20})}, {});
   WorldScratch scratch(model);
   double energy = kineticEnergy(model, state);
   const double start = energy;
