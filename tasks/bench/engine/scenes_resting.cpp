@@ -40,6 +40,7 @@ BenchScene ratioScene(const std::string& name, const std::vector<double>& masses
                .floor = 1e-9,
                .error_bound = 1,
                .cost_bound = cost_bound};
+  s.steps = {4e-3, 2e-3, 1e-3, 5e-4};
   s.world = columnWorld(masses);
   const int cubes = static_cast<int>(masses.size());
   s.judge = [=] {
