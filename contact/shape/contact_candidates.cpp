@@ -10,31 +10,45 @@ constexpr double kLike = 0.95;     // cosine: normals within 18 degrees form a g
 constexpr double kSameGap = 1e-6;  // [m]
 constexpr double kBetter = 1.01;   // ratio of scores, as in point_choice.h
 
-// The kept points of one group.
+// The kept points of one group, and the sides of their outline seen along the first one's normal.
 struct Group {
-  std::array<const PairPoint*, kMaxPairPoints> kept{};
+  static constexpr int kMost = 4;
+  struct Side {
+    Vec3 right, from;
+  };
+  std::array<const PairPoint*, kMost> kept{};
   int count = 0;
-};
+  std::array<Side, kMost*(kMost - 1)> sides;
+  int side_count = 0;
 
-// Distance of `p` from what the group has: from its point, its line, or the outline of more; across the leader's normal.
-double outside(const Group& g, const Vec3& p) {
-  const Vec3& n = g.kept[0]->n_W;
-  const auto flat = [&](const Vec3& v) -> Vec3 { return v - n.dot(v) * n; };
-  const Vec3 d0 = flat(p - g.kept[0]->p_W);
-  if (g.count == 1) return d0.norm();
-  double most = g.count == 2 ? 0 : -1;
-  for (int i = 0; i < g.count; ++i) {
-    for (int j = 0; j < g.count; ++j) {
-      if (i == j) continue;
-      const Vec3& from = g.kept[static_cast<std::size_t>(i)]->p_W;
-      const Vec3 right = flat(g.kept[static_cast<std::size_t>(j)]->p_W - from).cross(n).normalized();
-      bool outermost = true;
-      for (int k = 0; k < g.count; ++k) outermost = outermost && right.dot(g.kept[static_cast<std::size_t>(k)]->p_W - from) <= kSameGap;
-      if (outermost) most = std::max(most, right.dot(p - from));
+  const Vec3& normal() const { return kept[0]->n_W; }
+  const Vec3& point(int i) const { return kept[static_cast<std::size_t>(i)]->p_W; }
+  Vec3 flat(const Vec3& v) const { return v - normal().dot(v) * normal(); }
+
+  void add(const PairPoint& p) {
+    kept[static_cast<std::size_t>(count++)] = &p;
+    side_count = 0;
+    for (int i = 0; i < count; ++i) {
+      for (int j = 0; j < count; ++j) {
+        if (i == j) continue;
+        const Vec3 right = flat(point(j) - point(i)).cross(normal()).normalized();
+        bool outermost = true;
+        for (int k = 0; k < count; ++k) outermost = outermost && right.dot(point(k) - point(i)) <= kSameGap;
+        if (outermost) sides[static_cast<std::size_t>(side_count++)] = {right, point(i)};
+      }
     }
   }
-  return most;
-}
+  // Distance of `p` from what the group has: from its point, its line, or the outline of more.
+  double outside(const Vec3& p) const {
+    if (count == 1) return flat(p - point(0)).norm();
+    double most = count == 2 ? 0 : -1;
+    for (int i = 0; i < side_count; ++i) {
+      const Side& side = sides[static_cast<std::size_t>(i)];
+      most = std::max(most, side.right.dot(p - side.from));
+    }
+    return most;
+  }
+};
 
 }  // namespace
 
@@ -55,22 +69,20 @@ void ContactCandidates::add(const PairPoint& point) {
   *place = point;
 }
 
-void ContactCandidates::keepBest(PairPoints& out) const {
+void ContactCandidates::keepBest(const Pose& X_WF, PairPoints& out) const {
+  constexpr std::int8_t kNone = -1, kTaken = -2;
   out.count = 0;
-  std::array<bool, kMost> taken{};
+  std::array<std::int8_t, kMost> group_of;
+  std::fill_n(group_of.begin(), count_, kNone);
   std::array<Group, kMaxPairPoints> groups;
   int group_count = 0;
   const auto at = [&](int i) -> const PairPoint& { return points_[static_cast<std::size_t>(i)]; };
   const auto keep = [&](int i, Group& g) {
-    taken[static_cast<std::size_t>(i)] = true;
-    g.kept[static_cast<std::size_t>(g.count++)] = &at(i);
-    out.points[static_cast<std::size_t>(out.count++)] = at(i);
-  };
-  const auto groupOf = [&](int i) {
-    for (int g = 0; g < group_count; ++g) {
-      if (groups[static_cast<std::size_t>(g)].kept[0]->n_W.dot(at(i).n_W) > kLike) return g;
-    }
-    return -1;
+    group_of[static_cast<std::size_t>(i)] = kTaken;
+    g.add(at(i));
+    PairPoint& point = out.points[static_cast<std::size_t>(out.count++)] = at(i);
+    point.p_W = X_WF * point.p_W;
+    point.n_W = X_WF.q * point.n_W;
   };
   const auto comesFirst = [&](int i, int j) {  // deeper, or as deep with the smaller feature
     return j < 0 || at(i).phi < at(j).phi - kSameGap || (at(i).phi < at(j).phi + kSameGap && at(i).feature < at(j).feature);
@@ -78,24 +90,34 @@ void ContactCandidates::keepBest(PairPoints& out) const {
   while (group_count < kMaxPairPoints) {
     int leader = -1;
     for (int i = 0; i < count_; ++i) {
-      if (groupOf(i) < 0 && comesFirst(i, leader)) leader = i;
+      if (group_of[static_cast<std::size_t>(i)] == kNone && comesFirst(i, leader)) leader = i;
     }
     if (leader < 0) break;
-    keep(leader, groups[static_cast<std::size_t>(group_count++)]);
+    keep(leader, groups[static_cast<std::size_t>(group_count)]);
+    for (int i = 0; i < count_; ++i) {
+      std::int8_t& group = group_of[static_cast<std::size_t>(i)];
+      if (group == kNone && at(leader).n_W.dot(at(i).n_W) > kLike) group = static_cast<std::int8_t>(group_count);
+    }
+    ++group_count;
   }
-  for (bool more = true; more && out.count < kMaxPairPoints;) {
+  const auto furthestOf = [&](int g) {
+    const Group& group = groups[static_cast<std::size_t>(g)];
+    double best = 0;
+    int next = -1;
+    for (int i = 0; i < count_; ++i) {
+      if (group_of[static_cast<std::size_t>(i)] != g) continue;
+      const double d = group.outside(at(i).p_W);
+      const double score = d > kSameGap ? d * d / (kSameGap + std::max(0.0, at(i).phi - group.kept[0]->phi)) : 0;
+      const bool wins = score > kBetter * best || (next >= 0 && score * kBetter > best && at(i).feature < at(next).feature);
+      if (score > 0 && wins) best = score, next = i;
+    }
+    return next;
+  };
+  for (bool more = true; more;) {
     more = false;
     for (int g = 0; g < group_count && out.count < kMaxPairPoints; ++g) {
       Group& group = groups[static_cast<std::size_t>(g)];
-      double best = 0;
-      int next = -1;
-      for (int i = 0; i < count_; ++i) {
-        if (taken[static_cast<std::size_t>(i)] || groupOf(i) != g) continue;
-        const double d = outside(group, at(i).p_W);
-        const double score = d > kSameGap ? d * d / (kSameGap + std::max(0.0, at(i).phi - group.kept[0]->phi)) : 0;
-        const bool wins = score > kBetter * best || (next >= 0 && score * kBetter > best && at(i).feature < at(next).feature);
-        if (score > 0 && wins) best = score, next = i;
-      }
+      const int next = group.count < Group::kMost ? furthestOf(g) : -1;
       if (next < 0) continue;
       keep(next, group);
       more = true;

@@ -12,8 +12,8 @@ class ContactCandidates {
 
   // Of equal features the one with the smaller gap or depth stays: the nearest surface is the one that a point may touch; when all places are taken the shallowest makes room.
   void add(const PairPoint& point);
-  // Up to kMaxPairPoints of them, appended to the empty `out`, sorted by feature.
-  void keepBest(PairPoints& out) const;
+  // Up to kMaxPairPoints of them, appended to the empty `out`, sorted by feature; `X_WF` is the pose of the frame that they were given in.
+  void keepBest(const Pose& X_WF, PairPoints& out) const;
 
  private:
   std::array<PairPoint, kMost> points_;

@@ -79,15 +79,15 @@ class DifferenceSimplex {
 
 // `furthest`: the point of A - B that is furthest against a direction.
 template <class Furthest>
-CoreDistance nearestToOrigin(Furthest furthest, const Vec3& start, double size) {
-  constexpr int kMostSteps = 40;
-  constexpr double kNearEnough = 1e-9, kTouching = 1e-13;
+CoreDistance nearestToOrigin(Furthest furthest, const Vec3& start, double size, double accuracy) {
+  constexpr int kMostSteps = 60;
+  constexpr double kTouching = 1e-13;
   DifferenceSimplex simplex;
   Vec3 v = start;
   double length2 = std::numeric_limits<double>::infinity();
   for (int step = 0; step < kMostSteps; ++step) {
     const Vec3 w = furthest(v);
-    if (step > 0 && (simplex.has(w) || length2 - v.dot(w) <= kNearEnough * length2)) break;
+    if (step > 0 && (simplex.has(w) || length2 - v.dot(w) <= accuracy * length2)) break;
     simplex.add(w);
     const Vec3 next = simplex.nearest();
     const double next2 = next.squaredNorm();
@@ -101,12 +101,12 @@ CoreDistance nearestToOrigin(Furthest furthest, const Vec3& start, double size) 
 
 }  // namespace
 
-CoreDistance distanceOfCores(const PosedSolid& a, const PosedSolid& b, const Vec3& shift, const Vec3& start, double size) {
-  return nearestToOrigin([&](const Vec3& v) -> Vec3 { return a.support(-v) + shift - b.support(v); }, start, size);
+CoreDistance distanceOfCores(const PosedSolid& a, const PosedSolid& b, const Vec3& shift, const Vec3& start, double size, double accuracy) {
+  return nearestToOrigin([&](const Vec3& v) -> Vec3 { return a.support(-v) + shift - b.support(v); }, start, size, accuracy);
 }
 
 CoreDistance distanceOfInsets(const PosedSolid& a, const PosedSolid& b, const Vec3& start, double size) {
-  return nearestToOrigin([&](const Vec3& v) -> Vec3 { return a.inset(-v) - b.inset(v); }, start, size);
+  return nearestToOrigin([&](const Vec3& v) -> Vec3 { return a.inset(-v) - b.inset(v); }, start, size, 1e-6);
 }
 
 }  // namespace pincer::contact

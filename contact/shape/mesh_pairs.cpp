@@ -1,87 +1,52 @@
 #include "contact/shape/mesh_pairs.h"
 
-#include <algorithm>
-#include <cmath>
+#include <type_traits>
 
-#include "contact/shape/closed_forms.h"
 #include "contact/shape/contact_candidates.h"
-#include "contact/shape/direction.h"
-#include "contact/shape/facet_overlap.h"
-#include "contact/shape/separation.h"
+#include "contact/shape/edge_on_solid.h"
+#include "contact/shape/mesh_rules.h"
+#include "contact/shape/solid_walls.h"
 #include "contact/surface/smooth_mesh.h"
 
 namespace pincer::contact {
 namespace {
 
-constexpr double kDeepest = 0.25;  // of the smaller body's radius: deeper features belong to the far side
-constexpr double kSameSide = 0.5;  // cosine: surfaces that face alike don't touch
-constexpr double kSlack = 1e-6;    // of the size, or sine: on the border of a triangle, of a normal's range
+// How far in front of one of the solid's faces, of its depth across an edge of the solid, the point of the mesh's edge may be: edges of 70 degrees.
+constexpr double kBesideFace = 0.35;
 
-using FlatTriangle = MeshFeatures::Triangle;
-
-enum : std::uint32_t { kMeshCornerOfA = 0, kMeshCornerOfB = 1, kMeshEdges = 2 };
-std::uint32_t featureOf(std::uint32_t kind, std::uint32_t name) { return kind << 30 | (name & 0x3fffffff); }
-
-const Vec3& cornerOf(const FlatTriangle& t, int i) { return t.p[static_cast<std::size_t>(i % 3)]; }
-
-bool isOver(const FlatTriangle& t, const Vec3& q, double slack) {
-  for (int i = 0; i < 3; ++i) {
-    const Vec3 edge = cornerOf(t, i + 1) - cornerOf(t, i);
-    if (t.n.cross(edge).dot(q - cornerOf(t, i)) < -slack * edge.norm()) return false;
-  }
-  return true;
-}
-
-// Directions, unit and across the edge, into the two triangles that an owned edge joins.
-struct EdgeSides {
-  Vec3 own, other;
-
-  EdgeSides(const FlatTriangle& t, int i) : own(t.n.cross(cornerOf(t, i + 1) - cornerOf(t, i)).normalized()) {
-    const Vec3 e = (cornerOf(t, i + 1) - cornerOf(t, i)).normalized(), d = t.beyond[static_cast<std::size_t>(i)] - cornerOf(t, i);
-    other = (d - e.dot(d) * e).normalized();
-  }
-  // Whether both triangles lie on n's side of the edge: nothing nearer is to be found on them.
-  bool lieAbove(const Vec3& n) const { return n.dot(own) >= -kSlack && n.dot(other) >= -kSlack; }
-};
-
-// Finds the candidates of a mesh on a solid, in the mesh's frame A.
+// Finds the candidates of a mesh on a solid, in the mesh's frame A. Normals point from the solid to the mesh.
 class MeshOnSolid {
  public:
-  MeshOnSolid(const Mesh& mesh, const PosedSolid& solid, double margin)
-      : mesh_(mesh.surface->triangles()),
-        features_(mesh.surface->features()),
-        solid_(solid),
-        margin_(margin),
-        rounding_(roundingOf(solid.shape)) {
-    size_ = std::min(mesh.surface->boundingRadius(), boundingRadius(solid.shape));
-    deepest_ = -kDeepest * size_;
-  }
+  MeshOnSolid(const Mesh& mesh, const PosedSolid& solid, const MeshScale& scale)
+      : features_(mesh.surface->features()), solid_(solid), scale_(scale), rounding_(roundingOf(solid.shape)) {}
 
   void find() {
     Vec3 low, high;
+    const double reach = rounding_ + scale_.margin;
     for (int k = 0; k < 3; ++k) {
-      const double reach = rounding_ + margin_;
       low[k] = solid_.support(-Vec3::Unit(k))[k] - reach;
       high[k] = solid_.support(Vec3::Unit(k))[k] + reach;
     }
-    features_.visitBox(low, high, kMostTriangles, [&](std::int32_t t) { look(t); });
+    features_.visitBox(low, high, kMostTriangles, [&](std::int32_t t) { look(t, low, high); });
   }
   const ContactCandidates& candidates() const { return candidates_; }
 
  private:
-  void look(std::int32_t t) {
-    const FlatTriangle triangle = features_.triangle(mesh_, t);
-    const double height = triangle.n.dot(solid_.support(-triangle.n) - triangle.p[0]) - rounding_;
-    if (height > margin_) return;
-    if (height > deepest_) lookAtFace(triangle);
+  void look(std::int32_t t, const Vec3& low, const Vec3& high) {
+    const FlatTriangle triangle = features_.triangle(t);
+    const auto& p = triangle.p;
+    if ((p[0].cwiseMax(p[1]).cwiseMax(p[2]) - low).minCoeff() < 0 || (high - p[0].cwiseMin(p[1]).cwiseMin(p[2])).minCoeff() < 0) return;
+    const double height = triangle.n.dot(solid_.support(-triangle.n) - p[0]) - rounding_;
+    if (height > scale_.margin) return;
+    if (height > scale_.deepest()) lookAtFace(triangle);
     for (int i = 0; i < 3; ++i) {
-      if (triangle.ownsCorner(i)) lookAtCorner(triangle, i);
+      if (triangle.ownsCorner(i)) lookAtCorner(triangle.corner(i), triangle.vertices[static_cast<std::size_t>(i)]);
       if (triangle.ownsEdge(i)) lookAtEdge(triangle, i, 3 * static_cast<std::uint32_t>(t) + static_cast<std::uint32_t>(i));
     }
   }
 
   void add(const Vec3& p, const Vec3& n, double phi, std::uint32_t feature) {
-    if (phi < margin_ && phi > deepest_) candidates_.add({p, n, phi, feature});
+    if (phi < scale_.margin && phi > scale_.deepest()) candidates_.add({p, n, phi, feature});
   }
 
   void lookAtFace(const FlatTriangle& triangle) {
@@ -91,90 +56,106 @@ class MeshOnSolid {
       const FacetCorner& corner = facet.corners[static_cast<std::size_t>(k)];
       const Vec3 q = solid_.place(corner.p) - rounding_ * triangle.n;
       const double phi = triangle.n.dot(q - triangle.p[0]);
-      if (phi < margin_ && isOver(triangle, q, kSlack * size_))
-        add(q - 0.5 * phi * triangle.n, -triangle.n, phi, featureOf(kMeshCornerOfB, corner.vertex));
+      if (!(phi < scale_.margin) || !triangle.isUnder(q, scale_.slack())) continue;
+      if (phi < -scale_.slack() && !isWayOutOfMesh(q, phi)) continue;
+      add(q - 0.5 * phi * triangle.n, -triangle.n, phi, meshFeatureOf(kMeshCornerOfB, corner.vertex));
     }
   }
 
-  // Normals point from the solid to the mesh.
+  bool isWayOutOfMesh(const Vec3& q, double phi) const {
+    const MeshFeatures::Nearest s = features_.nearest(q, -1.1 * phi);
+    return s.found && s.distance < 0 && scale_.isWayOut(phi, s.distance);
+  }
+
+  // Of a point of one of the mesh's edges, at `phi` < 0 along the normal across it and an edge of the solid.
+  bool isInSolid(const Vec3& p, double phi) const {
+    const double distance = nearest(p).distance;
+    return distance < scale_.slack() - kBesideFace * phi && scale_.isWayOut(phi, distance);
+  }
+  // Of the point of the solid opposite to it: behind the two faces of the mesh's edge, with no other nearer than half of that.
+  bool isBehindFaces(const Vec3& q, double phi, double slope) const {
+    const MeshFeatures::Nearest s = features_.nearest(q, -1.1 * phi);
+    return s.found && scale_.isBehindFaces(s.distance, phi, slope);
+  }
+
   NearestPoint nearest(const Vec3& p) const {
-    NearestPoint s = std::visit(
-        [&](const auto& solid) -> NearestPoint {
-          if constexpr (std::is_same_v<std::decay_t<decltype(solid)>, Mesh>)
-            return {p, Vec3::UnitZ(), 0};
-          else
-            return nearestPoint(solid, solid_.inwards(p - solid_.p));
-        },
-        solid_.shape);
+    NearestPoint s{};
+    onSolid(p, [&](const auto& solid, const Vec3& p_B) { s = nearestPoint(solid, p_B); });
     s.n_B = solid_.outwards(s.n_B);
     return s;
   }
 
-  void lookAtCorner(const FlatTriangle& triangle, int i) {
-    const Vec3& p = cornerOf(triangle, i);
-    const NearestPoint s = nearest(p);
-    if (triangle.n.dot(s.n_B) > kSameSide) return;
-    add(p - 0.5 * s.distance * s.n_B, s.n_B, s.distance,
-        featureOf(kMeshCornerOfA, static_cast<std::uint32_t>(triangle.vertices[static_cast<std::size_t>(i)])));
+  template <class F>
+  void onSolid(const Vec3& p, F f) const {
+    std::visit(
+        [&](const auto& solid) {
+          if constexpr (!std::is_same_v<std::decay_t<decltype(solid)>, Mesh>) f(solid, solid_.inwards(p - solid_.p));
+        },
+        solid_.shape);
   }
 
-  // The distance from a convex solid is convex along the edge: its ends tell whether it is least between them.
-  void lookAtEdge(const FlatTriangle& triangle, int i, std::uint32_t name) {
-    const Vec3 &p0 = cornerOf(triangle, i), &p1 = cornerOf(triangle, i + 1);
-    const Vec3 middle = 0.5 * (p0 + p1);
-    const double length = (p1 - p0).norm();
-    const Vec3 e = (p1 - p0) / length;
-    if (nearest(middle).distance > margin_ + 0.5 * length) return;
-    const double out0 = -nearest(p0).n_B.dot(e), out1 = nearest(p1).n_B.dot(e);
-    if (out0 < -kSlack || out1 < -kSlack || (out0 < kSlack && out1 < kSlack)) return;
+  void lookAtCorner(const Vec3& p, std::int32_t vertex) {
+    const NearestPoint s = nearest(p);
+    if (!(s.distance < scale_.margin && s.distance > scale_.deepest())) return;
+    Vec3 n = s.n_B;
+    double phi = s.distance;
+    if (s.distance < scale_.slack()) {
+      double highest = -kInfinity;
+      onSolid(p, [&](const auto& solid, const Vec3& p_B) {
+        visitWalls(solid, p_B, [&](const Vec3& n_B, double height) {
+          if (!(height > highest) || !scale_.isWayOut(height, s.distance)) return;
+          const Vec3 out = solid_.outwards(n_B);
+          if (features_.liesAbove(vertex, out, kConeSlack)) highest = height, n = out;
+        });
+      });
+      if (highest == -kInfinity) return;
+      phi = highest;
+    } else if (!features_.liesAbove(vertex, n, kConeSlack)) {
+      return;
+    }
+    add(p - 0.5 * phi * n, n, phi, meshFeatureOf(kMeshCornerOfA, static_cast<std::uint32_t>(vertex)));
+  }
 
-    const Shape segment = Capsule{0, 0.5 * length};
-    const PosedSolid edge{segment, frameFromNormal(e), middle};
-    const double size = std::min(size_, length);
-    const Separation s = separate(edge, solid_, size, nullptr);
-    const double phi = s.gap - rounding_;
-    if (!(phi < margin_ && phi > deepest_) || !EdgeSides(triangle, i).lieAbove(s.n)) return;
-    PairPoints found;
-    overlapFacets(edge, solid_, s, size, margin_, found);
-    std::uint32_t place = 0;
+  void lookAtEdge(const FlatTriangle& triangle, int i, std::uint32_t name) {
+    const Vec3 &p0 = triangle.corner(i), &p1 = triangle.corner(i + 1);
+    const double length = (p1 - p0).norm();
+    const Vec3 e = (p1 - p0) / length, across = triangle.beyond[static_cast<std::size_t>(i)] - p1;
+    const Vec3 n_other = (p0 - p1).cross(across).normalized();
+    const auto gapAt = [&](const Vec3& n) { return n.dot(p0 - solid_.support(n)) - rounding_; };
+    if (gapAt(-triangle.n) > scale_.margin || gapAt(-n_other) > scale_.margin) return;
+    const Vec3 t = e.cross(triangle.n), t_other = n_other.cross(e);  // out of the two faces
+    const EdgeContacts found = edgeOnSolid(p0, e, -(triangle.n - kEdgeSlack * t).normalized(),
+                                           -(n_other - kEdgeSlack * t_other).normalized(), solid_, scale_.deepest());
     for (int k = 0; k < found.count; ++k) {
-      const PairPoint& point = found.points[static_cast<std::size_t>(k)];
-      const bool is_end = point.feature >> 28 == 0;  // of the edge: a corner of the mesh
-      if (!is_end) add(point.p_W, point.n_W, point.phi, featureOf(kMeshEdges, 4 * name + place++));
+      const EdgeContact& s = found.all[static_cast<std::size_t>(k)];
+      const double phi = s.gap - rounding_, along = e.dot(s.p - p0);
+      if (!(phi < scale_.margin) || along < -scale_.slack() || along > length + scale_.slack()) continue;
+      const Vec3 p = p0 + along * e;
+      const double slope = -std::max(s.n.dot(triangle.n), s.n.dot(n_other));
+      if (phi < -scale_.slack() && !(isInSolid(p, phi) && isBehindFaces(p - phi * s.n, phi, slope))) continue;
+      add(p - 0.5 * phi * s.n, s.n, phi, meshFeatureOf(kMeshEdges, name));
     }
   }
 
-  const TriangleMesh& mesh_;
   const MeshFeatures& features_;
   const PosedSolid& solid_;
-  double margin_, rounding_, size_, deepest_;
+  MeshScale scale_;
+  double rounding_;
   ContactCandidates candidates_;
 };
-
-bool spheresTouch(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin) {
-  const double furthest = boundingRadius(a) + boundingRadius(b) + margin;
-  return (X_WA.p - X_WB.p).squaredNorm() < furthest * furthest;
-}
-
-void keepInWorld(const ContactCandidates& candidates, const Pose& X_WF, PairPoints& out) {
-  candidates.keepBest(out);
-  for (int i = 0; i < out.count; ++i) {
-    PairPoint& point = out.points[static_cast<std::size_t>(i)];
-    point.p_W = X_WF * point.p_W;
-    point.n_W = X_WF.q * point.n_W;
-  }
-}
 
 }  // namespace
 
 void collideMeshWithConvex(const Mesh& mesh, const Pose& X_WA, const Shape& solid, const Pose& X_WB, double margin, PairPoints& out) {
   out.count = 0;
-  if (!spheresTouch(mesh, X_WA, solid, X_WB, margin)) return;
+  const double radius_a = mesh.surface->boundingRadius(), radius_b = boundingRadius(solid);
+  const double furthest = radius_a + radius_b + margin;
+  if (!((X_WA.p - X_WB.p).squaredNorm() < furthest * furthest)) return;
   const Quat q = X_WA.q.conjugate() * X_WB.q;
   const PosedSolid posed{solid, q.toRotationMatrix(), X_WA.q.conjugate() * (X_WB.p - X_WA.p)};
-  MeshOnSolid search(mesh, posed, margin);
+  MeshOnSolid search(mesh, posed, {std::min(radius_a, radius_b), margin});
   search.find();
-  keepInWorld(search.candidates(), X_WA, out);
+  search.candidates().keepBest(X_WA, out);
 }
 
 }  // namespace pincer::contact

@@ -6,6 +6,7 @@
 #include "contact/shape/convex_pairs.h"
 #include "contact/shape/extreme_points.h"
 #include "contact/shape/finger_query.h"
+#include "contact/shape/mesh_mesh.h"
 #include "contact/shape/mesh_pairs.h"
 #include "contact/shape/point_choice.h"
 #include "contact/shape/polytope.h"
@@ -28,7 +29,6 @@ double radiusOf(const Mesh& m) { return m.surface->boundingRadius(); }
 double radiusOf(const Convex& c) { return c.hull->boundingRadius(); }
 
 bool isSphere(const Shape& shape) { return std::holds_alternative<Sphere>(shape); }
-bool touchesMeshes(const Shape& shape) { return std::holds_alternative<Box>(shape) || std::holds_alternative<Capsule>(shape); }
 bool isMesh(const Shape& shape) { return std::holds_alternative<Mesh>(shape); }
 bool isSupport(const Shape& shape) { return std::holds_alternative<HalfSpace>(shape) || std::holds_alternative<Dish>(shape); }
 
@@ -74,13 +74,6 @@ double boundingRadius(const Shape& shape) {
   return std::visit([](const auto& s) { return radiusOf(s); }, shape);
 }
 
-bool pairIsSupported(const Shape& a, const Shape& b) {
-  if (isSphere(a) || isSphere(b)) return true;
-  if (isSupport(a) || isSupport(b)) return !(isSupport(a) && isSupport(b));
-  if (isMesh(a) || isMesh(b)) return touchesMeshes(a) || touchesMeshes(b);
-  return true;
-}
-
 void preparePair(const Shape& a, const Shape& b) {
   const bool flat = !isSphere(a) && !isSphere(b) && !isSupport(a) && !isSupport(b);
   for (const Shape* shape : {&a, &b}) {
@@ -90,10 +83,11 @@ void preparePair(const Shape& a, const Shape& b) {
 
 void collideShapes(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin, PatchCache& cache, PairPoints& out) {
   out.count = 0;
-  if (!pairIsSupported(a, b)) return;
+  if (isSupport(a) && isSupport(b)) return;
   if (isSphere(a)) return collideSphere(std::get<Sphere>(a), X_WA, b, X_WB, margin, cache, out);
   if (isConvex(a) && isConvex(b) && !isSphere(b) && a.index() <= b.index()) return collideConvex(a, X_WA, b, X_WB, margin, out);
   if (isMesh(a) && isConvex(b) && !isSphere(b)) return collideMeshWithConvex(std::get<Mesh>(a), X_WA, b, X_WB, margin, out);
+  if (isMesh(a) && isMesh(b)) return collideMeshes(std::get<Mesh>(a), X_WA, std::get<Mesh>(b), X_WB, margin, out);
   if (isSupport(b)) return collideWithSupport(a, X_WA, b, X_WB, margin, out);
   collideShapes(b, X_WB, a, X_WA, margin, cache, out);
   flip(out);

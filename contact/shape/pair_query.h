@@ -7,8 +7,8 @@
 // | sphere and anything | nearest point; on a mesh, the smooth surface | closed_forms.h, smooth_mesh.h |
 // | solid and half-space or dish | extreme points; of a mesh, the corners of its hull | extreme_points.h |
 // | box, capsule, cylinder, hull with each other | least overlap, then facets laid over each other | separation.h, facet_overlap.h |
-// | mesh and box or capsule | closest features of its flat triangles | mesh_pairs.h |
-// Not yet: a mesh and a mesh, hull or cylinder (a contact was missed in 1 of 20 random places).
+// | mesh and box, capsule, cylinder, hull | closest features of its flat triangles | mesh_pairs.h |
+// | mesh and mesh | the same | mesh_mesh.h |
 // But for spheres, a mesh is felt by other bodies as its flat triangles: the bulge of its smooth surface between the corners, about e^2 k / 8
 // for edge length e [m] and curvature k [1/m], is not seen. (A sphere of 20 mm radius with edges of 5 mm sinks up to 0.16 mm deeper than its
 // smooth surface.)
@@ -29,21 +29,19 @@ struct PairPoint {
   std::uint32_t feature = 0;  // which corner, end or rim point of the pair this is: the same from tick to tick, so that solvers warm-start
 };
 
-constexpr int kMaxPairPoints = 4;
+constexpr int kMaxPairPoints = 8;  // of two convex solids, or of a solid on a support, up to four
 struct PairPoints {
   std::array<PairPoint, kMaxPairPoints> points;
   int count = 0;
 };
 
-// Whether collideShapes answers for this pair; two supports (half-space, dish) are both static and never a pair.
-bool pairIsSupported(const Shape& a, const Shape& b);
-
 // Builds now what collideShapes would build at the first touch (a mesh's flat features), so that no tick allocates.
 void preparePair(const Shape& a, const Shape& b);
 
-// The points of a and b that are closer than `margin` >= 0 [m], written to `out` (sorted by feature). Of more than four
-// candidates up to four are kept: the deepest, then those on which the solid would land first if it rocked (point_choice.h). Unsupported pairs give no
-// point. Convex pairs of one kind of shape, and two meshes, are symmetric in a and b to round-off; all others exactly.
+// The points of a and b that are closer than `margin` >= 0 [m], written to `out` (sorted by feature). Of many candidates the deepest are kept,
+// then those on which the solid would land first if it rocked (point_choice.h, mesh_pairs.h). Every two shapes are answered for, but two
+// supports (half-space, dish), which are both static, have no point. Convex pairs of one kind of shape, and two meshes, are symmetric in a
+// and b to round-off; all others exactly.
 // Allocates nothing; `cache` is memory only.
 void collideShapes(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin, PatchCache& cache, PairPoints& out);
 

@@ -25,6 +25,8 @@
 
 namespace pincer::contact {
 
+constexpr int kMaxChosen = 4;
+
 struct Chosen {
   int index;   // of the extreme point
   double gap;  // [m]
@@ -35,7 +37,7 @@ class PointChoice {
  public:
   PointChoice(const ExtremePoints& solid, const Support& support, double margin) : solid_(solid), support_(support), margin_(margin) {
     listNear();
-    near_count_ <= kMaxPairPoints ? keepAll() : keepBest();
+    near_count_ <= kMaxChosen ? keepAll() : keepBest();
   }
 
   int count() const { return count_; }
@@ -53,7 +55,7 @@ class PointChoice {
 
     double distance(const Vec3& p) const { return right_A.dot(p) - offset; }  // [m]
   };
-  static constexpr int kMaxEdges = (kMaxPairPoints - 1) * (kMaxPairPoints - 2);
+  static constexpr int kMaxEdges = (kMaxChosen - 1) * (kMaxChosen - 2);
 
   double gapOf(int i) const { return support_.gap(solid_.points[i]) - solid_.rounding; }
   int candidates() const { return static_cast<int>(solid_.points.size()); }
@@ -89,7 +91,7 @@ class PointChoice {
 
   void keepBest() {
     keepDeepest();
-    while (count_ < kMaxPairPoints && keepNext()) continue;
+    while (count_ < kMaxChosen && keepNext()) continue;
     std::sort(chosen_.begin(), chosen_.begin() + count_, [](const Chosen& a, const Chosen& b) { return a.index < b.index; });
   }
 
@@ -151,7 +153,7 @@ class PointChoice {
   double margin_;                                             // [m]
   double deepest_ = std::numeric_limits<double>::infinity();  // smallest gap [m]
   Vec3 n_A_ = Vec3::UnitZ();
-  std::array<Chosen, kMaxPairPoints> chosen_{};
+  std::array<Chosen, kMaxChosen> chosen_{};
   int count_ = 0;
   std::array<Edge, kMaxEdges> edges_{};
   int edge_count_ = 0;

@@ -35,7 +35,7 @@ class Search {
   // Whether the solids are apart; then the best is the greatest distance, but for rims.
   bool tryNearestPoints() {
     const Vec3 start = directionOf<Vec3>(a_.p - b_.p, Vec3::UnitZ()).n;
-    const CoreDistance d = distanceOfCores(a_, b_, Vec3::Zero(), start, size_);
+    const CoreDistance d = distanceOfCores(a_, b_, Vec3::Zero(), start, size_, kRough);
     if (d.apart) offer(d.v.normalized());
     return d.apart && isApart();
   }
@@ -57,7 +57,7 @@ class Search {
     for (int i = 0; i < kMostSteps; ++i) {
       const bool apart = isApart();
       const Vec3 shift = apart ? Vec3(Vec3::Zero()) : Vec3((kMovedApart * size_ - best_.gap) * best_.n);
-      const CoreDistance d = distanceOfCores(a_, b_, shift, best_.n, size_);
+      const CoreDistance d = distanceOfCores(a_, b_, shift, best_.n, size_, apart ? kFine : kRough);
       if (!d.apart) break;
       const double before = best_.gap;
       offer(d.v.normalized());
@@ -68,7 +68,8 @@ class Search {
   }
 
  private:
-  static constexpr double kRoughly = 1e-6;
+  static constexpr double kRoughly = 1e-6;               // of the size: Newton's method does the rest
+  static constexpr double kRough = 1e-9, kFine = 1e-13;  // of the distance
 
   void offerBoth(const Vec3& n) {
     offer(n);
@@ -143,19 +144,24 @@ class Search {
   // Newton on the sphere (edge: null) or on the circle across an edge; leaves where the gap has no maximum of that kind. The gap tells the
   // direction to the root of round-off only, so that the last steps are judged by their length.
   void climbFrom(Vec3 n, const Vec3* edge) {
-    constexpr int kMostSteps = 20;
+    constexpr int kMostSteps = 20, kMostHalvings = 6;
     constexpr double kSmallest = 1e-14, kLargest = 0.1;  // [rad]
     if (edge) n = (n - edge->dot(n) * *edge).normalized();
     double gap = gapAlong(a_, b_, n);
-    double last = std::numeric_limits<double>::infinity();
+    double last = std::numeric_limits<double>::infinity(), before = -last;
     for (int i = 0; i < kMostSteps; ++i) {
       const Vec3 step = newtonStep(n, gap, edge);
       const double length = step.norm();
-      if (!(length > kSmallest && length < 0.9 * last)) break;
-      const Vec3 next = (n + std::min(1.0, kLargest / length) * step).normalized();
-      const double next_gap = gapAlong(a_, b_, next);
+      if (!(length > kSmallest && (length < 0.9 * last || gap > before))) break;
+      Vec3 next = (n + std::min(1.0, kLargest / length) * step).normalized();
+      double next_gap = gapAlong(a_, b_, next);
+      for (int halving = 0; halving < kMostHalvings && next_gap < gap - kGapRounding * size_; ++halving) {
+        next = (n + next).normalized();
+        next_gap = gapAlong(a_, b_, next);
+      }
       if (!(next_gap > gap - kGapRounding * size_)) break;
       n = next;
+      before = gap + kGapRounding * size_;
       gap = next_gap;
       last = length;
     }

@@ -1,33 +1,60 @@
 #include "contact/surface/mesh_features.h"
 
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
 namespace pincer::contact {
 namespace {
 
-const Vec3& vertexOf(const TriangleMesh& mesh, std::int32_t v) { return mesh.vertices[static_cast<std::size_t>(v)]; }
-
-Vec3 normalOf(const TriangleMesh& mesh, const std::array<std::int32_t, 3>& t) {
-  return (vertexOf(mesh, t[1]) - vertexOf(mesh, t[0])).cross(vertexOf(mesh, t[2]) - vertexOf(mesh, t[0]));
+Vec3 crossOf(const TriangleMesh& mesh, const std::array<std::int32_t, 3>& t) {
+  const auto at = [&](std::size_t i) -> const Vec3& { return mesh.vertices[static_cast<std::size_t>(t[i])]; };
+  return (at(1) - at(0)).cross(at(2) - at(0));
 }
 
 std::vector<Aabb> boxesOf(const TriangleMesh& mesh) {
   std::vector<Aabb> boxes;
   boxes.reserve(mesh.triangles.size());
   for (const auto& t : mesh.triangles) {
-    const Vec3 &a = vertexOf(mesh, t[0]), &b = vertexOf(mesh, t[1]), &c = vertexOf(mesh, t[2]);
-    boxes.push_back({a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)});
+    const auto at = [&](std::size_t i) -> const Vec3& { return mesh.vertices[static_cast<std::size_t>(t[i])]; };
+    boxes.push_back({at(0).cwiseMin(at(1)).cwiseMin(at(2)), at(0).cwiseMax(at(1)).cwiseMax(at(2))});
   }
   return boxes;
+}
+
+// Nearest point of a triangle to the origin, and which corners it lies between: bit i for corner i.
+struct OnTriangle {
+  Vec3 p;
+  int corners;
+};
+
+OnTriangle nearestOfTriangle(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 ab = b - a, ac = c - a, bc = c - b;
+  const double a1 = -ab.dot(a), a2 = -ac.dot(a);
+  if (a1 <= 0 && a2 <= 0) return {a, 1};
+  const double b1 = -ab.dot(b), b2 = -ac.dot(b);
+  if (b1 >= 0 && b2 <= b1) return {b, 2};
+  const double on_ab = a1 * b2 - b1 * a2;
+  if (on_ab <= 0 && a1 >= 0 && b1 <= 0) return {a + a1 / (a1 - b1) * ab, 3};
+  const double c1 = -ab.dot(c), c2 = -ac.dot(c);
+  if (c2 >= 0 && c1 <= c2) return {c, 4};
+  const double on_ac = c1 * a2 - a1 * c2;
+  if (on_ac <= 0 && a2 >= 0 && c2 <= 0) return {a + a2 / (a2 - c2) * ac, 5};
+  const double on_bc = b1 * c2 - c1 * b2;
+  if (on_bc <= 0 && b2 - b1 >= 0 && c1 - c2 >= 0) return {b + (b2 - b1) / ((b2 - b1) + (c1 - c2)) * bc, 6};
+  const Vec3 n = ab.cross(ac);
+  return {a.dot(n) / n.squaredNorm() * n, 7};
 }
 
 }  // namespace
 
 MeshFeatures::MeshFeatures(const TriangleMesh& mesh, const Neighbours& neighbours)
-    : owned_(mesh.triangles.size(), 0), opposite_(mesh.triangles.size()), tree_(boxesOf(mesh)) {
+    : mesh_(&mesh), owned_(mesh.triangles.size(), 0), opposite_(mesh.triangles.size()), tree_(boxesOf(mesh)) {
   constexpr double kFlat = 1e-6;  // sine of the angle across an edge that counts as none
   std::vector<bool> taken(mesh.vertices.size(), false);
   for (std::size_t t = 0; t < owned_.size(); ++t) {
     const auto& corners = mesh.triangles[t];
-    const Vec3 n = normalOf(mesh, corners);
+    const Vec3 n = crossOf(mesh, corners);
     for (std::size_t i = 0; i < 3; ++i) {
       const auto v = static_cast<std::size_t>(corners[i]);
       if (!taken[v]) owned_[t] |= static_cast<std::uint8_t>(1u << i);
@@ -35,23 +62,119 @@ MeshFeatures::MeshFeatures(const TriangleMesh& mesh, const Neighbours& neighbour
       const Neighbour& other = neighbours[t][i];
       opposite_[t][i] = -1;
       if (other.triangle < 0) continue;
-      const std::int32_t beyond = mesh.triangles[static_cast<std::size_t>(other.triangle)][(static_cast<std::size_t>(other.edge) + 2) % 3];
+      const std::int32_t beyond = cornersOf(other.triangle)[(static_cast<std::size_t>(other.edge) + 2) % 3];
       opposite_[t][i] = beyond;
-      const Vec3 across = vertexOf(mesh, beyond) - vertexOf(mesh, corners[i]);
+      const Vec3 across = vertex(beyond) - vertex(corners[i]);
       const bool convex = n.dot(across) < -kFlat * n.norm() * across.norm();
       if (convex && other.triangle > static_cast<std::int32_t>(t)) owned_[t] |= static_cast<std::uint8_t>(8u << i);
     }
   }
+  setTrianglesAtVertices();
 }
 
-MeshFeatures::Triangle MeshFeatures::triangle(const TriangleMesh& mesh, std::int32_t t) const {
+void MeshFeatures::setTrianglesAtVertices() {
+  first_at_vertex_.assign(mesh_->vertices.size() + 1, 0);
+  for (const auto& corners : mesh_->triangles) {
+    for (const std::int32_t v : corners) ++first_at_vertex_[static_cast<std::size_t>(v) + 1];
+  }
+  std::partial_sum(first_at_vertex_.begin(), first_at_vertex_.end(), first_at_vertex_.begin());
+  triangles_at_vertex_.resize(3 * mesh_->triangles.size());
+  std::vector<std::int32_t> end(first_at_vertex_.begin(), first_at_vertex_.end() - 1);
+  for (std::size_t t = 0; t < mesh_->triangles.size(); ++t) {
+    for (const std::int32_t v : mesh_->triangles[t]) {
+      triangles_at_vertex_[static_cast<std::size_t>(end[static_cast<std::size_t>(v)]++)] = static_cast<std::int32_t>(t);
+    }
+  }
+}
+
+std::size_t MeshFeatures::memoryBytes() const {
+  return owned_.capacity() + opposite_.capacity() * sizeof(opposite_[0]) + tree_.memoryBytes() +
+         (first_at_vertex_.capacity() + triangles_at_vertex_.capacity()) * sizeof(std::int32_t);
+}
+
+std::span<const std::int32_t> MeshFeatures::trianglesAt(std::int32_t v) const {
+  const auto begin = static_cast<std::size_t>(first_at_vertex_[static_cast<std::size_t>(v)]);
+  return std::span(triangles_at_vertex_)
+      .subspan(begin, static_cast<std::size_t>(first_at_vertex_[static_cast<std::size_t>(v) + 1]) - begin);
+}
+
+MeshFeatures::Triangle MeshFeatures::triangle(std::int32_t t) const {
   const auto at = static_cast<std::size_t>(t);
-  const auto& v = mesh.triangles[at];
-  Triangle triangle{{vertexOf(mesh, v[0]), vertexOf(mesh, v[1]), vertexOf(mesh, v[2])}, normalOf(mesh, v).normalized(), v, owned_[at], {}};
+  const auto& v = cornersOf(t);
+  Triangle triangle{{vertex(v[0]), vertex(v[1]), vertex(v[2])}, crossOf(*mesh_, v).normalized(), v, owned_[at], {}};
   for (std::size_t i = 0; i < 3; ++i) {
-    if (triangle.ownsEdge(static_cast<int>(i))) triangle.beyond[i] = vertexOf(mesh, opposite_[at][i]);
+    if (triangle.ownsEdge(static_cast<int>(i))) triangle.beyond[i] = vertex(opposite_[at][i]);
   }
   return triangle;
+}
+
+bool MeshFeatures::Triangle::isUnder(const Vec3& q, double slack) const {
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 edge = corner(i + 1) - corner(i);
+    if (n.cross(edge).dot(q - corner(i)) < -slack * edge.norm()) return false;
+  }
+  return true;
+}
+
+Vec3 MeshFeatures::normalAround(std::int32_t v) const {
+  Vec3 sum = Vec3::Zero();
+  for (const std::int32_t t : trianglesAt(v)) {
+    const auto& corners = cornersOf(t);
+    const std::size_t i = corners[0] == v ? 0 : corners[1] == v ? 1 : 2;
+    const Vec3 e = vertex(corners[(i + 1) % 3]) - vertex(v), f = vertex(corners[(i + 2) % 3]) - vertex(v);
+    sum += angleBetween(e, f) * e.cross(f).normalized();
+  }
+  return sum;
+}
+
+Vec3 MeshFeatures::normalAcross(std::int32_t t, int edge) const {
+  const auto i = static_cast<std::size_t>(edge);
+  const Vec3 n = crossOf(*mesh_, cornersOf(t)).normalized();
+  const std::int32_t beyond = opposite_[static_cast<std::size_t>(t)][i];
+  if (beyond < 0) return n;
+  const Vec3 &from = vertex(cornersOf(t)[i]), &to = vertex(cornersOf(t)[(i + 1) % 3]);
+  return n + (from - to).cross(vertex(beyond) - to).normalized();
+}
+
+MeshFeatures::Nearest MeshFeatures::nearest(const Vec3& q, double bound) const {
+  constexpr double kOnSurface = 1e-20;  // [m^2]
+  double bound2 = bound * bound;
+  std::int32_t best = -1;
+  OnTriangle on{Vec3::Zero(), 0};
+  tree_.visitNear(q, bound2, [&](std::int32_t place) {
+    const std::int32_t t = tree_.order()[static_cast<std::size_t>(place)];
+    const auto& v = cornersOf(t);
+    const OnTriangle s = nearestOfTriangle(vertex(v[0]) - q, vertex(v[1]) - q, vertex(v[2]) - q);
+    const double distance2 = s.p.squaredNorm();
+    if (!(distance2 < bound2 || (best >= 0 && distance2 == bound2 && t < best))) return;
+    bound2 = distance2;
+    best = t;
+    on = s;
+  });
+  if (best < 0) return {};
+  const auto& v = cornersOf(best);
+  const Vec3 n = on.corners == 7   ? crossOf(*mesh_, v)
+                 : on.corners == 3 ? normalAcross(best, 0)
+                 : on.corners == 6 ? normalAcross(best, 1)
+                 : on.corners == 5 ? normalAcross(best, 2)
+                                   : normalAround(v[on.corners == 1   ? 0
+                                                    : on.corners == 2 ? 1
+                                                                      : 2]);
+  const double side = n.dot(on.p) > 0 ? -1 : 1;  // on.p is the surface's point seen from q
+  const double distance = std::sqrt(bound2);
+  return {q + on.p, bound2 > kOnSurface ? Vec3(-side / distance * on.p) : Vec3(n.normalized()), side * distance, true};
+}
+
+bool MeshFeatures::liesAbove(std::int32_t v, const Vec3& n, double slack) const {
+  const Vec3& p = vertex(v);
+  for (const std::int32_t t : trianglesAt(v)) {
+    for (const std::int32_t other : cornersOf(t)) {
+      const Vec3 e = vertex(other) - p;
+      const double rise = n.dot(e);
+      if (rise < 0 && rise * rise > slack * slack * e.squaredNorm()) return false;
+    }
+  }
+  return true;
 }
 
 }  // namespace pincer::contact

@@ -1,10 +1,16 @@
-// mesh_features: the flat triangles of a mesh with their corners and edges, for contact with other bodies (contact/shape/mesh_pairs.h).
+// mesh_features: the flat triangles of a mesh with their corners and edges, for contact with other bodies (contact/shape/mesh_pairs.h,
+// mesh_mesh.h).
 //
 // Each vertex and each edge belongs to one triangle, the first that has it, so that a walk over triangles meets it once. An edge counts
 // where the surface is convex across it: no other can touch a body that its two triangles don't touch.
+// The signed distance of a point is that to the nearest triangle, negative where it lies behind the surface there: behind the face, or
+// where an edge or vertex is nearest, against the sum of the normals around it, each weighted by its angle.
+// Source: J. A. Baerentzen, H. Aanaes, IEEE Trans. Visualization Comput. Graphics 11(3), 2005 (those normals decide inside and outside
+// exactly); nearest point of a triangle: C. Ericson, Real-Time Collision Detection (2005), sec. 5.1.5.
 #pragma once
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "contact/mesh/connectivity.h"
@@ -15,6 +21,7 @@ namespace pincer::contact {
 
 class MeshFeatures {
  public:
+  // `mesh` must outlive this.
   MeshFeatures(const TriangleMesh& mesh, const Neighbours& neighbours);
 
   struct Triangle {
@@ -26,20 +33,46 @@ class MeshFeatures {
 
     bool ownsCorner(int i) const { return owned >> i & 1; }
     bool ownsEdge(int i) const { return owned >> (3 + i) & 1; }
+    const Vec3& corner(int i) const { return p[static_cast<std::size_t>(i % 3)]; }
+    // Whether `q` lies over the triangle, or beside it by less than `slack` [m].
+    bool isUnder(const Vec3& q, double slack) const;
   };
-  Triangle triangle(const TriangleMesh& mesh, std::int32_t t) const;
+  Triangle triangle(std::int32_t t) const;
 
-  std::size_t memoryBytes() const { return owned_.capacity() + opposite_.capacity() * sizeof(opposite_[0]) + tree_.memoryBytes(); }
+  struct Nearest {
+    Vec3 p = Vec3::Zero();  // of the surface [m]
+    Vec3 n = Vec3::Zero();  // unit, out of the solid: from p to the point where that is outside, else the other way
+    double distance = 0;    // signed [m]
+    bool found = false;
+  };
+  // The nearest point of the surface to `q` that is nearer than `bound` > 0 [m]. Allocates nothing.
+  Nearest nearest(const Vec3& q, double bound) const;
 
-  // Calls visit(t) on every triangle whose box meets [low, high]; at most `most` of them. Allocates nothing.
+  // Whether the surface around the vertex lies above the plane through it across the unit vector `n`, but for directions that fall by less
+  // than `slack` (sine).
+  bool liesAbove(std::int32_t vertex, const Vec3& n, double slack) const;
+
+  const AabbTree& tree() const { return tree_; }
+  std::size_t memoryBytes() const;
+
+  // Calls visit(t) on every triangle whose leaf's box meets [low, high]; at most `most` of them. Allocates nothing.
   template <class Visit>
   void visitBox(const Vec3& low, const Vec3& high, int most, Visit&& visit) const {
     tree_.visitBox(low, high, most, [&](std::int32_t place) { visit(tree_.order()[static_cast<std::size_t>(place)]); });
   }
 
  private:
+  const Vec3& vertex(std::int32_t v) const { return mesh_->vertices[static_cast<std::size_t>(v)]; }
+  const std::array<std::int32_t, 3>& cornersOf(std::int32_t t) const { return mesh_->triangles[static_cast<std::size_t>(t)]; }
+  std::span<const std::int32_t> trianglesAt(std::int32_t v) const;
+  void setTrianglesAtVertices();
+  Vec3 normalAround(std::int32_t v) const;
+  Vec3 normalAcross(std::int32_t t, int edge) const;
+
+  const TriangleMesh* mesh_;
   std::vector<std::uint8_t> owned_;                    // per triangle
   std::vector<std::array<std::int32_t, 3>> opposite_;  // per triangle and edge: the vertex beyond it, -1 at a border
+  std::vector<std::int32_t> first_at_vertex_, triangles_at_vertex_;
   AabbTree tree_;
 };
 

@@ -237,11 +237,6 @@ WorldModel WorldBuilder::build() const {
       BodyModel &A = model.bodies[a], &B = model.bodies[b];
       if (!A.dynamic && !B.dynamic) continue;
       if (std::binary_search(excluded.begin(), excluded.end(), std::pair(a, b))) continue;
-      if (!contact::pairIsSupported(A.shape, B.shape)) {
-        throw InputError(fmt::format(
-            "bodies \"{}\" and \"{}\": this pair of shapes has no contact routine. Exclude the pair, or use a sphere for one of them.",
-            A.name, B.name));
-      }
       contact::preparePair(A.shape, B.shape);
       if (!model.has_broad_phase) model.pairs.push_back({a, b, materialOf(model, a, b)});
       A.may_touch = B.may_touch = true;

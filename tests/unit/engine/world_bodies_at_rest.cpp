@@ -108,5 +108,41 @@ TEST(BodiesAtRest, MeshOnABoxAndABoxOnTheMesh) {
   expectRest("mesh", {{Box{{0.03, 0.03, 0.02}}, 0.2, 0.04}, {mesh, 0.2, 0.04}, {Box{{0.01, 0.015, 0.01}}, 0.1, 0.02}}, kStill);
 }
 
+TEST(BodiesAtRest, MeshesOnEachOther) {
+  const contact::Mesh block{contact::SmoothMesh::build(contact::box({0.025, 0.025, 0.02}))},
+      small{contact::SmoothMesh::build(contact::box({0.01, 0.015, 0.01}))};
+  expectRest("equal meshes", {{block, 0.2, 0.04}, {block, 0.2, 0.04}, {small, 0.1, 0.02}}, kStill);
+  expectRest("a turned mesh", {{block, 0.2, 0.04}, {block, 0.2, 0.04, Quat(Eigen::AngleAxisd(0.5, Vec3::UnitZ()))}}, kStill);
+  std::vector<Vec3> corners;
+  for (int i = 0; i < 8; ++i) corners.emplace_back(i & 1 ? 0.02 : -0.02, i & 2 ? 0.02 : -0.02, i & 4 ? 0.02 : -0.02);
+  const contact::Convex hull{contact::Polytope::hullOf(corners, "cube")};
+  expectRest("hull, mesh, cylinder, mesh",
+             {{hull, 0.2, 0.04}, {small, 0.1, 0.02}, {contact::Cylinder{0.02, 0.01}, 0.1, 0.02}, {small, 0.1, 0.02}}, kStill);
+}
+
+// A ring of triangles around a post, lying on a plate that is a mesh: it is carried all round, and the post in its hole leaves it alone.
+TEST(BodiesAtRest, RingAroundAPost) {
+  WorldBuilder builder{WorldOptions{}};
+  const contact::Mesh ring{contact::SmoothMesh::build(contact::torus(0.03, 0.008, 24, 12))},
+      post{contact::SmoothMesh::build(contact::cylinder(0.01, 0.05, 24, 2))},
+      plate{contact::SmoothMesh::build(contact::box({0.1, 0.1, 0.01}))};
+  builder.addBody({"plate", plate, false, 0, {0.5, 0.5, 0, 0}});
+  builder.addBody({"post", post, false, 0, {0.5, 0.5, 0, 0}});
+  builder.addBody({"ring", ring, true, 0.1, {0.5, 0.5, 0, 0}});
+  const WorldModel model = builder.build();
+  WorldState state = makeState(model,
+                               {{{Quat::Identity(), {0, 0, -0.01}}, Vec3::Zero(), Vec3::Zero()},
+                                {{Quat::Identity(), {0, 0, 0.05}}, Vec3::Zero(), Vec3::Zero()},
+                                {{Quat::Identity(), {0.001, 0, 0.0085}}, Vec3::Zero(), Vec3::Zero()}},
+                               {});
+  WorldScratch scratch(model);
+  for (int tick = 0; tick < 1000; ++tick) step(model, state, scratch);
+  EXPECT_LE(state.bodies[2].v_W.norm(), 1e-6);
+  EXPECT_NEAR(bodyPose(model, state, 2).p.z(), 0.008, 3e-4);  // the tube's facets lie up to 0.27 mm within the circle
+  double weight = 0;
+  for (const Contact& c : scratch.contacts) weight += c.b.index == 2 ? -c.impulse_W.z() : c.impulse_W.z();
+  EXPECT_NEAR(weight / model.options.h, 0.1 * kGravity, 1e-6 * kGravity);
+}
+
 }  // namespace
 }  // namespace pincer::engine

@@ -1,0 +1,38 @@
+// mesh_rules: what the contact of meshes with solids and with each other share (mesh_pairs.h, mesh_mesh.h).
+#pragma once
+#include <algorithm>
+#include <cstdint>
+
+#include "contact/surface/mesh_features.h"
+
+namespace pincer::contact {
+
+using FlatTriangle = MeshFeatures::Triangle;
+
+constexpr int kMostTriangles = 20000;
+
+// Lengths that tell apart what touches from what is on the far side.
+//   size     [m] radius of the smaller body
+//   deepest  [m] what is deeper than a quarter of it isn't looked at
+struct MeshScale {
+  static constexpr double kLonger = 0.01;
+  double size, margin;
+
+  double deepest() const { return -0.25 * size; }
+  double slack() const { return 1e-6 * size; }  // beside a triangle, or in front of it
+  // A point at depth `distance` < 0 has the nearest way out; another counts as one when it is no more than four times as long (so long is
+  // the way over an edge of 30 degrees), or longer by a hundredth of the size (a body that rests with its corner at a rim is pushed up, not aside).
+  bool isWayOut(double phi, double distance) const { return phi >= 4 * std::min(distance, 0.0) - kLonger * size; }
+  // Of a point at `phi` < 0 under an edge along a normal that is as steep as `slope` (cosine) on the flatter of the edge's two faces, whose
+  // signed distance from the surface is `distance`: whether it is behind that face (or before it, where the normal leans that way), with no other surface nearer than half of that.
+  bool isBehindFaces(double distance, double phi, double slope) const { return distance < (slope > 0 ? 0.5 : 1.1) * slope * phi + slack(); }
+};
+
+// Sines: how far the surroundings of a corner, or the faces of an edge, may fall below the plane across the normal, so that round bodies, and
+// flat ones that rock, touch with more than one.
+constexpr double kConeSlack = 0.3, kEdgeSlack = 0.02;
+
+enum : std::uint32_t { kMeshCornerOfA = 0, kMeshCornerOfB = 1, kMeshEdges = 2 };
+inline std::uint32_t meshFeatureOf(std::uint32_t kind, std::uint32_t name) { return kind << 30 | (name & 0x3fffffff); }
+
+}  // namespace pincer::contact
