@@ -73,7 +73,7 @@ void collideConvex(const Shape& a, const Pose& X_WA, const Shape& b, const Pose&
   } else if (areApart(A, B, reach)) {
     return;
   }
-  finish(separate(A, B, size, nullptr));
+  finish(separate(A, B, size, reach));
 }
 
 }  // namespace pincer::contact

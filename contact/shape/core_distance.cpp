@@ -79,7 +79,7 @@ class DifferenceSimplex {
 
 // `furthest`: the point of A - B that is furthest against a direction.
 template <class Furthest>
-CoreDistance nearestToOrigin(Furthest furthest, const Vec3& start, double size, double accuracy) {
+CoreDistance nearestToOrigin(Furthest furthest, const Vec3& start, double size, const CoreAccuracy& accuracy) {
   constexpr int kMostSteps = 60;
   constexpr double kTouching = 1e-13;
   DifferenceSimplex simplex;
@@ -87,7 +87,12 @@ CoreDistance nearestToOrigin(Furthest furthest, const Vec3& start, double size, 
   double length2 = std::numeric_limits<double>::infinity();
   for (int step = 0; step < kMostSteps; ++step) {
     const Vec3 w = furthest(v);
-    if (step > 0 && (simplex.has(w) || length2 - v.dot(w) <= accuracy * length2)) break;
+    const double along = v.dot(w);
+    if (step > 0) {
+      const double length = std::sqrt(length2);
+      if (simplex.has(w) || length2 - along <= (accuracy.relative * length + accuracy.absolute) * length || along > accuracy.reach * length)
+        break;
+    }
     simplex.add(w);
     const Vec3 next = simplex.nearest();
     const double next2 = next.squaredNorm();
@@ -101,12 +106,13 @@ CoreDistance nearestToOrigin(Furthest furthest, const Vec3& start, double size, 
 
 }  // namespace
 
-CoreDistance distanceOfCores(const PosedSolid& a, const PosedSolid& b, const Vec3& shift, const Vec3& start, double size, double accuracy) {
+CoreDistance distanceOfCores(const PosedSolid& a, const PosedSolid& b, const Vec3& shift, const Vec3& start, double size,
+                             const CoreAccuracy& accuracy) {
   return nearestToOrigin([&](const Vec3& v) -> Vec3 { return a.support(-v) + shift - b.support(v); }, start, size, accuracy);
 }
 
 CoreDistance distanceOfInsets(const PosedSolid& a, const PosedSolid& b, const Vec3& start, double size) {
-  return nearestToOrigin([&](const Vec3& v) -> Vec3 { return a.inset(-v) - b.inset(v); }, start, size, 1e-6);
+  return nearestToOrigin([&](const Vec3& v) -> Vec3 { return a.inset(-v) - b.inset(v); }, start, size, {1e-6});
 }
 
 }  // namespace pincer::contact

@@ -5,7 +5,7 @@
 // Source: E. Gilbert, D. Johnson, S. Keerthi, IEEE J. Robotics Automat. 4(2), 1988; nearest points of simplices after C. Ericson, Real-Time
 // Collision Detection (2005), sec. 5.1. Departure: of a triangle's inner points v is taken along the triangle's normal, which is exact to
 // round-off however slim it is. Solids made of corners end after finitely many steps with v exact to round-off; round ones when a step can
-// shorten v by no more than `accuracy` of it: its direction is right to the root of that.
+// shorten v by no more than the accuracy asked for: its direction is right to the root of that.
 #pragma once
 #include "contact/shape/posed_solid.h"
 
@@ -16,8 +16,15 @@ struct CoreDistance {
   bool apart = false;  // false: the cores overlap, or are nearer than 1e-13 of `size`, and v says nothing
 };
 
+struct CoreAccuracy {
+  double relative;           // to |v|
+  double absolute = 0;       // [m]
+  double reach = kInfinity;  // [m]: of solids that turn out to be further apart than that, v is any vector across which they are
+};
+
 // `start`: a direction from b to a to begin with, unit. `size` [m] is the order of magnitude of both. Allocates nothing.
-CoreDistance distanceOfCores(const PosedSolid& a, const PosedSolid& b, const Vec3& shift, const Vec3& start, double size, double accuracy);
+CoreDistance distanceOfCores(const PosedSolid& a, const PosedSolid& b, const Vec3& shift, const Vec3& start, double size,
+                             const CoreAccuracy& accuracy);
 
 // The same of the solids whose faces lie further in (insetOf).
 CoreDistance distanceOfInsets(const PosedSolid& a, const PosedSolid& b, const Vec3& start, double size);

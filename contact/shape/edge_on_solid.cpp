@@ -16,7 +16,9 @@ class EdgeSearch {
       : p_(p), e_(e), solid_(solid), round_(isRound(solid.shape)), deepest_(deepest), tiny_(-1e-13 * deepest) {}
 
   EdgeContacts find(const Vec3& n_lo, const Vec3& n_hi) {
-    explore(look(n_lo), look(n_hi), 0);
+    const Looked lo = look(n_lo), hi = look(n_hi);
+    const bool is_outside = lo.n.dot(p_ - lo.b) > 0 || hi.n.dot(p_ - hi.b) > 0;  // then there is one maximum only
+    if (!is_outside || (lo.rising > 0 && hi.rising < 0)) explore(lo, hi, 0);
     return found_;
   }
 

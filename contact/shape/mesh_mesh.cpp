@@ -109,9 +109,12 @@ class MeshOnMesh {
   void lookAtEdge(const FlatTriangle& ta, int i, std::uint32_t name, const SeenMesh& b) {
     const Vec3 &a0 = ta.corner(i), &a1 = ta.corner(i + 1);
     const Vec3 q0 = b.place(a0), q1 = b.place(a1), reach = Vec3::Constant(scale_.margin);
+    if (!b_.nearest(0.5 * (q0 + q1), 0.5 * (q1 - q0).norm() + scale_.margin).found) return;
+    const Vec3 low = q0.cwiseMin(q1) - reach, high = q0.cwiseMax(q1) + reach;
     const Vec3 e = (a1 - a0).normalized();
     const EdgeSides sides(ta, i, e);
-    b_.visitBox(q0.cwiseMin(q1) - reach, q0.cwiseMax(q1) + reach, kMostTriangles, [&](std::int32_t t) {
+    b_.visitBox(low, high, kMostTriangles, [&](std::int32_t t) {
+      if (!b_.meetsBox(t, low, high)) return;
       const FlatTriangle tb = b_.triangle(t);
       for (int j = 0; j < 3; ++j) {
         if (tb.ownsEdge(j)) lookAtEdges(a0, a1, e, sides, tb, j, name, 3 * static_cast<std::uint32_t>(t) + static_cast<std::uint32_t>(j));

@@ -33,10 +33,9 @@ class MeshOnSolid {
 
  private:
   void look(std::int32_t t, const Vec3& low, const Vec3& high) {
+    if (!features_.meetsBox(t, low, high)) return;
     const FlatTriangle triangle = features_.triangle(t);
-    const auto& p = triangle.p;
-    if ((p[0].cwiseMax(p[1]).cwiseMax(p[2]) - low).minCoeff() < 0 || (high - p[0].cwiseMin(p[1]).cwiseMin(p[2])).minCoeff() < 0) return;
-    const double height = triangle.n.dot(solid_.support(-triangle.n) - p[0]) - rounding_;
+    const double height = triangle.n.dot(solid_.support(-triangle.n) - triangle.p[0]) - rounding_;
     if (height > scale_.margin) return;
     if (height > scale_.deepest()) lookAtFace(triangle);
     for (int i = 0; i < 3; ++i) {

@@ -24,8 +24,12 @@ struct MeshScale {
   // the way over an edge of 30 degrees), or longer by a hundredth of the size (a body that rests with its corner at a rim is pushed up, not aside).
   bool isWayOut(double phi, double distance) const { return phi >= 4 * std::min(distance, 0.0) - kLonger * size; }
   // Of a point at `phi` < 0 under an edge along a normal that is as steep as `slope` (cosine) on the flatter of the edge's two faces, whose
-  // signed distance from the surface is `distance`: whether it is behind that face (or before it, where the normal leans that way), with no other surface nearer than half of that.
-  bool isBehindFaces(double distance, double phi, double slope) const { return distance < (slope > 0 ? 0.5 : 1.1) * slope * phi + slack(); }
+  // signed distance from the surface is `distance`: whether it is behind the surface (before that face, where the normal leans that way), and
+  // `phi` is a way out, or deeper overlap of these very faces.
+  bool isBehindFaces(double distance, double phi, double slope) const {
+    if (!(distance < std::max(1.1 * slope * phi, 0.0) + slack())) return false;
+    return isWayOut(phi, distance) || distance < 0.5 * slope * phi;
+  }
 };
 
 // Sines: how far the surroundings of a corner, or the faces of an edge, may fall below the plane across the normal, so that round bodies, and

@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kGapRounding = 1e-13;  // of the size: round-off
 constexpr double kTrustedGap = 1e-8;    // of the size: solids that are apart by more have nearest points to trust
+constexpr double kTrustedRound = 1e-3;  // the same for round ones, whose nearest points take the more steps the nearer they are
 constexpr double kMovedApart = 1e-2;    // of the size
 constexpr double kShallow = 1e-4;       // of the size: overlap out of which hardly more than one way leads
 
@@ -26,18 +27,17 @@ class Search {
   Search(const PosedSolid& a, const PosedSolid& b, double size) : a_(a), b_(b), size_(size), round_(isRound(a.shape) || isRound(b.shape)) {}
 
   const Separation& best() const { return best_; }
-  bool isApart() const { return best_.gap > kTrustedGap * size_; }
+  bool isApart() const { return best_.gap > (round_ ? kTrustedRound : kTrustedGap) * size_; }
 
   void offer(const Vec3& n) {
     const double gap = gapAlong(a_, b_, n);
     if (gap > best_.gap) best_ = {n, gap};
   }
-  // Whether the solids are apart; then the best is the greatest distance, but for rims.
-  bool tryNearestPoints() {
+  void tryNearestPoints(double reach) {
     const Vec3 start = directionOf<Vec3>(a_.p - b_.p, Vec3::UnitZ()).n;
-    const CoreDistance d = distanceOfCores(a_, b_, Vec3::Zero(), start, size_, kRough);
+    const CoreAccuracy accuracy{kRelative, round_ ? kRelative * size_ : 0, reach};
+    const CoreDistance d = distanceOfCores(a_, b_, Vec3::Zero(), start, size_, accuracy);
     if (d.apart) offer(d.v.normalized());
-    return d.apart && isApart();
   }
   void tryWaysOut() {
     offerBoth(directionOf<Vec3>(a_.p - b_.p, Vec3::UnitZ()).n);
@@ -54,22 +54,25 @@ class Search {
   }
   void improve() {
     constexpr int kMostSteps = 12;
-    for (int i = 0; i < kMostSteps; ++i) {
-      const bool apart = isApart();
-      const Vec3 shift = apart ? Vec3(Vec3::Zero()) : Vec3((kMovedApart * size_ - best_.gap) * best_.n);
-      const CoreDistance d = distanceOfCores(a_, b_, shift, best_.n, size_, apart ? kFine : kRough);
+    constexpr double kRoughly = 1e-6;  // of the size: Newton's method does the rest
+    for (int i = 0; i < kMostSteps && !isApart(); ++i) {
+      const Vec3 shift = (kMovedApart * size_ - best_.gap) * best_.n;
+      const CoreDistance d = distanceOfCores(a_, b_, shift, best_.n, size_, {round_ ? 1e-7 : kRelative});
       if (!d.apart) break;
       const double before = best_.gap;
       offer(d.v.normalized());
-      if (apart || !(best_.gap > before + (round_ ? kRoughly : kGapRounding) * size_)) break;
+      if (!(best_.gap > before + (round_ ? kRoughly : kGapRounding) * size_)) break;
     }
+    finish();
+  }
+  // What the nearest points leave to be done.
+  void finish() {
     snapToFaces();
     if (round_) polish();
   }
 
  private:
-  static constexpr double kRoughly = 1e-6;               // of the size: Newton's method does the rest
-  static constexpr double kRough = 1e-9, kFine = 1e-13;  // of the distance
+  static constexpr double kRelative = 1e-9;  // of the distance
 
   void offerBoth(const Vec3& n) {
     offer(n);
@@ -92,6 +95,7 @@ class Search {
     constexpr double kNear = 0.02;  // [rad]
     const Kinks kinks = kinksNear(best_.n, kNear, kNear);
     for (int i = 0; i < kinks.normal_count; ++i) prefer(kinks.normals[static_cast<std::size_t>(i)]);
+    if (best_.gap > 0) offer(directionOf<Vec3>(a_.support(-best_.n) - b_.support(best_.n), best_.n).n);  // where two corners are nearest
     climbFrom(best_.n, nullptr);
     for (int i = 0; i < kinks.edge_count_a; ++i) climbBeside(kinks.edges_a[static_cast<std::size_t>(i)]);
     for (int j = 0; j < kinks.edge_count_b; ++j) climbBeside(kinks.edges_b[static_cast<std::size_t>(j)]);
@@ -196,24 +200,19 @@ class Search {
 
 double gapAlong(const PosedSolid& a, const PosedSolid& b, const Vec3& n) { return n.dot(a.support(-n)) - n.dot(b.support(n)); }
 
-Separation separate(const PosedSolid& a, const PosedSolid& b, double size, const Vec3* guess) {
-  constexpr double kDeep = 1e-2;  // of the size: overlap in which a guess may lead the wrong way
-  if (guess) {
-    Search search(a, b, size);
-    search.offer(*guess);
-    search.improve();
-    if (search.best().gap > -kDeep * size) return search.best();
-  }
+Separation separate(const PosedSolid& a, const PosedSolid& b, double size, double reach) {
   Search search(a, b, size);
-  if (!search.tryNearestPoints()) search.tryWaysOut();
+  search.tryNearestPoints(reach);
+  if (search.best().gap >= reach) return search.best();
+  if (!(search.best().gap > kTrustedGap * size)) search.tryWaysOut();
   search.improve();
   return search.best();
 }
 
 // Half widths along each axis are sums of |R_ij| half_j; edges nearly parallel add no direction of their own.
 Separation separateBoxes(const PosedSolid& a, const PosedSolid& b) {
-  constexpr double kParallel = 1e-6;  // sine
-  constexpr double kBetter = 1e-9;    // of the size: faces win over edges that are no further apart
+  constexpr double kParallel = 1e-6;    // sine
+  constexpr double kBetterFace = 1e-9;  // of the size: faces win over edges that are no further apart
   const Vec3 half_a = std::get<Box>(a.shape).half, half_b = std::get<Box>(b.shape).half;
   const Vec3 d = a.p - b.p;
   const Mat3 C = a.R.transpose() * b.R;
@@ -221,7 +220,7 @@ Separation separateBoxes(const PosedSolid& a, const PosedSolid& b) {
   const Vec3 d_a = a.inwards(d), d_b = b.inwards(d);
   Separation best;
   best.gap = -std::numeric_limits<double>::infinity();
-  const double tolerance = kBetter * (half_a.maxCoeff() + half_b.maxCoeff());
+  const double tolerance = kBetterFace * (half_a.maxCoeff() + half_b.maxCoeff());
   const auto offer = [&](const Vec3& n, double along, double gap) {
     if (gap > best.gap + tolerance) best = {along < 0 ? Vec3(-n) : n, gap};
   };

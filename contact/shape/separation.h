@@ -17,7 +17,7 @@
 // At round rims gap is smooth, and Newton's method ends the search, on the sphere and on the circles across straight edges:
 //   g = a - b, tangential part;  Hessian = -(h_A'' + h_B'') - gap 1;     h'' from bendOf (convex_features.h)
 //
-// Without a guess the search begins from the nearest points, of solids that overlap from the best of: the nearest points of the solids inset
+// The search begins from the nearest points; of solids that overlap, from the best of: the nearest points of the solids inset
 // by 5 % of the least half width, the axes of both, the line of their origins, and Bullet's EPA. Deep overlap may end on one of several ways out that is longer than the
 // shortest.
 // Error: round-off.
@@ -34,9 +34,9 @@ struct Separation {
 // gap(n) for a unit `n`.
 double gapAlong(const PosedSolid& a, const PosedSolid& b, const Vec3& n);
 
-// The largest gap. `size` [m] is the order of magnitude of both; `guess`: where to begin, or null. Allocates nothing, always ends; deep overlap gives a direction that leads
-// out, if not the shortest.
-Separation separate(const PosedSolid& a, const PosedSolid& b, double size, const Vec3* guess);
+// The largest gap, or, where it is more than `reach` [m], any that is. `size` [m] is the order of magnitude of both. Allocates nothing, always
+// ends; deep overlap gives a direction that leads out, if not the shortest.
+Separation separate(const PosedSolid& a, const PosedSolid& b, double size, double reach = kInfinity);
 
 // The same for two boxes by trying all 15 kinks: exact where they overlap, and where a face or a pair of edges is nearest.
 // Source: S. Gottschalk, M. Lin, D. Manocha, "OBBTree", SIGGRAPH 1996, sec. 5.

@@ -38,6 +38,11 @@ class MeshFeatures {
     bool isUnder(const Vec3& q, double slack) const;
   };
   Triangle triangle(std::int32_t t) const;
+  bool meetsBox(std::int32_t t, const Vec3& low, const Vec3& high) const {  // the triangle's own box
+    const auto& v = cornersOf(t);
+    const Vec3 &a = vertex(v[0]), &b = vertex(v[1]), &c = vertex(v[2]);
+    return (a.cwiseMax(b).cwiseMax(c) - low).minCoeff() >= 0 && (high - a.cwiseMin(b).cwiseMin(c)).minCoeff() >= 0;
+  }
 
   struct Nearest {
     Vec3 p = Vec3::Zero();  // of the surface [m]

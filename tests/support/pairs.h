@@ -37,7 +37,7 @@ inline Pose around(RandomNumbers& random, const contact::Shape& a, const contact
   Pose X_BA{rotation(random), 0.1 * direction(random)};
   for (int i = 0; i < 8; ++i) {
     const contact::PosedSolid A{a, X_BA.q.toRotationMatrix(), X_BA.p}, B{b, Mat3::Identity(), Vec3::Zero()};
-    const contact::Separation s = contact::separate(A, B, 0.03, nullptr);
+    const contact::Separation s = contact::separate(A, B, 0.03);
     X_BA.p += (gap - s.gap + contact::roundingOf(a) + contact::roundingOf(b)) * s.n;
   }
   return X_BA;

@@ -78,7 +78,7 @@ TEST(ConvexPairs, NoDirectionPartsThemBetter) {
         const Pose X_BA = around(random, a.shape, b.shape, -random.uniform(1e-5, i < 4 ? 0.001 : 0.003));
         const PosedSolid A{a.shape, X_BA.q.toRotationMatrix(), X_BA.p}, B{b.shape, Mat3::Identity(), Vec3::Zero()};
         const bool boxes = std::holds_alternative<Box>(a.shape) && std::holds_alternative<Box>(b.shape);
-        const Separation s = boxes ? separateBoxes(A, B) : separate(A, B, 0.03, nullptr);
+        const Separation s = boxes ? separateBoxes(A, B) : separate(A, B, 0.03);
         double best = -1;
         for (int k = 0; k < 400; ++k) best = std::max(best, gapAlong(A, B, direction(random)));
         for (double reach = 0.3; reach > 1e-7; reach /= 2) {
@@ -91,7 +91,7 @@ TEST(ConvexPairs, NoDirectionPartsThemBetter) {
 }
 
 // Each contact point lies midway between a point of a's surface and one of b's. But a corner beside the other's facet by less than 1e-6 of
-// the size counts as over it: that happens to 1 of some thousand.
+// the size counts as over it, and by less than 1e-5 of it where two corners overlap and no facets do: that happens to 1 of some thousand.
 TEST(ConvexPairs, PointsLieBetweenTheTwoSurfaces) {
   RandomNumbers random(3);
   int points_seen = 0, beside = 0;
@@ -107,7 +107,7 @@ TEST(ConvexPairs, PointsLieBetweenTheTwoSurfaces) {
                                       std::abs(nearest(b.shape, p.p_W - 0.5 * p.phi * p.n_W)));
           ++points_seen;
           if (off > 1e-9) ++beside;
-          ASSERT_LE(off, 5e-8) << a.name << " at " << b.name;
+          ASSERT_LE(off, 1e-6) << a.name << " at " << b.name;
         }
       }
     }
