@@ -151,7 +151,11 @@ TEST_P(RealMeshes, AreTouchedWithoutFailure) {
     c = touch(*object, C, r, tracker);
     held += (tracker.status & kQueryHeldDirection) != 0;
     ASSERT_TRUE(c.n_B.allFinite() && c.p_BS.allFinite() && std::isfinite(c.phi)) << i;
-    ASSERT_LT((C - c.p_BS - (c.phi + r) * c.n_B).norm(), 1e-14) << i;
+    // The centre lies on the normal over the place, at the gap; a contact that came or went in overlap is answered with a larger one.
+    const Vec3 miss = C - c.p_BS - (c.phi + r) * c.n_B;
+    const double ease = (tracker.status & kQueryEased) != 0 ? -miss.dot(c.n_B) : 0;
+    ASSERT_LT((miss + ease * c.n_B).norm(), 1e-14) << i;
+    ASSERT_GE(ease, -1e-14) << i;
   }
   EXPECT_LE(held, ticks / 500);
 }
