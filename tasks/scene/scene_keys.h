@@ -34,7 +34,8 @@ inline constexpr std::array<Word, 3> kCylinder = {"type", "radius", "length"};
 inline constexpr std::array<Word, 4> kCylinderWithFlat = {"type", "radius", "length", "flat_distance"};
 inline constexpr std::array<Word, 3> kHalfSpace = {"type", "normal", "point"};
 inline constexpr std::array<Word, 2> kDish = {"type", "radius"};
-inline constexpr std::array<Word, 7> kMesh = {"type", "file", "units", "scale", "crease_angle", "file_normals", "shading"};
+inline constexpr std::array<Word, 9> kMesh = {"type",     "file",         "units",        "scale",  "lathe",
+                                              "segments", "crease_angle", "file_normals", "shading"};
 inline constexpr std::array<Word, 5> kConvex = {"type", "points", "file", "units", "scale"};
 
 }  // namespace pincer::tasks::keys

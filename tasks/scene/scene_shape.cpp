@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "contact/mesh/lathe.h"
 #include "contact/mesh/mesh_reader.h"
 #include "contact/mesh/mesh_report.h"
 #include "contact/shape/polytope.h"
@@ -41,6 +42,32 @@ contact::TriangleMesh readTriangles(const JsonValue& json, const std::string& sc
   return contact::readMesh(path, {.metres_per_unit = contact::metresPerUnit(units) * (scale ? scale->number(kScale) : 1)});
 }
 
+Vec2 readProfilePoint(const JsonValue& json) {
+  const std::vector<JsonValue>& numbers = json.array();
+  if (numbers.size() != 2) json.reject("must be two numbers: the distance from the axis and the height, in metres.");
+  return {numbers[0].number(kCoordinate), numbers[1].number(kCoordinate)};
+}
+
+contact::TriangleMesh readLathe(const JsonValue& json, const JsonValue& profile) {
+  for (const std::string_view key : {"units", "scale", "file_normals"}) {
+    if (const JsonValue* other = json.find(key)) other->reject("goes with \"file\" only: a \"lathe\" is in metres.");
+  }
+  std::vector<Vec2> points;
+  for (const JsonValue& point : profile.array()) points.push_back(readProfilePoint(point));
+  const JsonValue* segments = json.find("segments");
+  return contact::lathe(points, segments ? segments->integer(3, 1000, "Facets around the axis; 48 is the default.") : 48);
+}
+
+// From a file, or turned.
+contact::TriangleMesh readClosedTriangles(const JsonValue& json, const std::string& scene_file) {
+  const JsonValue* profile = json.find("lathe");
+  if ((profile != nullptr) == (json.find("file") != nullptr))
+    json.reject("needs either \"file\" or \"lathe\": a mesh's file, or the profile of a turned solid.");
+  if (profile) return readLathe(json, *profile);
+  if (const JsonValue* segments = json.find("segments")) segments->reject("goes with \"lathe\" only.");
+  return readTriangles(json, scene_file);
+}
+
 contact::SurfaceOptions readSurfaceOptions(const JsonValue& json) {
   contact::SurfaceOptions options;
   if (const JsonValue* angle = json.find("crease_angle")) {
@@ -57,7 +84,7 @@ contact::SurfaceOptions readSurfaceOptions(const JsonValue& json) {
 contact::Shape readMesh(const JsonValue& json, const std::string& scene_file) {
   const contact::SurfaceOptions options = readSurfaceOptions(json);
   try {
-    contact::TriangleMesh triangles = readTriangles(json, scene_file);
+    contact::TriangleMesh triangles = readClosedTriangles(json, scene_file);
     contact::requireClosed(triangles);
     return contact::Mesh{contact::SmoothMesh::build(std::move(triangles), options)};
   } catch (const InputError& error) {

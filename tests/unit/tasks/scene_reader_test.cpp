@@ -6,9 +6,11 @@
 
 #include "contact/shape/finger_query.h"
 #include "contact/surface/patch_cache.h"
+#include "contact/surface/smooth_mesh.h"
 #include "tasks/scene/scene.h"
 #include "tasks/scene/scene_keys.h"
 #include "tasks/scene/strict_json.h"
+#include "tests/support/error_of.h"
 #include "tests/support/temporary_directory.h"
 
 namespace pincer::tasks {
@@ -115,6 +117,17 @@ TEST(SceneReader, GivesPairsTheirOwnMaterial) {
 TEST(SceneReader, MultipliesDensityByVolume) {
   const Scene scene = parseScene(sceneWith(", \"density\": 1000"), "s.json");
   EXPECT_NEAR(scene.bodies[0].mass, 1000 * 4.0 / 3 * 3.14159265358979 * 8e-6, 1e-15);
+}
+
+TEST(SceneReader, TurnsASolidOnTheLathe) {
+  const auto read = [](const std::string& json) { return parseScene(sceneWithShape(json), "s.json"); };
+  const Scene cone = read(R"({"type": "mesh", "lathe": [[0, 0], [0.02, 0], [0, 0.03]], "segments": 12})");
+  EXPECT_EQ(std::get<contact::Mesh>(cone.bodies[0].shape).surface->triangles().triangles.size(), 24u);
+  const auto error = [&](const std::string& json) { return tests::errorOf([&] { read(json); }); };
+  EXPECT_NE(error(R"({"type": "mesh", "lathe": [[0, 0], [0, 0.02], [0, 0.03]]})").find("profile[1]"), std::string::npos);
+  EXPECT_NE(error(R"({"type": "mesh", "lathe": [[0, 0], [0.02], [0, 0.03]]})").find("lathe[1]"), std::string::npos);
+  EXPECT_NE(error(R"({"type": "mesh"})").find("either"), std::string::npos);
+  EXPECT_NE(error(R"({"type": "mesh", "lathe": [[0, 0], [0.02, 0], [0, 0.03]], "units": "mm"})").find("goes with"), std::string::npos);
 }
 
 TEST(SceneReader, ReadsAMeshAndATrajectoryBesideTheScene) {
