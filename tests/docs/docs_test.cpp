@@ -1,0 +1,124 @@
+// The documentation is true: its commands run, the files that it names are there, and the API reference builds without a warning.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+#include <filesystem>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "tests/support/temporary_directory.h"
+
+namespace pincer::tests {
+namespace {
+
+namespace fs = std::filesystem;
+const fs::path kSource = PINCER_SOURCE_DIR;
+
+std::vector<std::string> pages() {
+  std::vector<std::string> found = {"README.md"};
+  for (const auto& entry : fs::recursive_directory_iterator(kSource / "docs")) {
+    if (entry.path().extension() == ".md") found.push_back(fs::relative(entry.path(), kSource).string());
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+std::vector<std::string> matches(const std::string& text, const std::regex& pattern) {
+  std::vector<std::string> found;
+  for (std::sregex_iterator it(text.begin(), text.end(), pattern), end; it != end; ++it) found.push_back((*it)[1]);
+  return found;
+}
+
+// Commands of a page in their order: lines of code blocks and code within lines, but for those with a placeholder in capitals.
+std::vector<std::string> commandsOf(const std::string& page) {
+  static const std::regex pattern(R"((?:\n    |\n\$ |`)(?:build/)?(pincer [a-z][^`#\n]*))"), placeholder(R"(\b[A-Z]{2,}\b|\.\.\.)");
+  std::vector<std::string> commands;
+  for (std::string command : matches('\n' + readFile(kSource / page), pattern)) {
+    command.erase(command.find_last_not_of(" &") + 1);
+    if (!std::regex_search(command, placeholder)) commands.push_back(command);
+  }
+  return commands;
+}
+
+// What the pages show takes minutes; the test runs less of the same.
+struct Shorter {
+  std::regex in_docs;
+  std::string instead;
+};
+const std::vector<Shorter> kShorter = {
+    {std::regex("^(pincer bench .*) --peers"), "$1"},  // other engines aren't built in
+    {std::regex("^(pincer (bench|verify|stress)( .*)?)$"), "$1 --list"},
+    {std::regex("^(pincer run sphere-pickup --object .*)$"), "$1 --repetitions 1 --friction 0.9 --condition cld+force"},
+    {std::regex("^(pincer run findings.*)$"), "$1 --help"},
+    {std::regex("^(pincer run .*)--participants [0-9]+(.*)$"), "$1--participants 1$2"},
+};
+
+std::string shortened(std::string command) {
+  for (const Shorter& shorter : kShorter) command = std::regex_replace(command, shorter.in_docs, shorter.instead);
+  return command;
+}
+
+// A folder like a checkout after a build, with the files that the pages take for granted.
+void furnish(const fs::path& folder) {
+  fs::create_directories(folder / "build");
+  fs::create_symlink(fs::path(PINCER_BINARY_DIR) / "pincer", folder / "build/pincer");
+  for (const char* part : {"tasks", "docs"}) fs::create_symlink(kSource / part, folder / part);
+  fs::copy_file(kSource / "tasks/scenes/files/star_knob.obj", folder / "part.obj");
+  const std::string scan = fmt::format("cd '{}' && build/pincer mesh convert part.obj scan.stl --units mm > furnish.log", folder.string());
+  ASSERT_EQ(std::system(scan.c_str()), 0) << readFile(folder / "furnish.log");
+}
+
+class DocsPage : public testing::TestWithParam<std::string> {};
+
+TEST_P(DocsPage, ShowsCommandsThatRun) {
+  const TemporaryDirectory folder;
+  furnish(folder.path());
+  std::set<std::string> seen;
+  for (const std::string& shown : commandsOf(GetParam())) {
+    const std::string command = shortened(shown);
+    if (!seen.insert(command).second) continue;
+    const std::string line =
+        fmt::format("cd '{}' && PATH=build:$PATH timeout 120 {} > command.log 2>&1 < /dev/null", folder.path(), command);
+    const bool ok = std::system(line.c_str()) == 0;
+    const std::string said = readFile(folder / "command.log");
+    const bool is_mention = said.find(" is required") != std::string::npos;  // a text may speak of `pincer sim` without a scene
+    EXPECT_TRUE(ok || is_mention) << GetParam() << " shows: " << shown << "\nrun as: " << command << "\n" << said.substr(0, 2000);
+  }
+}
+
+// `contact/mesh/lathe.h`, `docs/scenes.md`; a folder; a list as in `mesh_report.h` without a folder isn't looked for.
+TEST_P(DocsPage, NamesFilesThatAreThere) {
+  static const std::regex pattern(R"(`((?:contact|engine|grasp|devices|tasks|tests|docs|\.ci)/[A-Za-z0-9_./-]+)`)"),
+      link(R"(\]\(([^)#:]+)\))");
+  const std::string text = readFile(kSource / GetParam());
+  for (const std::string& file : matches(text, pattern)) EXPECT_TRUE(fs::exists(kSource / file)) << GetParam() << " names " << file;
+  for (const std::string& file : matches(text, link)) {
+    EXPECT_TRUE(fs::exists((kSource / GetParam()).parent_path() / file)) << GetParam() << " links to " << file;
+  }
+}
+
+std::string pageTestName(const testing::TestParamInfo<std::string>& info) {
+  std::string name = info.param;
+  std::replace_if(
+      name.begin(), name.end(), [](unsigned char c) { return !std::isalnum(c); }, '_');
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, DocsPage, testing::ValuesIn(pages()), pageTestName);
+
+TEST(ApiReference, IsBuiltWithoutAWarning) {
+  const TemporaryDirectory folder;
+  const std::string line =
+      fmt::format("cd '{}' && {{ cat docs/Doxyfile; echo 'OUTPUT_DIRECTORY = \"{}\"'; }} | doxygen - > '{}/doxygen.log' 2>&1",
+                  kSource.string(), folder.path(), folder.path());
+  EXPECT_EQ(std::system(line.c_str()), 0) << readFile(folder / "doxygen.log").substr(0, 4000);
+  EXPECT_TRUE(fs::exists(folder / "html/index.html"));
+}
+
+}  // namespace
+}  // namespace pincer::tests
