@@ -85,6 +85,7 @@ TickState makePickupState(const PickupScene& scene) {
   TickState state;
   state.grasp = grasp::makeState(scene.model.grasp, scene.starts, {scene.homes_W.begin(), scene.homes_W.end()});
   state.mounts.resize(scene.model.mounts.size());
+  if (scene.model.passivity.on) state.passivity = grasp::PassivityState(scene.model.mounts.size());
   for (MountState& mount : state.mounts) devices::arm(mount.gate);
   return state;
 }

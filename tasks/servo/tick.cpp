@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "grasp/passivity/energy_ledger.h"
+
 namespace pincer::tasks {
 namespace {
 
@@ -51,6 +53,22 @@ Vec3 gatedForce(const TickModel& model, MountState& mount, const FingerMount& co
   return devices::gateForce(config.gate, in, mount.gate);
 }
 
+// Before the gate: what it changes in the wanted forces is limited like they are.
+void keepPassive(const TickModel& model, TickState& state, TickScratch& scratch) {
+  if (state.passivity.ports.size() != model.mounts.size()) return;
+  const double h = model.grasp.world.options.h;
+  for (std::size_t i = 0; i < model.mounts.size(); ++i) scratch.p_WF[i] = state.mounts[i].p_WF;
+  grasp::observePorts(model.passivity, scratch.p_WF, grasp::storedEnergy(model.grasp, state.grasp), h, state.passivity);
+  grasp::controlPorts(model.passivity, h, state.passivity, scratch.f_user_W);
+}
+
+// After it: what the motors will hold is what counts.
+void watchPorts(const TickModel& model, TickState& state, TickScratch& scratch) {
+  if (state.passivity.ports.size() != model.mounts.size()) return;
+  for (std::size_t i = 0; i < model.mounts.size(); ++i) scratch.f_user_W[i] = model.mounts[i].X_WD.q * scratch.outputs[i].f_D;
+  grasp::holdPorts(scratch.f_user_W, state.passivity);
+}
+
 devices::TactileCommand tactorTarget(const TickModel& model, MountState& mount, const FingerMount& config,
                                      const grasp::FingerReport& finger) {
   devices::PadInput in;
@@ -65,18 +83,26 @@ devices::TactileCommand tactorTarget(const TickModel& model, MountState& mount, 
 
 }  // namespace
 
-TickScratch::TickScratch(const TickModel& model) : grasp(model.grasp), inputs(model.mounts.size()), outputs(model.mounts.size()) {}
+TickScratch::TickScratch(const TickModel& model)
+    : grasp(model.grasp),
+      inputs(model.mounts.size()),
+      p_WF(model.mounts.size()),
+      f_user_W(model.mounts.size()),
+      outputs(model.mounts.size()) {}
 
 engine::StepReport tick(const TickModel& model, TickState& state, TickScratch& scratch, const std::vector<FingerInputs>& inputs,
                         double now) {
   const int n = static_cast<int>(model.mounts.size());
   for (int i = 0; i < n; ++i) locateFinger(model, state, i, inputs[i].arm, scratch.inputs[i]);
   const engine::StepReport report = grasp::step(model.grasp, state.grasp, scratch.grasp, scratch.inputs);
+  for (int i = 0; i < n; ++i) scratch.f_user_W[i] = scratch.grasp.fingers[i].f_user_W;
+  keepPassive(model, state, scratch);
   for (int i = 0; i < n; ++i) {
     const grasp::FingerReport& finger = scratch.grasp.fingers[i];
-    scratch.outputs[i].f_D = gatedForce(model, state.mounts[i], model.mounts[i], inputs[i].arm, finger.f_user_W, now, report.status);
+    scratch.outputs[i].f_D = gatedForce(model, state.mounts[i], model.mounts[i], inputs[i].arm, scratch.f_user_W[i], now, report.status);
     scratch.outputs[i].tactile = tactorTarget(model, state.mounts[i], model.mounts[i], finger);
   }
+  watchPorts(model, state, scratch);
   return report;
 }
 

@@ -1,7 +1,9 @@
 // tick: where devices and physics meet. A pure function: the same model, state and samples give the same bits, in a live session, in a batch
 // and in a replay.
 //
-//   device samples -> finger poses -> grasp step -> last gate -> forces for the arms, places for the CLDs
+//   device samples -> finger poses -> grasp step -> passivity -> last gate -> forces for the arms, places for the CLDs
+//
+// Passivity works on all fingers together, so it stands here and not in the gate of one arm; it watches what the gate let through.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -11,6 +13,7 @@
 #include "devices/cld/pad_policy.h"
 #include "devices/cld/tactile_display.h"
 #include "devices/gate/force_gate.h"
+#include "grasp/passivity/passivity.h"
 #include "grasp/step.h"
 
 namespace pincer::tasks {
@@ -25,8 +28,9 @@ struct FingerMount {
 
 struct TickModel {
   grasp::GraspModel grasp;
-  std::vector<FingerMount> mounts;  // one per finger
-  double velocity_cutoff = 60;      // of the low-pass on finger velocity [Hz]
+  std::vector<FingerMount> mounts;    // one per finger
+  double velocity_cutoff = 60;        // of the low-pass on finger velocity [Hz]
+  grasp::PassivityOptions passivity;  // off unless switched on: simulated arms need none, motors do
 };
 
 struct FingerInputs {
@@ -46,6 +50,7 @@ struct MountState {
 struct TickState {
   grasp::GraspState grasp;
   std::vector<MountState> mounts;
+  grasp::PassivityState passivity;  // with one port per finger; empty: nobody watches
 };
 
 struct FingerOutputs {
@@ -57,6 +62,7 @@ struct TickScratch {
   explicit TickScratch(const TickModel& model);
   grasp::GraspScratch grasp;
   std::vector<grasp::FingerInput> inputs;
+  std::vector<Vec3> p_WF, f_user_W;    // of the fingers, for passivity
   std::vector<FingerOutputs> outputs;  // the tick's result, one per finger
 };
 

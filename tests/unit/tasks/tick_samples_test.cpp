@@ -1,6 +1,7 @@
 // The tick as a function of model, state and samples: its purity, its frames, and what it does with samples that can't be trusted.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -270,6 +271,45 @@ TEST(Tick, ParksTheTactorInTheForceOnlyCondition) {
   rig.run(200);
   EXPECT_TRUE(rig.scratch.outputs[0].tactile.parked);
   EXPECT_FALSE(rig.scratch.outputs[1].tactile.parked);
+}
+
+// Passivity observes what the gate let through, in the world's frame, whatever the arms' frames are.
+TEST(Tick, PassivityCountsTheForceThatTheGateLetThrough) {
+  LiveRig rig;
+  rig.state.passivity = grasp::PassivityState(2);
+  double energy = 0;
+  std::array<Vec3, 2> held_W = {Vec3::Zero(), Vec3::Zero()}, last_W = held_W;
+  for (int k = 0; k < 300; ++k) {
+    const std::vector<FingerInputs> samples = samplesAt(rig.model, rig.next);
+    rig.step(samples);
+    for (std::size_t i = 0; i < 2; ++i) {
+      const Pose& X_WD = rig.model.mounts[i].X_WD;
+      const Vec3 p_W = X_WD * samples[i].arm.p_DF;
+      if (k > 0) energy -= held_W[i].dot(p_W - last_W[i]);
+      last_W[i] = p_W;
+      held_W[i] = X_WD.q * rig.force(i);
+    }
+  }
+  EXPECT_GT(std::abs(energy), 1e-4);
+  EXPECT_NEAR(rig.state.passivity.energy(), energy, 1e-12);
+}
+
+// Off, but watching, nothing that reaches a motor changes by a bit; on, fingers that take out what they never brought in (here the ball's height,
+// as they let it down from where it began) are braked.
+TEST(Tick, PassivityChangesForcesOnlyWhereItIsOn) {
+  Rig plain, watched, braked;
+  watched.state.passivity = braked.state.passivity = grasp::PassivityState(2);
+  braked.model.passivity.on = true;
+  Recording recording = record(plain.model, 0, 400);
+  for (std::vector<FingerInputs>& samples : recording) {
+    for (std::size_t i = 0; i < 2; ++i) {
+      samples[i].arm.p_DF -= plain.model.mounts[i].X_WD.q.conjugate() * Vec3(0, 0, 0.1 * samples[i].arm.time);
+    }
+  }
+  const Trace reference = play(plain.model, plain.state, recording, 0);
+  EXPECT_EQ(play(watched.model, watched.state, recording, 0), reference);
+  EXPECT_FALSE(play(braked.model, braked.state, recording, 0) == reference);
+  EXPECT_GT(braked.state.passivity.acted, 0);
 }
 
 }  // namespace
