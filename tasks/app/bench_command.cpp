@@ -8,6 +8,7 @@
 #include "tasks/app/measure_command.h"
 #include "tasks/bench/contact_bench.h"
 #include "tasks/bench/engine/engine_bench.h"
+#include "tasks/bench/study_bench.h"
 
 namespace pincer::tasks {
 namespace {
@@ -32,10 +33,19 @@ Examples:
   pincer bench engine --peers --out out/bench
   pincer bench engine --peers --long --only capsule)";
 
+constexpr const char* kStudyExample = R"(
+Staircases, fitted psychometric functions and orders of conditions, judged by observers whose thresholds are known. Exit code 1 if a promise
+isn't kept.
+
+Examples:
+  pincer bench study
+  pincer bench study --only staircase --observers 20000)";
+
 struct BenchArguments {
   MeasureOptions measure;
   ContactBenchOptions contact;
   EngineBenchOptions engine;
+  StudyBenchOptions study;
 };
 
 void addContactBench(CLI::App& bench, const std::shared_ptr<BenchArguments>& arguments, int& exit_code) {
@@ -67,6 +77,15 @@ void addEngineBench(CLI::App& bench, const std::shared_ptr<BenchArguments>& argu
       [arguments, &exit_code] { exit_code = runMeasurements(engineMeasurements(arguments->engine), arguments->measure, "bench engine"); });
 }
 
+void addStudyBench(CLI::App& bench, const std::shared_ptr<BenchArguments>& arguments, int& exit_code) {
+  CLI::App* study = bench.add_subcommand("study", "Staircases and fits, on observers whose thresholds are known");
+  addMeasureOptions(*study, arguments->measure);
+  study->add_option("--observers", arguments->study.observers, "Per measurement")->check(CLI::Range(100, 1'000'000))->capture_default_str();
+  study->footer(kStudyExample);
+  study->callback(
+      [arguments, &exit_code] { exit_code = runMeasurements(studyMeasurements(arguments->study), arguments->measure, "bench study"); });
+}
+
 }  // namespace
 
 void addBenchCommand(CLI::App& app, int& exit_code) {
@@ -76,6 +95,7 @@ void addBenchCommand(CLI::App& app, int& exit_code) {
   bench->footer("\nExample:\n  pincer bench contact --only cost");
   addContactBench(*bench, arguments, exit_code);
   addEngineBench(*bench, arguments, exit_code);
+  addStudyBench(*bench, arguments, exit_code);
 }
 
 }  // namespace pincer::tasks

@@ -99,6 +99,28 @@ void forEachColumn(R& r, Visit&& visit) {
   visit(ColumnName{"", "tick_p999", "", "us"}, r.tick_us_p999);
 }
 
+template <RecordOf<ResponseRecord> R, class Visit>
+void forEachColumn(R& r, Visit&& visit) {
+  visit(ColumnName{"", "trial", "", ""}, r.trial);
+  visit(ColumnName{"", "participant", "", ""}, r.participant);
+  visit(ColumnName{"", "condition", "", ""}, r.condition);
+  visit(ColumnName{"", "run", "", ""}, r.run);
+  visit(ColumnName{"", "place_in_run", "", ""}, r.index);
+  visit(ColumnName{"", "stimulus", "", ""}, r.stimulus);
+  visit(ColumnName{"", "level", "", "si"}, r.level);
+  visit(ColumnName{"", "interval", "", ""}, r.interval);
+  visit(ColumnName{"", "answer", "", ""}, r.answer);
+  visit(ColumnName{"", "answer_value", "", "si"}, r.answer_value);
+  visit(ColumnName{"", "correct", "", ""}, r.correct);
+  visit(ColumnName{"", "reversal", "", ""}, r.reversal);
+  visit(ColumnName{"", "outcome", "", ""}, r.outcome);
+  visit(ColumnName{"", "duration", "", "s"}, r.duration);
+  visit(ColumnName{"", "response_time", "", "s"}, r.response_time);
+  visit(ColumnName{"", "contact_share", "", ""}, r.contact_share);
+  visit(ColumnName{"", "finger_speed", "", "m_per_s"}, r.finger_speed);
+  visit(ColumnName{"", "tactor_speed", "", "m_per_s"}, r.tactor_speed);
+}
+
 template <RecordOf<SessionInfo> R, class Visit>
 void forEachColumn(R& r, Visit&& visit) {
   visit(ColumnName{"", "task", "", ""}, r.task);

@@ -57,6 +57,28 @@ struct TrialRecord {
   double tick_us_median = 0, tick_us_p999 = 0;
 };
 
+// What somebody answered in one trial of a psychophysical experiment, written when the trial ends and durable before the next begins.
+struct ResponseRecord {
+  std::int64_t trial = 0;
+  std::int64_t participant = 0;
+  std::string condition;      // of the experiment
+  std::int64_t run = 0;       // of the participant: one staircase, one list of trials
+  std::int64_t index = 0;     // place within the run
+  std::string stimulus;       // what was shown, where that has a name: "cone", "place 2"; else empty
+  double level = 0;           // what was shown, as a number, in SI units: angle, backlash, delay, place; NaN if it has none
+  std::int64_t interval = 0;  // 1 or 2: in which of two intervals it was; 0 where there is one only
+  std::string answer;         // in words: "2", "cylinder", "0.0014"
+  double answer_value = 0;    // the same as a number; NaN if it has none
+  std::int64_t correct = 0;   // 1 right, 0 wrong
+  std::int64_t reversal = 0;  // 1: the staircase turned at this level
+  std::string outcome;        // "answered", "fault"
+  double duration = 0;        // of the stimuli [s]
+  double response_time = 0;   // from the last stimulus to the answer [s]
+  double contact_share = 0;   // share of the duration in which the finger touched [-]
+  double finger_speed = 0;    // mean over the time in which the finger touched and moved [m/s]; NaN if it didn't
+  double tactor_speed = 0;    // mean over the time in which the tactor moved [m/s]; NaN if it didn't
+};
+
 struct SessionInfo {
   std::string task;  // "sphere-pickup"
   std::uint64_t seed = 0;

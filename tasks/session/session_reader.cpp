@@ -56,7 +56,7 @@ const std::string& SessionReader::path() const { return database_->path(); }
 bool SessionReader::complete() const { return state_ == kStateComplete; }
 
 std::string SessionReader::warning() const {
-  const std::int64_t trials = database_->integer("SELECT count(*) FROM trial");
+  const std::int64_t trials = database_->integer("SELECT (SELECT count(*) FROM trial) + (SELECT count(*) FROM response)");
   std::string text;
   if (state_ == kStateRunning) {
     text = fmt::format("This session was not completed: it still runs or was killed. It holds {} finished trials.", trials);
@@ -69,6 +69,7 @@ std::string SessionReader::warning() const {
 }
 
 std::vector<TrialRecord> SessionReader::trials() const { return readAll<TrialRecord>(*database_, ""); }
+std::vector<ResponseRecord> SessionReader::responses() const { return readAll<ResponseRecord>(*database_, ""); }
 std::vector<EventRecord> SessionReader::events(std::optional<std::int64_t> trial) const {
   return readAll<EventRecord>(*database_, whereTrial(trial));
 }

@@ -43,9 +43,10 @@ class SessionWriter {
 
   // From one thread, outside of the real-time tick.
   void addEvent(const EventRecord& event);
-  void finishTrial(const TrialRecord& trial);   // returns once the trial and all that was pushed before are durable
-  void close();                                 // final flush, state "complete", one plain file without a log beside it
-  void abort(const std::string& why) noexcept;  // final flush, state "aborted: <why>"
+  void finishTrial(const TrialRecord& trial);           // returns once the trial and all that was pushed before are durable
+  void finishResponse(const ResponseRecord& response);  // likewise
+  void close();                                         // final flush, state "complete", one plain file without a log beside it
+  void abort(const std::string& why) noexcept;          // final flush, state "aborted: <why>"
 
  private:
   class Impl;
@@ -74,7 +75,8 @@ class SessionReader {
   bool complete() const;
   std::string warning() const;  // a sentence for a person if the session isn't complete or lost samples; else empty
 
-  std::vector<TrialRecord> trials() const;  // in order of time
+  std::vector<TrialRecord> trials() const;        // in order of time
+  std::vector<ResponseRecord> responses() const;  // in order of time
   std::vector<EventRecord> events(std::optional<std::int64_t> trial = {}) const;
   void forEachSample(const SampleFilter& filter, const std::function<void(const SampleRecord&)>& take) const;
 

@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <thread>
 #include <utility>
+#include <variant>
 
 #include "contact/error.h"
 #include "tasks/session/ring.h"
@@ -71,6 +72,7 @@ void makeTables(Database& d, const SessionOptions& options) {
   d.run(fmt::format("CREATE TABLE trial ({})", columnList<TrialRecord>(true)));
   d.run(fmt::format("CREATE TABLE sample ({})", columnList<SampleRecord>(true)));
   d.run(fmt::format("CREATE TABLE event ({})", columnList<EventRecord>(true)));
+  d.run(fmt::format("CREATE TABLE response ({})", columnList<ResponseRecord>(true)));
   d.run("CREATE INDEX sample_of_trial ON sample (trial)");
 }
 
@@ -83,6 +85,8 @@ std::string nowUtc() {
 
 class SessionWriter::Impl {
  public:
+  using FinishedTrial = std::variant<TrialRecord, ResponseRecord>;
+
   Impl(const std::string& path, const SessionInfo& info, const SessionOptions& options)
       : options_(options), ring_(options.ring_capacity), database_(path, Database::Mode::kWrite) {
     makeTables(database_, options);
@@ -107,10 +111,10 @@ class SessionWriter::Impl {
     events_.push_back(event);
   }
 
-  void finishTrial(const TrialRecord& trial) {
+  void finish(FinishedTrial trial) {
     std::unique_lock lock(mutex_);
     throwIfEnded();
-    trial_ = trial;
+    trial_ = std::move(trial);
     wake_.notify_one();
     done_.wait(lock, [this] { return !trial_ || ended_; });
     throwIfEnded();
@@ -140,12 +144,17 @@ class SessionWriter::Impl {
  private:
   struct Statements {
     explicit Statements(const Database& d)
-        : sample(d, insertSql<SampleRecord>()), event(d, insertSql<EventRecord>()), trial(d, insertSql<TrialRecord>()) {}
-    Statement sample, event, trial;
+        : sample(d, insertSql<SampleRecord>()),
+          event(d, insertSql<EventRecord>()),
+          trial(d, insertSql<TrialRecord>()),
+          response(d, insertSql<ResponseRecord>()) {}
+    void insert(const TrialRecord& record) { insertRow(trial, record); }
+    void insert(const ResponseRecord& record) { insertRow(response, record); }
+    Statement sample, event, trial, response;
   };
   struct Batch {
     std::vector<EventRecord> events;
-    std::optional<TrialRecord> trial;
+    std::optional<FinishedTrial> trial;
     bool last = false;
   };
 
@@ -175,7 +184,7 @@ class SessionWriter::Impl {
     ring_.drain([this](const SampleRecord& sample) { insertRow(statements_->sample, sample); });
     for (const EventRecord& event : batch.events) insertRow(statements_->event, event);
     if (batch.trial) {
-      insertRow(statements_->trial, *batch.trial);
+      std::visit([this](const auto& trial) { statements_->insert(trial); }, *batch.trial);
       database_.run(fmt::format("UPDATE session SET samples_dropped = {}", dropped()));
     }
     database_.run("COMMIT");
@@ -242,7 +251,7 @@ class SessionWriter::Impl {
   std::mutex mutex_;  // guards events_ .. failure_
   std::condition_variable wake_, done_;
   std::vector<EventRecord> events_;
-  std::optional<TrialRecord> trial_;
+  std::optional<FinishedTrial> trial_;
   bool stopping_ = false, space_wanted_ = false;
   std::string failure_;
   std::atomic<bool> ended_{false};
@@ -267,7 +276,8 @@ SessionWriter::~SessionWriter() = default;
 bool SessionWriter::pushSample(const SampleRecord& sample) noexcept { return impl_->push(sample); }
 std::uint64_t SessionWriter::droppedSamples() const noexcept { return impl_->dropped(); }
 void SessionWriter::addEvent(const EventRecord& event) { impl_->addEvent(event); }
-void SessionWriter::finishTrial(const TrialRecord& trial) { impl_->finishTrial(trial); }
+void SessionWriter::finishTrial(const TrialRecord& trial) { impl_->finish(trial); }
+void SessionWriter::finishResponse(const ResponseRecord& response) { impl_->finish(response); }
 void SessionWriter::close() { impl_->close(); }
 void SessionWriter::abort(const std::string& why) noexcept { impl_->abort(why); }
 

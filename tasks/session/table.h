@@ -5,6 +5,7 @@
 //   trial      TrialRecord    finished trial
 //   sample     SampleRecord   recorded tick
 //   event      EventRecord    event
+//   response   ResponseRecord finished trial of a psychophysical experiment
 #pragma once
 #include <fmt/format.h>
 
@@ -18,7 +19,7 @@
 namespace pincer::tasks {
 
 constexpr std::int64_t kApplicationId = 0x504e4352;  // "PNCR", in SQLite's header
-constexpr std::int64_t kFormat = 1;                  // raised whenever a column changes
+constexpr std::int64_t kFormat = 2;                  // raised whenever a column changes
 
 constexpr std::string_view kStateRunning = "running", kStateComplete = "complete", kStateAborted = "aborted: ";
 
@@ -28,6 +29,7 @@ constexpr std::string_view tableName() {
   if constexpr (std::is_same_v<Record, TrialRecord>) return "trial";
   if constexpr (std::is_same_v<Record, SampleRecord>) return "sample";
   if constexpr (std::is_same_v<Record, EventRecord>) return "event";
+  if constexpr (std::is_same_v<Record, ResponseRecord>) return "response";
 }
 
 template <class Field>
