@@ -46,9 +46,10 @@ Spread overObservers(const StaircaseRule& rule, int observers, MeasureContext& c
   return {mean, std::sqrt(squares / n - mean * mean), trials / observers, lost};
 }
 
-// Long enough and in steps small enough to reach the point of convergence: what a study that needs the threshold itself should take.
+// Long enough, and in steps small enough, to forget the start and reach the point of convergence: what a study that needs the threshold
+// itself should take.
 StaircaseRule carefulRule() {
-  return {.start = 2, .large_step = 0.2, .small_step = 0.05, .large_reversals = 4, .reversals = 24, .averaged = 16};
+  return {.start = 2, .large_step = 0.2, .small_step = 0.05, .large_reversals = 6, .reversals = 36, .averaged = 24};
 }
 
 std::vector<Record> staircaseRecords(const StaircaseRule& rule, int observers, double bound, MeasureContext& context) {
@@ -82,8 +83,8 @@ std::vector<Measurement> publishedStaircases(int observers) {
           staircaseMeasurement("staircase/as-delay", delay, observers, kNoPromise)};
 }
 
-// Bias against the step, in units of the spread: Garcia-Perez (1998) found that equal steps up and down miss Levitt's point by more, the
-// larger they are. One start, so that nothing but the step differs.
+// Bias against the step: Garcia-Perez (1998) found that equal steps up and down miss Levitt's point by more, the larger they are beside the
+// spread. The start is the true threshold, so that nothing but the step differs.
 std::vector<Record> stepSizes(int observers, MeasureContext& context) {
   std::vector<Record> records;
   for (const double step : {0.05, 0.1, 0.2, 0.4, 0.8}) {

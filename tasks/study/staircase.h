@@ -5,9 +5,9 @@
 //
 //   p  probability of a right answer at the level [-]
 // Source: H. Levitt, "Transformed up-down methods in psychoacoustics", J. Acoust. Soc. Am. 49(2B), 1971, 467-477.
-// That point is reached for steps that are small beside the spread of the psychometric function. With larger steps of equal size up and
-// down the mean of reversals lies elsewhere, with 1-up 2-down above it where the start was (M. A. Garcia-Perez, "Forced-choice staircases
-// with fixed step sizes", Vision Res. 38(12), 1998, 1861-1881). `pincer bench study` measures by how much.
+// That point is reached for steps that are small beside the spread of the psychometric function. With equal steps up and down the mean of
+// reversals misses it by more, the larger they are (M. A. Garcia-Perez, "Forced-choice staircases with fixed step sizes", Vision Res. 38(12),
+// 1998, 1861-1881), and a few reversals still remember the start. `pincer bench study` measures both.
 // Departures: levels are kept within [lowest, highest]; a staircase ends after `most_trials` in any case, and then may have no threshold.
 #pragma once
 #include <limits>

@@ -91,10 +91,12 @@ TEST(SessionStore, KeepsResponsesToTheBit) {
     auto writer = SessionWriter::create(dir / "a.db", {});
     writer.pushSample(filled<SampleRecord>(1));
     for (std::int64_t k = 0; k < 3; ++k) writer.finishResponse(filled<ResponseRecord>(k));
-    const SessionReader running(dir / "a.db");  // each is durable, with what was pushed before, once finishResponse has returned
-    EXPECT_EQ(running.responses().size(), 3u);
-    EXPECT_EQ(samplesOf(running).size(), 1u);
-    EXPECT_NE(running.warning().find("holds 3 finished trials"), std::string::npos) << running.warning();
+    {  // each is durable, with what was pushed before, once finishResponse has returned
+      const SessionReader running(dir / "a.db");
+      EXPECT_EQ(running.responses().size(), 3u);
+      EXPECT_EQ(samplesOf(running).size(), 1u);
+      EXPECT_NE(running.warning().find("holds 3 finished trials"), std::string::npos) << running.warning();
+    }
     writer.close();
   }
   const SessionReader reader(dir / "a.db");

@@ -14,7 +14,7 @@ TEST(Staircase, FollowsLevittsTransformedRule) {
   Staircase s({.start = 10, .large_step = 4, .small_step = 1, .large_reversals = 1, .reversals = 4, .averaged = 2});
   // right right: down by 4; wrong: up, a reversal, by then in small steps; and so on.
   const std::vector<std::pair<bool, double>> story{{true, 10}, {true, 6},  {true, 6}, {false, 7}, {true, 7},
-                                                   {true, 6},  {false, 7}, {true, 7}, {true, 6},  {true, 6}};
+                                                   {true, 6},  {false, 7}, {true, 7}, {true, 6}};
   for (const auto& [answer, level_after] : story) {
     ASSERT_FALSE(s.over());
     s.answer(answer);
