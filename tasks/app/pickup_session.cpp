@@ -15,10 +15,10 @@ class SessionSink final : public RecordSink {
  public:
   // Keeps every `stride`-th tick.
   SessionSink(SessionWriter& writer, std::int64_t stride) : writer_(writer), stride_(stride) {}
-  void sample(const SampleRecord& sample) override {
-    if (sample.tick % stride_ == 0) writer_.pushSample(sample);  // a lost one is counted by the store
-  }
+  bool wantsSample(std::int64_t tick) const override { return tick % stride_ == 0; }
+  void sample(const SampleRecord& sample) override { writer_.pushSample(sample); }  // a lost one is counted by the store
   void event(const EventRecord& event) override { writer_.addEvent(event); }
+  void reading(const ReadingRecord& reading) override { writer_.addReading(reading); }
   void trial(const TrialRecord& trial) override { writer_.finishTrial(trial); }
 
  private:
@@ -55,8 +55,15 @@ std::string devicesJson(const PickupSessionOptions& o) {
 }
 
 SessionInfo sessionInfo(const PickupSessionOptions& o) {
-  return {"sphere-pickup",    o.study.seed,          PINCER_VERSION, "compiler " __VERSION__,
-          sceneJson(o.study), protocolJson(o.study), devicesJson(o)};
+  return {"sphere-pickup",
+          o.study.seed,
+          PINCER_VERSION,
+          "compiler " __VERSION__,
+          sceneJson(o.study),
+          protocolJson(o.study),
+          devicesJson(o),
+          "",
+          ""};
 }
 
 }  // namespace

@@ -1,146 +1,29 @@
-#include <fmt/chrono.h>
-#include <fmt/format.h>
-
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <chrono>
-#include <ctime>
-#include <memory>
-#include <optional>
+#include <array>
 
-#include "tasks/app/app.h"
 #include "tasks/app/commands.h"
-#include "tasks/app/interrupt.h"
-#include "tasks/app/pickup_session.h"
-#include "tasks/app/progress.h"
-#include "tasks/app/servo_text.h"
-#include "tasks/experiments/pickup_object.h"
-#include "tasks/report/report.h"
-#include "tasks/session/atomic_file.h"
+#include "tasks/app/run_tasks.h"
 
 namespace pincer::tasks {
 namespace {
 
+// The experiments, in the order in which --help shows them.
+constexpr std::array kRunTasks = {addSpherePickupTask};
+
 constexpr const char* kRunExample = R"(
-A simulated participant on simulated arms and contact location displays does the task; trials, events and samples are kept in
-DIR/session.db, a page with plots in DIR/report.html.
+A simulated participant on simulated arms and contact location displays does the experiment; trials, events and samples are kept in
+DIR/session.db, a page with plots in DIR/report.html. Each experiment has its own options: pincer run EXPERIMENT --help
 
 Example:
   pincer run sphere-pickup --repetitions 2 --seed 7 --out out/first)";
 
-struct RunArguments {
-  std::string task, out, condition = "both", object, units, shading;
-  std::optional<double> size;
-  PickupSessionOptions session;
-  bool json = false, report = true;
-};
-
-std::string freshDirectory(const std::string& task) {
-  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-  return fmt::format("out/{}-{:%Y%m%d-%H%M%S}", task, fmt::localtime(now));
-}
-
-contact::SurfaceVariant variantOf(const std::string& name) {
-  const auto& names = contact::kSurfaceVariantNames;
-  const auto found = std::find(names.begin(), names.end(), name);
-  return found == names.end() ? contact::SurfaceVariant::smooth : static_cast<contact::SurfaceVariant>(found - names.begin());
-}
-
-ObjectFile objectOf(const RunArguments& arguments) {
-  if (arguments.size && !arguments.units.empty()) {
-    throw InputError("run: --size and --units contradict each other: --size scales the mesh whatever its unit. Give one of them.");
-  }
-  return {arguments.object, arguments.units.empty() ? "mm" : arguments.units, arguments.size, variantOf(arguments.shading)};
-}
-
-PickupSessionOptions optionsOf(const RunArguments& arguments) {
-  PickupSessionOptions options = arguments.session;
-  if (arguments.condition != "both") options.study.conditions = {pickupConditionOf(arguments.condition)};
-  if (!arguments.object.empty()) options.study.object = objectOf(arguments);
-  if (arguments.object.empty() && arguments.size) {
-    throw InputError("run: --size is that of a mesh, and none is given. Give --object FILE, or --radius for the sphere.");
-  }
-  if (arguments.object.empty() && !arguments.shading.empty()) {
-    throw InputError("run: --shading is that of a mesh, and none is given. Give --object FILE; the sphere is one exactly.");
-  }
-  return options;
-}
-
-PickupSessionResult runSession(const PickupSessionOptions& options, const std::string& session, const std::atomic<bool>& interrupted) {
-  std::unique_ptr<Progress> line;
-  return runPickupSession(options, session, interrupted, [&](const PickupProgress& progress) {
-    if (!line) line = std::make_unique<Progress>("trials", static_cast<std::int64_t>(progress.total));
-    line->update(static_cast<std::int64_t>(progress.done));
-  });
-}
-
-std::int64_t faultsIn(const SessionSummary& summary) {
-  std::int64_t faults = 0;
-  for (const CellSummary& cell : summary.cells) faults += cell.allFrictions() ? cell.faults : 0;
-  return faults;
-}
-
-int show(const RunArguments& arguments, const std::string& directory, const PickupSessionResult& result) {
-  const SessionReader session(directory + "/session.db");
-  const SessionSummary summary = summariseSession(session);
-  fmt::print("{}\n", arguments.json ? summaryJson(summary) : formatTable(summary));
-  const auto say = [&](const std::string& line) { fmt::print(arguments.json ? stderr : stdout, "{}\n", line); };
-  const ServoOptions& servo = arguments.session.servo;
-  if (servo.real_time) say(servoText(result.servo, 1 / servo.rate));
-  say(fmt::format("Session: {}", session.path()));
-  if (result.interrupted) {
-    say(fmt::format("Interrupted after {} trials; they are safe. See them: pincer report {}", result.trials, session.path()));
-    return kExitInterrupted;
-  }
-  if (arguments.report) say(fmt::format("Report: {}", writeReport(session, directory + "/report.html").html));
-  const std::int64_t faults = faultsIn(summary);
-  if (faults > 0) say(fmt::format("Trials that ended in a fault: {}; their events say why: pincer export {}", faults, session.path()));
-  return faults > 0 ? kExitCheckFailed : kExitOk;
-}
-
-int run(const RunArguments& arguments) {
-  const std::atomic<bool>& interrupted = interruptFlag();
-  const std::string directory = arguments.out.empty() ? freshDirectory(arguments.task) : arguments.out;
-  const PickupSessionOptions options = optionsOf(arguments);
-  validate(options);
-  makePickupObject(options.study);  // bad options and objects are named before anything is written
-  makeDirectory(directory);
-  return show(arguments, directory, runSession(options, directory + "/session.db", interrupted));
-}
-
-void addStudyOptions(CLI::App& command, RunArguments& arguments) {
-  SpherePickupOptions& study = arguments.session.study;
-  command.add_option("--condition", arguments.condition, "What the fingers feel")
-      ->check(CLI::IsMember({"force", "cld+force", "both"}))
-      ->capture_default_str();
-  command.add_option("--participants", study.participants, "How many simulated participants")->capture_default_str();
-  command.add_option("--repetitions", study.repetitions, "Of every friction per condition")->capture_default_str();
-  command.add_option("--friction", study.frictions, "Static frictions of the object")->capture_default_str();
-  command.add_option("--mass", study.mass, "Of the object [kg]")->capture_default_str();
-  command.add_option("--radius", study.radius, "Of the sphere [m]")->capture_default_str();
-  command.add_option("--object", arguments.object, "Closed mesh (OBJ, STL, PLY or OFF) to pick up in place of the sphere");
-  command.add_option("--units", arguments.units, "Length unit of the mesh (default: mm)")->check(CLI::IsMember({"m", "cm", "mm", "in"}));
-  command.add_option("--size", arguments.size, "Scales the mesh to this largest dimension, in place of --units [m]");
-  command.add_option("--shading", arguments.shading, "How the fingers feel the mesh (default: smooth)")
-      ->check(CLI::IsMember({"smooth", "facet", "force", "smooth_published"}));
-  command.add_option("--seed", study.seed, "Of all that varies; the same seed gives the same session")->capture_default_str();
-}
-
 }  // namespace
 
 void addRunCommand(CLI::App& app, int& exit_code) {
-  auto arguments = std::make_shared<RunArguments>();
   CLI::App* command = app.add_subcommand("run", "An experiment, with a simulated participant");
-  command->add_option("task", arguments->task, "Which experiment: sphere-pickup")->required()->check(CLI::IsMember({"sphere-pickup"}));
-  addStudyOptions(*command, *arguments);
-  command->add_option("--out", arguments->out, "New directory for session and report (default: out/TASK-DATE-TIME)");
-  command->add_flag("--real-time", arguments->session.servo.real_time, "At 1 kHz of the wall clock in place of as fast as it goes");
-  command->add_option("--sample-rate", arguments->session.sample_rate, "Of the 1000 ticks of a second, so many are kept [Hz]")
-      ->capture_default_str();
-  command->add_flag("!--no-report", arguments->report, "Only the session and the table");
-  command->add_flag("--json", arguments->json, "Print the table as JSON");
+  command->require_subcommand(1);
+  for (const auto add : kRunTasks) add(*command, exit_code);
   command->footer(kRunExample);
-  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 
 }  // namespace pincer::tasks

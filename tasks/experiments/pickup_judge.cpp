@@ -1,6 +1,7 @@
 #include "tasks/experiments/pickup_judge.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace pincer::tasks {
 namespace {
@@ -18,39 +19,59 @@ double offsetFromLine(const PickupView& view) {
 
 }  // namespace
 
-PickupVerdict PickupJudge::observe(const PickupView& view) {
+TrialVerdict PickupJudge::observe(const PickupView& view) {
   const double dt = begun_ ? view.time - last_time_ : 0;
   begun_ = true;
   last_time_ = view.time;
   counts_.peak_grip = std::max(counts_.peak_grip, gripOf(view));
-  watchSqueeze(view, dt);
   watchHeight(view);
+  watchSqueeze(view, dt);
   watchSlip(view, dt);
   return watchHold(view, dt);
 }
 
 void PickupJudge::watchSqueeze(const PickupView& view, double dt) {
   released_for_ = weakerOf(view) < 0.5 * rules_.squeeze_force ? released_for_ + dt : 0;
-  if (!view.wants_lift || released_for_ >= rules_.release_time) squeezing_ = false;
+  highest_ = std::max(highest_, view.clearance);
+  if (squeezing_ && (!view.wants_lift || released_for_ >= rules_.release_time)) {
+    squeezing_ = false;
+    judgeFailure(view);
+  }
   if (squeezing_ || !view.wants_lift || weakerOf(view) <= rules_.squeeze_force) return;
   squeezing_ = true;
   ++counts_.squeezes;
   counts_.offset_at_squeeze = offsetFromLine(view);
+  highest_ = view.clearance;
+  dropped_in_squeeze_ = false;
+  p_squeeze_W_ = view.p_WBcm;
+}
+
+void PickupJudge::judgeFailure(const PickupView& view) {
+  const bool aside = std::abs(view.p_WBcm.y() - p_squeeze_W_.y()) > rules_.aside;
+  ++counts_.failures;
+  counts_.last_failure = dropped_in_squeeze_                ? "dropped"
+                         : aside                            ? "squeezed out"
+                         : highest_ <= rules_.off_clearance ? "not lifted"
+                                                            : "slipped";
 }
 
 void PickupJudge::watchHeight(const PickupView& view) {
-  off_ = off_ || view.clearance > rules_.off_clearance;
+  if (!off_ && view.clearance > rules_.off_clearance) {
+    off_ = true;
+    ++counts_.lifts;
+  }
   if (!off_) return;
   const bool touched = view.fingers[0].on_object || view.fingers[1].on_object;
-  cleared_ = cleared_ || view.clearance > rules_.try_clearance;
+  if (!cleared_ && view.clearance > rules_.try_clearance) {
+    cleared_ = true;
+    ++counts_.tries_5mm;
+  }
   held_ = held_ || (cleared_ && touched);
   if (held_ && !touched && !dropped_) {
-    dropped_ = true;
+    dropped_ = dropped_in_squeeze_ = true;
     ++counts_.drops;
   }
   if (view.clearance > rules_.back_clearance) return;
-  ++counts_.lifts;
-  if (cleared_) ++counts_.tries_5mm;
   off_ = cleared_ = held_ = dropped_ = false;
 }
 
@@ -71,7 +92,7 @@ void PickupJudge::watchSlip(const PickupView& view, double dt) {
   }
 }
 
-PickupVerdict PickupJudge::watchHold(const PickupView& view, double dt) {
+TrialVerdict PickupJudge::watchHold(const PickupView& view, double dt) {
   if (view.clearance < rules_.success_height) {
     over_since_ = -1;
     grip_time_ = grip_integral_ = 0;
@@ -81,10 +102,10 @@ PickupVerdict PickupJudge::watchHold(const PickupView& view, double dt) {
     grip_integral_ += gripOf(view) * dt;
     if (view.time - over_since_ >= rules_.hold_time) {
       counts_.held_grip = grip_time_ > 0 ? grip_integral_ / grip_time_ : gripOf(view);
-      return PickupVerdict::kSuccess;
+      return TrialVerdict::kSuccess;
     }
   }
-  return view.time >= rules_.timeout ? PickupVerdict::kTimeout : PickupVerdict::kRunning;
+  return view.time >= rules_.timeout ? TrialVerdict::kTimeout : TrialVerdict::kRunning;
 }
 
 }  // namespace pincer::tasks

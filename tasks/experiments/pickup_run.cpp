@@ -11,7 +11,7 @@ SimulatedPickup::SimulatedPickup(const SpherePickupOptions& options, const Picku
 bool SimulatedPickup::tick(double now) {
   hands_.advanceTo(now);
   if (cut_) trial_.cutForces(devices::Trip::kMissedDeadline);
-  const bool more = trial_.step(hands_.sample(), hands_.phase(), hands_.wantsLift(), now);
+  const bool more = trial_.step(hands_.sample(), hands_.intent(), now);
   hands_.apply(trial_.outputs(), trial_.cue(), now);
   return more;
 }

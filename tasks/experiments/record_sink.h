@@ -7,9 +7,11 @@ namespace pincer::tasks {
 class RecordSink {
  public:
   virtual ~RecordSink() = default;
-  virtual void sample(const SampleRecord& sample) = 0;  // from the tick: must not block in real time
-  virtual void event(const EventRecord& event) = 0;     // after a trial, before its trial()
-  virtual void trial(const TrialRecord& trial) = 0;     // after a trial; durable on return
+  virtual bool wantsSample(std::int64_t) const { return true; }  // of this tick: a sample that nobody keeps needn't be made
+  virtual void sample(const SampleRecord& sample) = 0;           // from the tick: must not block in real time
+  virtual void event(const EventRecord& event) = 0;              // after a trial, before its trial()
+  virtual void reading(const ReadingRecord& reading) = 0;        // likewise
+  virtual void trial(const TrialRecord& trial) = 0;              // after a trial; durable on return
 };
 
 }  // namespace pincer::tasks

@@ -2,7 +2,7 @@
 
 namespace pincer::tasks {
 
-SimulatedHands::SimulatedHands(const PickupScene& scene, Participant& participant) : participant_(participant), samples_(kHandFingers) {
+SimulatedHands::SimulatedHands(const HandScene& scene, Participant& participant) : participant_(participant), samples_(kHandFingers) {
   for (std::size_t i = 0; i < kHandFingers; ++i) {
     devices::SimArmSettings arm;
     arm.serial = scene.model.grasp.fingers[i].name;

@@ -7,7 +7,7 @@
 
 #include "devices/arm/sim_arm.h"
 #include "devices/cld/sim_cld.h"
-#include "tasks/experiments/pickup_scene.h"
+#include "tasks/experiments/hand_scene.h"
 #include "tasks/participants/participant.h"
 #include "tasks/servo/tick.h"
 
@@ -15,7 +15,7 @@ namespace pincer::tasks {
 
 class SimulatedHands {
  public:
-  SimulatedHands(const PickupScene& scene, Participant& participant);
+  SimulatedHands(const HandScene& scene, Participant& participant);
 
   // Moves devices to `now` [s]; time never goes back.
   void advanceTo(double now);
@@ -23,8 +23,7 @@ class SimulatedHands {
   // Commands of this tick to the devices, percept to the participant, its pulls to the arms.
   void apply(const std::vector<FingerOutputs>& outputs, Cue cue, double now);
 
-  PickupPhase phase() const { return action_.phase; }
-  bool wantsLift() const { return action_.wants_lift; }
+  const HandIntent& intent() const { return action_.intent; }
 
   // For tests that inject faults.
   devices::SimArm& arm(int finger) { return arms_[static_cast<std::size_t>(finger)]; }

@@ -58,6 +58,7 @@ struct PickupTrialSpec {
   PickupCondition condition = PickupCondition::kForce;
   double mu_s = 0.5, mu_d = 0.5;
   std::uint64_t seed = 0;  // of all that varies in this trial
+  bool training = false;
 };
 
 // Every trial of the study, in the order of its doing. Throws as validate().

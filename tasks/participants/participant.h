@@ -6,6 +6,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "devices/arm/arm.h"
 #include "devices/arm/sim_arm.h"
@@ -49,19 +50,40 @@ struct TrialCues {
   std::array<FingerCue, kHandFingers> fingers;
   Vec3 place_W = Vec3::Zero();  // where the object is to be pinched [m]
   double half_width = 0.02;     // of the object between the fingers [m]
+  double flat_distance = 0;     // of a cylinder's flat from its axis [m]; 0: it has none
+  double target_angle = 0;      // where the flat is to face, about W's z axis [rad]
   double mass = 0.075;          // of the object [kg]
   double lift_height = 0.050;   // to lift it at least so high [m]
   double dish_radius = 0.15;    // of curvature of the dish that the object lies in, its lowest point at W's origin [m]
 };
 
 // What the participant is doing; for records and for the judge, who counts as squeezes only what was meant to lift.
-enum class PickupPhase : std::uint8_t { kListen, kReach, kClose, kRead, kSqueeze, kLift, kHold, kReturn, kRest };
-const char* nameOf(PickupPhase phase);
+enum class HandPhase : std::uint8_t { kListen, kReach, kClose, kRead, kSqueeze, kLift, kHold, kTurn, kReturn, kRest };
+constexpr int kHandPhases = 10;
+const char* nameOf(HandPhase phase);
+
+// One deliberate reading of the senses, as the participant would report it: kept for the analysis beside the truth, which it doesn't know.
+//   kind      what was read: "place" (offset of the object's centre from the middle of the fingertips, W [m]),
+//             "flat" (direction of the flat about the axis: (angle, spread, 0) [rad]), "grip" ((mean of the two pushes, 0, 0) [N])
+//   percept   what the senses said; NaN where they said nothing
+//   estimate  what the participant believes after it
+struct HandReading {
+  const char* kind = "";
+  Vec3 percept = Vec3::Zero(), estimate = Vec3::Zero();
+  const char* decision = "";
+};
+
+// What a hand means to do; a simulated participant says it, a person by keys or switches.
+struct HandIntent {
+  HandPhase phase = HandPhase::kListen;
+  bool wants_lift = false;             // squeezing, lifting or holding
+  bool answers = false;                // "this is my answer": ends a trial of alignment
+  std::optional<HandReading> reading;  // made in this tick
+};
 
 struct HandAction {
   std::array<devices::HandPull, kHandFingers> pulls;
-  PickupPhase phase = PickupPhase::kListen;
-  bool wants_lift = false;  // squeezing, lifting or holding
+  HandIntent intent;
 };
 
 class Participant {

@@ -10,11 +10,6 @@ constexpr double kNotHeard = -1;
 
 }  // namespace
 
-const char* nameOf(PickupPhase phase) {
-  constexpr std::array names = {"listen", "reach", "close", "read", "squeeze", "lift", "hold", "return", "rest"};
-  return names[static_cast<std::size_t>(phase)];
-}
-
 ScriptedPickup::ScriptedPickup(std::uint64_t seed, const ScriptedPickupOptions& options, const SensingLimits& limits,
                                const HandRanges& ranges)
     : options_(options), limits_(limits), body_(drawBody(ranges, seed)), random_(seed) {}
@@ -34,7 +29,7 @@ void ScriptedPickup::begin(const TrialCues& cues) {
   shifts_ = 0;
   now_ = dt_ = contact_time_ = 0;
   heard_ = kNotHeard;
-  enter(PickupPhase::kListen);
+  enter(HandPhase::kListen);
 }
 
 HandAction ScriptedPickup::act(const Percept& percept) {
@@ -42,49 +37,50 @@ HandAction ScriptedPickup::act(const Percept& percept) {
   now_ = percept.time;
   cue_ = percept.cue;
   touch_.feel(percept);
-  if (cue_ == Cue::kSuccess || cue_ == Cue::kEnd) enterReach(home_, PickupPhase::kReturn);
+  if (cue_ == Cue::kSuccess || cue_ == Cue::kEnd) enterReach(home_, HandPhase::kReturn);
   switch (phase_) {
-    case PickupPhase::kListen:
+    case HandPhase::kListen:
       listen();
       break;
-    case PickupPhase::kReach:
-    case PickupPhase::kReturn:
+    case HandPhase::kReach:
+    case HandPhase::kReturn:
       goAlong();
       break;
-    case PickupPhase::kClose:
+    case HandPhase::kClose:
       close();
       break;
-    case PickupPhase::kRead:
+    case HandPhase::kRead:
       read();
       break;
-    case PickupPhase::kSqueeze:
+    case HandPhase::kSqueeze:
       squeeze();
       break;
-    case PickupPhase::kLift:
+    case HandPhase::kLift:
       lift();
       break;
-    case PickupPhase::kHold:
+    case HandPhase::kHold:
       hold();
       break;
-    case PickupPhase::kRest:
+    case HandPhase::kTurn:  // of the other task
+    case HandPhase::kRest:
       break;
   }
   HandAction action;
   for (int i = 0; i < kHandFingers; ++i) action.pulls[static_cast<std::size_t>(i)] = pullOf(i);
-  action.phase = phase_;
-  action.wants_lift = phase_ == PickupPhase::kSqueeze || phase_ == PickupPhase::kLift || phase_ == PickupPhase::kHold;
+  action.intent.phase = phase_;
+  action.intent.wants_lift = phase_ == HandPhase::kSqueeze || phase_ == HandPhase::kLift || phase_ == HandPhase::kHold;
   return action;
 }
 
 void ScriptedPickup::listen() {
   if (cue_ == Cue::kStart) heard_ = now_;
-  if (heard_ != kNotHeard && now_ >= heard_ + limits_.reaction_time) enterReach(besideThePinch(), PickupPhase::kReach);
+  if (heard_ != kNotHeard && now_ >= heard_ + limits_.reaction_time) enterReach(besideThePinch(), HandPhase::kReach);
 }
 
 void ScriptedPickup::goAlong() {
-  if (phase_ == PickupPhase::kReach && standsOnDish()) return;
+  if (phase_ == HandPhase::kReach && standsOnDish()) return;
   posture_ = reach_.at(now_);
-  if (reach_.over(now_)) enter(phase_ == PickupPhase::kReach ? PickupPhase::kClose : PickupPhase::kRest);
+  if (reach_.over(now_)) enter(phase_ == HandPhase::kReach ? HandPhase::kClose : HandPhase::kRest);
 }
 
 // Inwards; a finger that touches alone waits for the other. Fingertips that meet have found nothing between them.
@@ -98,7 +94,7 @@ void ScriptedPickup::close() {
     believed_W_ += shift_W;
   }
   contact_time_ = touch_.feelsBoth() ? contact_time_ + dt_ : 0;
-  if (contact_time_ >= options_.contact_time) return enter(PickupPhase::kRead);
+  if (contact_time_ >= options_.contact_time) return enter(HandPhase::kRead);
   if (posture_.half <= cues_.fingers[0].tip_radius) retry(options_.search_shift_sd);
 }
 
@@ -110,10 +106,10 @@ void ScriptedPickup::read() {
     ++shifts_;
     believe(believed_W_ + step_W_ + options_.shift_gain * *offset_W);
     step_W_.setZero();
-    return enterReach(besideThePinch(), PickupPhase::kReach);
+    return enterReach(besideThePinch(), HandPhase::kReach);
   }
   felt_factor_ = 1 + limits_.force_sd * random_.normal();
-  enter(PickupPhase::kSqueeze);
+  enter(HandPhase::kSqueeze);
 }
 
 void ScriptedPickup::squeeze() {
@@ -127,7 +123,7 @@ void ScriptedPickup::squeeze() {
 void ScriptedPickup::lift() {
   if (lostIt()) return;
   posture_ = reach_.at(now_);
-  if (reach_.over(now_)) enter(PickupPhase::kHold);
+  if (reach_.over(now_)) enter(HandPhase::kHold);
 }
 
 void ScriptedPickup::hold() {
@@ -135,18 +131,18 @@ void ScriptedPickup::hold() {
   raise(options_.lift_more);
 }
 
-void ScriptedPickup::enter(PickupPhase phase) {
+void ScriptedPickup::enter(HandPhase phase) {
   phase_ = phase;
   entered_ = now_;
   contact_time_ = 0;
 }
 
-void ScriptedPickup::enterReach(const Posture& goal, PickupPhase phase) {
+void ScriptedPickup::enterReach(const Posture& goal, HandPhase phase) {
   reach_ = reach(posture_, goal, now_, body_.speed);
   enter(phase);
 }
 
-void ScriptedPickup::raise(double height) { enterReach({posture_.centre_W + height * Vec3::UnitZ(), posture_.half}, PickupPhase::kLift); }
+void ScriptedPickup::raise(double height) { enterReach({posture_.centre_W + height * Vec3::UnitZ(), posture_.half}, HandPhase::kLift); }
 
 bool ScriptedPickup::lostIt() {
   if (touch_.lossTime() < limits_.reflex_time) return false;
@@ -163,7 +159,7 @@ bool ScriptedPickup::standsOnDish() {
   if (std::abs(error) > options_.farthest_shift) return false;  // the dish can't be there: it is the object
   believe({believed_W_.x(), believed_W_.y(), cues_.place_W.z() + error});
   step_W_.z() = std::max(step_W_.z(), 0.0);
-  enterReach(besideThePinch(), PickupPhase::kReach);
+  enterReach(besideThePinch(), HandPhase::kReach);
   return true;
 }
 
@@ -177,7 +173,7 @@ void ScriptedPickup::retry(double step_sd) {
   shifts_ = 0;
   step_W_ = step_sd * random_.normal3();
   step_W_ -= step_W_.dot(axis_W_) * axis_W_;
-  enterReach(besideThePinch(), PickupPhase::kReach);
+  enterReach(besideThePinch(), HandPhase::kReach);
 }
 
 // No further across the pinch from the place told than one's own placement can be wrong.

@@ -63,8 +63,8 @@ class ScriptedPickup final : public Participant {
   void lift();
   void hold();
 
-  void enter(PickupPhase phase);
-  void enterReach(const Posture& goal, PickupPhase phase);
+  void enter(HandPhase phase);
+  void enterReach(const Posture& goal, HandPhase phase);
   void raise(double height);
   void believe(const Vec3& place_W);
   void retry(double step_sd);
@@ -83,7 +83,7 @@ class ScriptedPickup final : public Participant {
   BodySense sense_;
   Touch touch_;
 
-  PickupPhase phase_ = PickupPhase::kListen;
+  HandPhase phase_ = HandPhase::kListen;
   Cue cue_ = Cue::kNone;
   double now_ = 0, dt_ = 0;         // [s]
   double entered_ = 0;              // when the phase began [s]

@@ -99,7 +99,8 @@ engine::StepReport tick(const TickModel& model, TickState& state, TickScratch& s
   keepPassive(model, state, scratch);
   for (int i = 0; i < n; ++i) {
     const grasp::FingerReport& finger = scratch.grasp.fingers[i];
-    scratch.outputs[i].f_D = gatedForce(model, state.mounts[i], model.mounts[i], inputs[i].arm, scratch.f_user_W[i], now, report.status);
+    scratch.outputs[i].f_D = gatedForce(model, state.mounts[i], model.mounts[i], inputs[i].arm,
+                                        scratch.f_user_W[i] + state.mounts[i].f_lead_W, now, report.status);
     scratch.outputs[i].tactile = tactorTarget(model, state.mounts[i], model.mounts[i], finger);
   }
   watchPorts(model, state, scratch);

@@ -43,6 +43,7 @@ struct MountState {
   bool seen = false;                              // a valid sample has come
   Vec3 p_WF = Vec3::Zero(), v_WF = Vec3::Zero();  // last finger pose, filtered velocity
   double sample_time = 0;
+  Vec3 f_lead_W = Vec3::Zero();  // what leads the hand somewhere, besides what it touches; set by the experiment [N]
   devices::GateState gate;
   devices::PadState pad;
 };

@@ -77,11 +77,24 @@ void forEachColumn(R& r, Visit&& visit) {
   visit(ColumnName{"", "detail", "", ""}, r.detail);
 }
 
+template <RecordOf<ReadingRecord> R, class Visit>
+void forEachColumn(R& r, Visit&& visit) {
+  visit(ColumnName{"", "trial", "", ""}, r.trial);
+  visit(ColumnName{"", "time", "", "s"}, r.time);
+  visit(ColumnName{"", "kind", "", ""}, r.kind);
+  columns::axes(visit, "", "truth", "", r.truth);
+  columns::axes(visit, "", "percept", "", r.percept);
+  columns::axes(visit, "", "estimate", "", r.estimate);
+  visit(ColumnName{"", "decision", "", ""}, r.decision);
+}
+
 template <RecordOf<TrialRecord> R, class Visit>
 void forEachColumn(R& r, Visit&& visit) {
   visit(ColumnName{"", "trial", "", ""}, r.trial);
+  visit(ColumnName{"", "task", "", ""}, r.task);
   visit(ColumnName{"", "participant", "", ""}, r.participant);
   visit(ColumnName{"", "condition", "", ""}, r.condition);
+  visit(ColumnName{"", "training", "", ""}, r.training);
   visit(ColumnName{"", "place_in_order", "", ""}, r.index);
   visit(ColumnName{"", "mu_s", "", ""}, r.mu_s);
   visit(ColumnName{"", "mu_d", "", ""}, r.mu_d);
@@ -92,9 +105,17 @@ void forEachColumn(R& r, Visit&& visit) {
   visit(ColumnName{"", "tries_5mm", "", ""}, r.tries_5mm);
   visit(ColumnName{"", "slips", "", ""}, r.slips);
   visit(ColumnName{"", "drops", "", ""}, r.drops);
+  visit(ColumnName{"", "cause", "", ""}, r.cause);
   visit(ColumnName{"", "peak_grip", "", "N"}, r.peak_grip);
   visit(ColumnName{"", "grip_ratio", "", ""}, r.grip_ratio);
   visit(ColumnName{"", "offset_at_squeeze", "", "m"}, r.offset_at_squeeze);
+  visit(ColumnName{"", "felt_grip", "", "N"}, r.felt_grip);
+  visit(ColumnName{"", "true_grip", "", "N"}, r.true_grip);
+  visit(ColumnName{"", "start_angle", "", "rad"}, r.start_angle);
+  visit(ColumnName{"", "error", "", "rad"}, r.error);
+  visit(ColumnName{"", "regrasps", "", ""}, r.regrasps);
+  visit(ColumnName{"", "flat_time", "", "s"}, r.flat_time);
+  visit(ColumnName{"", "phase_times", "", "json"}, r.phase_times);
   visit(ColumnName{"", "tick_median", "", "us"}, r.tick_us_median);
   visit(ColumnName{"", "tick_p999", "", "us"}, r.tick_us_p999);
 }
@@ -130,6 +151,8 @@ void forEachColumn(R& r, Visit&& visit) {
   visit(ColumnName{"", "scene_json", "", ""}, r.scene_json);
   visit(ColumnName{"", "protocol_json", "", ""}, r.protocol_json);
   visit(ColumnName{"", "devices_json", "", ""}, r.devices_json);
+  visit(ColumnName{"", "participants_json", "", ""}, r.participants_json);
+  visit(ColumnName{"", "participants_hash", "", ""}, r.participants_hash);
 }
 
 }  // namespace pincer::tasks

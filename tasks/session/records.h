@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <string>
 
 namespace pincer::tasks {
@@ -37,23 +38,46 @@ struct SampleRecord {
 struct EventRecord {
   std::int64_t trial = 0;
   double time = 0;
-  std::string kind;    // "phase", "tone", "squeeze", "lift", "try_5mm", "slip", "drop", "success", "timeout", "gate_trip", ...
+  std::string kind;    // "phase", "tone", "squeeze", "lift", "try_5mm", "slip", "drop", "failure", "success", "timeout", "gate_trip", ...
   std::string detail;  // one line, may be empty
 };
 
-// One row per trial, written when it ends and durable before the next begins.
-struct TrialRecord {
+// What a participant said to have read from its senses, and what there was to read (participants/participant.h, HandReading).
+struct ReadingRecord {
   std::int64_t trial = 0;
+  double time = 0;
+  std::string kind;  // "place" [m], "flat" [rad], "grip" [N]
+  std::array<double, 3> truth{}, percept{}, estimate{};
+  std::string decision;
+};
+
+// One row per trial, written when it ends and durable before the next begins. What a task doesn't measure is 0, or NaN for a real number.
+struct TrialRecord {
+  static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+  std::int64_t trial = 0;
+  std::string task = "sphere-pickup";
   std::int64_t participant = 0;
   std::string condition;      // "force", "cld+force"
+  std::int64_t training = 0;  // 1: before the counted ones, left out of every result
   std::int64_t index = 0;     // place in the participant's order
   double mu_s = 0, mu_d = 0;  // of the object
   std::string outcome;        // "success", "timeout", "fault"
   double duration = 0;        // [s]
+  // sphere pickup
   std::int64_t squeezes = 0, lifts = 0, tries_5mm = 0, slips = 0, drops = 0;
-  double peak_grip = 0;          // largest mean normal force of the two fingers [N]
-  double grip_ratio = 0;         // grip while held / smallest grip m g / (2 mu) [-]; NaN if never held
-  double offset_at_squeeze = 0;  // contact offset from the antipodal line at the last squeeze [m]; NaN if none
+  std::string cause;                            // of the last failed squeeze: "not lifted", "slipped", "squeezed out", "dropped"
+  double peak_grip = 0;                         // largest mean normal force of the two fingers [N]
+  double grip_ratio = 0;                        // grip while held / smallest grip m g / (2 mu) [-]; NaN if never held
+  double offset_at_squeeze = 0;                 // contact offset from the antipodal line at the last squeeze [m]; NaN if none
+  double felt_grip = kNone, true_grip = kNone;  // when the last squeeze seemed firm enough [N]
+  // cylinder alignment
+  double start_angle = kNone;  // of the flat from its target [rad]
+  double error = kNone;        // the same at the end, within (-pi, pi] [rad]
+  std::int64_t regrasps = 0;   // grips after the first
+  double flat_time = 0;        // a finger was on the flat [s]
+
+  std::string phase_times;  // JSON: seconds in each phase of the participant
   double tick_us_median = 0, tick_us_p999 = 0;
 };
 
@@ -80,10 +104,11 @@ struct ResponseRecord {
 };
 
 struct SessionInfo {
-  std::string task;  // "sphere-pickup"
+  std::string task;  // "sphere-pickup", "manipulation", ...
   std::uint64_t seed = 0;
   std::string version, build;  // program version; compiler and flags
   std::string scene_json, protocol_json, devices_json;
+  std::string participants_json, participants_hash;  // every parameter of simulated participants, frozen before the first trial
 };
 
 }  // namespace pincer::tasks

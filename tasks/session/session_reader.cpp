@@ -73,6 +73,9 @@ std::vector<ResponseRecord> SessionReader::responses() const { return readAll<Re
 std::vector<EventRecord> SessionReader::events(std::optional<std::int64_t> trial) const {
   return readAll<EventRecord>(*database_, whereTrial(trial));
 }
+std::vector<ReadingRecord> SessionReader::readings(std::optional<std::int64_t> trial) const {
+  return readAll<ReadingRecord>(*database_, whereTrial(trial));
+}
 
 void SessionReader::forEachSample(const SampleFilter& filter, const std::function<void(const SampleRecord&)>& take) const {
   if (filter.stride < 1) throw InputError(fmt::format("sample stride {} is out of range [1, inf). Use 1 for every sample.", filter.stride));

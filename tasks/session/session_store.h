@@ -43,6 +43,7 @@ class SessionWriter {
 
   // From one thread, outside of the real-time tick.
   void addEvent(const EventRecord& event);
+  void addReading(const ReadingRecord& reading);
   void finishTrial(const TrialRecord& trial);           // returns once the trial and all that was pushed before are durable
   void finishResponse(const ResponseRecord& response);  // likewise
   void close();                                         // final flush, state "complete", one plain file without a log beside it
@@ -78,6 +79,7 @@ class SessionReader {
   std::vector<TrialRecord> trials() const;        // in order of time
   std::vector<ResponseRecord> responses() const;  // in order of time
   std::vector<EventRecord> events(std::optional<std::int64_t> trial = {}) const;
+  std::vector<ReadingRecord> readings(std::optional<std::int64_t> trial = {}) const;
   void forEachSample(const SampleFilter& filter, const std::function<void(const SampleRecord&)>& take) const;
 
  private:

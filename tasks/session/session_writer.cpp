@@ -73,6 +73,7 @@ void makeTables(Database& d, const SessionOptions& options) {
   d.run(fmt::format("CREATE TABLE sample ({})", columnList<SampleRecord>(true)));
   d.run(fmt::format("CREATE TABLE event ({})", columnList<EventRecord>(true)));
   d.run(fmt::format("CREATE TABLE response ({})", columnList<ResponseRecord>(true)));
+  d.run(fmt::format("CREATE TABLE reading ({})", columnList<ReadingRecord>(true)));
   d.run("CREATE INDEX sample_of_trial ON sample (trial)");
 }
 
@@ -111,6 +112,12 @@ class SessionWriter::Impl {
     events_.push_back(event);
   }
 
+  void addReading(const ReadingRecord& reading) {
+    const std::lock_guard lock(mutex_);
+    throwIfEnded();
+    readings_.push_back(reading);
+  }
+
   void finish(FinishedTrial trial) {
     std::unique_lock lock(mutex_);
     throwIfEnded();
@@ -146,14 +153,16 @@ class SessionWriter::Impl {
     explicit Statements(const Database& d)
         : sample(d, insertSql<SampleRecord>()),
           event(d, insertSql<EventRecord>()),
+          reading(d, insertSql<ReadingRecord>()),
           trial(d, insertSql<TrialRecord>()),
           response(d, insertSql<ResponseRecord>()) {}
     void insert(const TrialRecord& record) { insertRow(trial, record); }
     void insert(const ResponseRecord& record) { insertRow(response, record); }
-    Statement sample, event, trial, response;
+    Statement sample, event, reading, trial, response;
   };
   struct Batch {
     std::vector<EventRecord> events;
+    std::vector<ReadingRecord> readings;
     std::optional<FinishedTrial> trial;
     bool last = false;
   };
@@ -175,7 +184,7 @@ class SessionWriter::Impl {
     std::unique_lock lock(mutex_);
     wake_.wait_for(lock, kBatchPeriod, [this] { return trial_ || stopping_ || space_wanted_; });
     space_wanted_ = false;
-    return {std::exchange(events_, {}), trial_, stopping_};
+    return {std::exchange(events_, {}), std::exchange(readings_, {}), trial_, stopping_};
   }
 
   void write(const Batch& batch) {
@@ -183,6 +192,7 @@ class SessionWriter::Impl {
     database_.run("BEGIN");
     ring_.drain([this](const SampleRecord& sample) { insertRow(statements_->sample, sample); });
     for (const EventRecord& event : batch.events) insertRow(statements_->event, event);
+    for (const ReadingRecord& reading : batch.readings) insertRow(statements_->reading, reading);
     if (batch.trial) {
       std::visit([this](const auto& trial) { statements_->insert(trial); }, *batch.trial);
       database_.run(fmt::format("UPDATE session SET samples_dropped = {}", dropped()));
@@ -251,6 +261,7 @@ class SessionWriter::Impl {
   std::mutex mutex_;  // guards events_ .. failure_
   std::condition_variable wake_, done_;
   std::vector<EventRecord> events_;
+  std::vector<ReadingRecord> readings_;
   std::optional<FinishedTrial> trial_;
   bool stopping_ = false, space_wanted_ = false;
   std::string failure_;
@@ -276,6 +287,7 @@ SessionWriter::~SessionWriter() = default;
 bool SessionWriter::pushSample(const SampleRecord& sample) noexcept { return impl_->push(sample); }
 std::uint64_t SessionWriter::droppedSamples() const noexcept { return impl_->dropped(); }
 void SessionWriter::addEvent(const EventRecord& event) { impl_->addEvent(event); }
+void SessionWriter::addReading(const ReadingRecord& reading) { impl_->addReading(reading); }
 void SessionWriter::finishTrial(const TrialRecord& trial) { impl_->finish(trial); }
 void SessionWriter::finishResponse(const ResponseRecord& response) { impl_->finish(response); }
 void SessionWriter::close() { impl_->close(); }

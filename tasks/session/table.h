@@ -6,6 +6,7 @@
 //   sample     SampleRecord   recorded tick
 //   event      EventRecord    event
 //   response   ResponseRecord finished trial of a psychophysical experiment
+//   reading    ReadingRecord  deliberate reading of a simulated participant
 #pragma once
 #include <fmt/format.h>
 
@@ -30,6 +31,7 @@ constexpr std::string_view tableName() {
   if constexpr (std::is_same_v<Record, SampleRecord>) return "sample";
   if constexpr (std::is_same_v<Record, EventRecord>) return "event";
   if constexpr (std::is_same_v<Record, ResponseRecord>) return "response";
+  if constexpr (std::is_same_v<Record, ReadingRecord>) return "reading";
 }
 
 template <class Field>

@@ -12,6 +12,7 @@ struct MemorySink final : tasks::RecordSink {
 
   void sample(const tasks::SampleRecord& record) override { samples.push_back(record); }
   void event(const tasks::EventRecord& record) override { events.push_back(record); }
+  void reading(const tasks::ReadingRecord& record) override { readings.push_back(record); }
   void trial(const tasks::TrialRecord& record) override { trials.push_back(record); }
 
   std::int64_t count(const std::string& kind) const {
@@ -22,6 +23,7 @@ struct MemorySink final : tasks::RecordSink {
 
   std::vector<tasks::SampleRecord> samples;
   std::vector<tasks::EventRecord> events;
+  std::vector<tasks::ReadingRecord> readings;
   std::vector<tasks::TrialRecord> trials;
 };
 

@@ -35,7 +35,9 @@ class SyntheticSession {
             "g++ 12.2.0 -O2 & <tests>",
             R"({"bodies": [{"shape": "sphere", "radius": 0.02}]})",
             R"({"repetitions": 5})",
-            R"({"arms": "simulated"})"};
+            R"({"arms": "simulated"})",
+            R"({"strategy": "none"})",
+            "0"};
   }
 
   // All trials of the plan, in order. Returns how many.

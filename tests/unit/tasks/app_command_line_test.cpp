@@ -33,6 +33,7 @@ int linesOf(const std::string& text) { return static_cast<int>(std::count(text.b
 TEST(CommandLine, HelpsEverywhereWithAnExample) {
   for (const std::vector<std::string>& command : std::vector<std::vector<std::string>>{{},
                                                                                        {"run"},
+                                                                                       {"run", "sphere-pickup"},
                                                                                        {"report"},
                                                                                        {"export"},
                                                                                        {"sim"},
@@ -60,6 +61,8 @@ TEST(CommandLine, ComplainsAboutUsageInOneLine) {
   for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{{},
                                                                                          {"simulate"},
                                                                                          {"sim"},
+                                                                                         {"run", "sphere-dropping"},
+                                                                                         {"run"},
                                                                                          {"sim", "s.json", "--durations", "1"},
                                                                                          {"sim", "s.json", "--duration", "-1"},
                                                                                          {"mesh", "info", "x.obj"},

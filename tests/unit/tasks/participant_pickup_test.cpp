@@ -12,7 +12,7 @@ namespace {
 // A world made of nothing but percepts: fingers that follow the hand, and a push against the pads when the fingertips are closer than
 // `width`, as stiff as `stiffness`.
 struct Phantom {
-  PickupScene scene = makePickupScene({}, makePickupObject({}), {});
+  HandScene scene = makePickupScene({}, makePickupObject({}), {});
   double width = 0.056, stiffness = 300;
   double time = 0;
   Percept percept;
@@ -39,9 +39,9 @@ struct Phantom {
     return action;
   }
   // Runs until the participant is in `phase`; false after `limit` [s].
-  bool runTo(Participant& participant, PickupPhase phase, double limit = 20) {
+  bool runTo(Participant& participant, HandPhase phase, double limit = 20) {
     for (const double end = time + limit; time < end;) {
-      if (step(participant).phase == phase) return true;
+      if (step(participant).intent.phase == phase) return true;
     }
     return false;
   }
@@ -51,7 +51,7 @@ bool sameBits(const HandAction& a, const HandAction& b) {
   for (std::size_t i = 0; i < 2; ++i) {
     if (std::memcmp(a.pulls[i].p_D.data(), b.pulls[i].p_D.data(), 3 * sizeof(double)) != 0) return false;
   }
-  return a.phase == b.phase;
+  return a.intent.phase == b.intent.phase;
 }
 
 TEST(ScriptedPickup, DoesTheSameForTheSameSeeds) {
@@ -82,10 +82,10 @@ TEST(ScriptedPickup, WaitsForTheStartToneAndItsReactionTime) {
   Phantom phantom;
   ScriptedPickup participant(1);
   participant.begin(phantom.scene.cues);
-  EXPECT_FALSE(phantom.runTo(participant, PickupPhase::kReach, 1.0));
+  EXPECT_FALSE(phantom.runTo(participant, HandPhase::kReach, 1.0));
   const double heard = phantom.time;
   phantom.step(participant, Cue::kStart);
-  ASSERT_TRUE(phantom.runTo(participant, PickupPhase::kReach));
+  ASSERT_TRUE(phantom.runTo(participant, HandPhase::kReach));
   EXPECT_NEAR(phantom.time - heard, 0.25, 2.5e-3);  // two ticks and round-off
 }
 
@@ -95,12 +95,12 @@ TEST(ScriptedPickup, SqueezesToTheWantedGripAndLifts) {
   ScriptedPickup participant(1);
   participant.begin(phantom.scene.cues);
   phantom.step(participant, Cue::kStart);
-  ASSERT_TRUE(phantom.runTo(participant, PickupPhase::kSqueeze));
-  ASSERT_TRUE(phantom.runTo(participant, PickupPhase::kLift));
+  ASSERT_TRUE(phantom.runTo(participant, HandPhase::kSqueeze));
+  ASSERT_TRUE(phantom.runTo(participant, HandPhase::kLift));
   const double wanted = 0.075 * 9.81 / 0.52;
   EXPECT_NEAR(-phantom.percept.fingers[0].f_D.z(), wanted, 0.5 * wanted);
   const double height = (phantom.scene.model.mounts[0].X_WD * phantom.percept.fingers[0].arm.p_DF).z();
-  ASSERT_TRUE(phantom.runTo(participant, PickupPhase::kHold));
+  ASSERT_TRUE(phantom.runTo(participant, HandPhase::kHold));
   const double lifted = (phantom.scene.model.mounts[0].X_WD * phantom.percept.fingers[0].arm.p_DF).z() - height;
   EXPECT_NEAR(lifted, 0.060, 1e-6);  // 50 mm asked for and 10 mm margin; the lift has moved for one tick when `height` is taken
 }
@@ -110,14 +110,14 @@ TEST(ScriptedPickup, NoticesThatTheObjectGotAwayByTheLossOfForce) {
   ScriptedPickup participant(1);
   participant.begin(phantom.scene.cues);
   phantom.step(participant, Cue::kStart);
-  ASSERT_TRUE(phantom.runTo(participant, PickupPhase::kLift));
+  ASSERT_TRUE(phantom.runTo(participant, HandPhase::kLift));
   phantom.width = 0;
   const double lost = phantom.time;
-  ASSERT_TRUE(phantom.runTo(participant, PickupPhase::kReach, 1.0));
+  ASSERT_TRUE(phantom.runTo(participant, HandPhase::kReach, 1.0));
   EXPECT_GT(phantom.time - lost, 0.07);        // the reflex
   EXPECT_LT(phantom.time - lost, 0.07 + 0.1);  // and the decay of felt force from 2 N to 0.1 N: three time constants of 20 ms
   phantom.width = 0.056;
-  ASSERT_TRUE(phantom.runTo(participant, PickupPhase::kLift));  // it tries again
+  ASSERT_TRUE(phantom.runTo(participant, HandPhase::kLift));  // it tries again
 }
 
 TEST(ScriptedPickup, OpensWhenItFindsNothingAndTriesElsewhere) {
@@ -126,10 +126,10 @@ TEST(ScriptedPickup, OpensWhenItFindsNothingAndTriesElsewhere) {
   ScriptedPickup participant(1);
   participant.begin(phantom.scene.cues);
   phantom.step(participant, Cue::kStart);
-  ASSERT_TRUE(phantom.runTo(participant, PickupPhase::kClose));
+  ASSERT_TRUE(phantom.runTo(participant, HandPhase::kClose));
   const Vec3 first_D = phantom.percept.fingers[0].arm.p_DF;
-  ASSERT_TRUE(phantom.runTo(participant, PickupPhase::kReach));
-  ASSERT_TRUE(phantom.runTo(participant, PickupPhase::kClose));
+  ASSERT_TRUE(phantom.runTo(participant, HandPhase::kReach));
+  ASSERT_TRUE(phantom.runTo(participant, HandPhase::kClose));
   EXPECT_GT((phantom.percept.fingers[0].arm.p_DF - first_D).norm(), 1e-4);
 }
 
@@ -138,9 +138,9 @@ TEST(ScriptedPickup, GoesHomeAfterTheTone) {
   ScriptedPickup participant(1);
   participant.begin(phantom.scene.cues);
   phantom.step(participant, Cue::kStart);
-  ASSERT_TRUE(phantom.runTo(participant, PickupPhase::kHold));
-  EXPECT_EQ(phantom.step(participant, Cue::kSuccess).phase, PickupPhase::kReturn);
-  EXPECT_TRUE(phantom.runTo(participant, PickupPhase::kRest));
+  ASSERT_TRUE(phantom.runTo(participant, HandPhase::kHold));
+  EXPECT_EQ(phantom.step(participant, Cue::kSuccess).intent.phase, HandPhase::kReturn);
+  EXPECT_TRUE(phantom.runTo(participant, HandPhase::kRest));
 }
 
 TEST(ScriptedPickup, AllocatesNothingWhileActing) {

@@ -19,7 +19,7 @@ SensingLimits exactTouch() {
 
 struct TouchedSphere : ::testing::Test {
   SpherePickupOptions options;
-  PickupScene scene = makePickupScene(options, makePickupObject(options), {});
+  HandScene scene = makePickupScene(options, makePickupObject(options), {});
   Random random{5};
 
   Touch touchWith(const SensingLimits& limits) {

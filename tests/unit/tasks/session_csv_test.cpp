@@ -82,7 +82,7 @@ TEST(CsvExport, WritesEachTableWithUnitsInTheNames) {
   writer.finishTrial(trial);
   writer.close();
   const auto paths = exportCsv(SessionReader(dir / "a.db"), dir / "new/csv", {.stride = 3});
-  ASSERT_EQ(paths.size(), 5u);
+  ASSERT_EQ(paths.size(), 6u);
 
   const auto session = parse(readFile(dir / "new/csv/session.csv"));
   ASSERT_EQ(session.size(), 2u);

@@ -13,7 +13,7 @@ constexpr double kJudgeTick = 1e-3;
 struct Stage {
   PickupJudge judge;
   PickupView view;
-  PickupVerdict verdict = PickupVerdict::kRunning;
+  TrialVerdict verdict = TrialVerdict::kRunning;
 
   Stage() {
     for (std::size_t i = 0; i < 2; ++i) view.fingers[i].p_WC = Vec3(i == 0 ? -0.02 : 0.02, 0, 0.02);
@@ -27,7 +27,7 @@ struct Stage {
   }
   void play(double seconds) {
     const int ticks = static_cast<int>(std::lround(seconds / kJudgeTick));
-    for (int i = 0; i < ticks && verdict == PickupVerdict::kRunning; ++i) {
+    for (int i = 0; i < ticks && verdict == TrialVerdict::kRunning; ++i) {
       verdict = judge.observe(view);
       view.time += kJudgeTick;
     }
@@ -80,26 +80,49 @@ TEST(PickupJudge, MeasuresTheOffsetFromTheLineThroughTheContacts) {
   EXPECT_NEAR(stage.counts().offset_at_squeeze, 0.005, 1e-15);
 }
 
-TEST(PickupJudge, CountsLiftsAndTriesWhenTheObjectIsBack) {
+TEST(PickupJudge, CountsALiftWhenTheObjectLeavesTheDishAndATryWhenItClears5mm) {
   Stage stage;
   stage.grip(1);
   stage.view.clearance = 4e-3;
   stage.play(0.2);
-  EXPECT_EQ(stage.counts().lifts, 0);  // still up
+  EXPECT_EQ(stage.counts().lifts, 1);
   stage.view.clearance = 0;
   stage.play(0.2);
-  EXPECT_EQ(stage.counts().lifts, 1);
   EXPECT_EQ(stage.counts().tries_5mm, 0);
   stage.view.clearance = 6e-3;
   stage.play(0.2);
+  EXPECT_EQ(stage.counts().lifts, 2);
+  EXPECT_EQ(stage.counts().tries_5mm, 1);
   stage.view.clearance = 1e-3;  // not back yet
   stage.play(0.2);
-  EXPECT_EQ(stage.counts().lifts, 1);
-  stage.view.clearance = 0;
+  stage.view.clearance = 6e-3;  // so this is the same one
   stage.play(0.2);
   EXPECT_EQ(stage.counts().lifts, 2);
   EXPECT_EQ(stage.counts().tries_5mm, 1);
   EXPECT_EQ(stage.counts().drops, 0);  // the fingers never left it
+}
+
+TEST(PickupJudge, SaysHowASqueezeFailed) {
+  Stage stage;
+  const auto squeezeTo = [&](double clearance, double aside) {
+    stage.view.wants_lift = true;
+    stage.grip(1);
+    stage.play(0.05);
+    stage.view.clearance = clearance;
+    stage.view.p_WBcm.y() += aside;
+    stage.play(0.05);
+    stage.grip(0);
+    stage.play(0.2);
+    stage.view.clearance = 0;
+    stage.view.wants_lift = false;
+    stage.play(0.05);
+    return std::string(stage.counts().last_failure);
+  };
+  EXPECT_EQ(squeezeTo(0, 0), "not lifted");
+  EXPECT_EQ(squeezeTo(2e-3, 0), "slipped");
+  EXPECT_EQ(squeezeTo(2e-3, 8e-3), "squeezed out");
+  EXPECT_EQ(squeezeTo(9e-3, 0), "dropped");
+  EXPECT_EQ(stage.counts().failures, 4);
 }
 
 TEST(PickupJudge, IgnoresTheJitterOfAnObjectOnTheDish) {
@@ -180,10 +203,10 @@ TEST(PickupJudge, CallsItASuccessAfterOneSecondAbove50mm) {
   stage.view.clearance = 0.051;
   stage.grip(1.5);
   stage.play(0.99);
-  EXPECT_EQ(stage.verdict, PickupVerdict::kRunning);
+  EXPECT_EQ(stage.verdict, TrialVerdict::kRunning);
   EXPECT_TRUE(std::isnan(stage.counts().held_grip));
   stage.play(0.1);
-  EXPECT_EQ(stage.verdict, PickupVerdict::kSuccess);
+  EXPECT_EQ(stage.verdict, TrialVerdict::kSuccess);
   EXPECT_NEAR(stage.counts().held_grip, 1.5, 1e-12);
   EXPECT_NEAR(stage.counts().peak_grip, 2, 0);
 }
@@ -191,9 +214,9 @@ TEST(PickupJudge, CallsItASuccessAfterOneSecondAbove50mm) {
 TEST(PickupJudge, EndsATrialAfter60s) {
   Stage stage;
   stage.play(59.9);
-  EXPECT_EQ(stage.verdict, PickupVerdict::kRunning);
+  EXPECT_EQ(stage.verdict, TrialVerdict::kRunning);
   stage.play(0.2);
-  EXPECT_EQ(stage.verdict, PickupVerdict::kTimeout);
+  EXPECT_EQ(stage.verdict, TrialVerdict::kTimeout);
   EXPECT_NEAR(stage.view.time, 60, 2e-3);
 }
 

@@ -130,7 +130,7 @@ TEST(SpherePickupTrial, AllocatesNothingPerTick) {
 
 TEST(SpherePickupTrial, MeasuresTheClearanceOfASphereLiftedStraightUp) {
   const SpherePickupOptions options;
-  const PickupScene scene = makePickupScene(options, makePickupObject(options), specWith(0.5));
+  const HandScene scene = makePickupScene(options, makePickupObject(options), specWith(0.5));
   contact::PatchCache patches;
   for (const double height : {0.0, 0.001, 0.05, 0.08}) {
     EXPECT_NEAR(clearanceOverDish(scene, {Quat::Identity(), Vec3(0, 0, options.radius + height)}, patches), height, 1e-15);

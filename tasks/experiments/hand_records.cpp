@@ -1,4 +1,4 @@
-#include "tasks/experiments/pickup_records.h"
+#include "tasks/experiments/hand_records.h"
 
 #include <algorithm>
 #include <limits>
@@ -35,13 +35,13 @@ FingerRecord fingerRecord(const TickState& state, const TickScratch& scratch, co
 
 }  // namespace
 
-SampleRecord sampleRecord(const PickupScene& scene, const TickState& state, const TickScratch& scratch,
+SampleRecord sampleRecord(const HandScene& scene, const TickState& state, const TickScratch& scratch,
                           const std::vector<FingerInputs>& samples) {
   SampleRecord record;
-  const Pose X_WB = engine::bodyPose(scene.model.grasp.world, state.grasp.world, kObjectBody);
+  const Pose X_WB = engine::bodyPose(scene.model.grasp.world, state.grasp.world, scene.object);
   record.p_WB = toArray(X_WB.p);
   record.q_WB = {X_WB.q.w(), X_WB.q.x(), X_WB.q.y(), X_WB.q.z()};
-  record.v_WB = toArray(state.grasp.world.bodies[kObjectBody].v_W);
+  record.v_WB = toArray(state.grasp.world.bodies[static_cast<std::size_t>(scene.object)].v_W);
   const std::size_t fingers = std::min(samples.size(), record.fingers.size());
   for (std::size_t i = 0; i < fingers; ++i) record.fingers[i] = fingerRecord(state, scratch, samples[i], i);
   return record;

@@ -1,0 +1,13 @@
+// run_tasks: the experiments of `pincer run`, one source file each (`run_sphere_pickup.cpp`, ...). Each adds itself to the command `run`;
+// when the user asks for it, its callback does the work and leaves an ExitCode (tasks/app/app.h) in `exit_code`, or throws InputError.
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+namespace pincer::tasks {
+
+void addSpherePickupTask(CLI::App& run, int& exit_code);
+
+}  // namespace pincer::tasks

@@ -1,0 +1,93 @@
+#include "tasks/experiments/cylinder_alignment.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "engine/world/state.h"
+#include "tasks/participants/random.h"
+
+namespace pincer::tasks {
+namespace {
+
+void requireCylinder(const char* name, double value, double low, double high, const char* unit, const char* remedy) {
+  if (value >= low && value <= high) return;  // also false for NaN
+  throw InputError(fmt::format("cylinder-alignment: {} = {} is out of range [{}, {}]{}. {}", name, value, low, high, unit, remedy));
+}
+
+engine::WorldBuilder cylinderWorld(const CylinderAlignmentOptions& o, int& object) {
+  engine::WorldBuilder builder{engine::WorldOptions{}};
+  if (!o.pivot) builder.addBody({"table", contact::HalfSpace{}, false, 0, {o.table_friction, o.table_friction, 0, 0}});
+  const contact::CylinderWithFlat shape{o.radius, 0.5 * o.length, flatDistance(o)};
+  object = builder.addBody({"cylinder", shape, true, o.mass, {o.friction, o.dynamic_ratio * o.friction, 0, o.torsion_radius}});
+  if (o.pivot) {
+    engine::JointModel joint;
+    joint.a = object;
+    joint.X_BJ.p = Vec3(0, 0, 0.5 * o.length);
+    joint.damping = o.pivot_damping;
+    builder.addJoint(joint);
+  }
+  return builder;
+}
+
+}  // namespace
+
+double flatDistance(const CylinderAlignmentOptions& options) { return options.radius * std::cos(options.flat_half_angle); }
+
+void validate(const CylinderAlignmentOptions& o) {
+  requireCylinder("radius", o.radius, 0.01, 0.05, " m", "It is in metres; the usual cylinder has 0.02.");
+  requireCylinder("length", o.length, 0.02, 0.2, " m", "It is in metres; the usual cylinder has 0.08.");
+  requireCylinder("mass", o.mass, 0.01, 1, " kg", "It is in kilograms; the usual cylinder has 0.15.");
+  requireCylinder("flat_half_angle", o.flat_half_angle, 0.2, 1.2, " rad", "It is in radians; the usual flat has 0.7854, 45 degrees.");
+  requireCylinder("friction", o.friction, 0.05, 5, "", "A static friction coefficient; skin on plastic has about 0.6.");
+  requireCylinder("dynamic_ratio", o.dynamic_ratio, 0.01, 1, "", "Dynamic friction is at most static friction; 0.85 is the usual ratio.");
+  requireCylinder("torsion_radius", o.torsion_radius, 0, 0.02, " m", "It is in metres; a fingertip has 0.0033, a point contact 0.");
+  requireCylinder("pivot_damping", o.pivot_damping, 0, 0.1, " N m s/rad", "The usual pivot has 0.001.");
+  requireCylinder("table_friction", o.table_friction, 0, 5, "", "A friction coefficient; the usual table has 0.5.");
+  requireCylinder("start_min", o.start_min, 0, std::numbers::pi, " rad", "It is in radians; 0.7854, 45 degrees, is usual.");
+  requireCylinder("start_max", o.start_max, o.start_min, 3.1416, " rad", "It is in radians, at least start_min; 3.1416 is usual.");
+  requireCylinder("timeout", o.timeout, 1, 600, " s", "It is in seconds; 120 is the usual time.");
+  requireCylinder("repetitions", o.repetitions, 1, 1000, "", "So many trials are done in each condition; 10 is usual.");
+  requireCylinder("participants", o.participants, 1, 1000, "", "The published study had 12.");
+  if (o.conditions.empty()) throw InputError("cylinder-alignment: conditions is empty. Give force, cld+force, or both.");
+}
+
+double wrapAngle(double angle) {
+  const double turn = 2 * std::numbers::pi;
+  const double wrapped = angle - turn * std::round(angle / turn);
+  return wrapped <= -std::numbers::pi ? wrapped + turn : wrapped;
+}
+
+double flatAngle(const Pose& X_WB) {
+  const Vec3 n_W = X_WB.q * Vec3::UnitX();
+  return std::atan2(n_W.y(), n_W.x());
+}
+
+std::vector<double> startAngles(const CylinderAlignmentOptions& options, int count, std::uint64_t seed) {
+  Random random(seed);
+  std::vector<double> angles;
+  for (int i = 0; i < count; ++i) angles.push_back((i % 2 == 0 ? 1 : -1) * random.uniform(options.start_min, options.start_max));
+  for (std::size_t i = angles.size(); i > 1; --i) std::swap(angles[i - 1], angles[random.below(i)]);
+  return angles;
+}
+
+HandScene makeCylinderScene(const CylinderAlignmentOptions& options, const CylinderTrialSpec& spec) {
+  int object = 0;
+  const engine::WorldBuilder world = cylinderWorld(options, object);
+  const Vec3 middle_W(0, 0, 0.5 * options.length);
+  engine::BodyStart start;
+  start.X_WB = {Quat(Eigen::AngleAxisd(kTargetAngle + spec.start_angle, Vec3::UnitZ())), middle_W};
+  std::vector<engine::BodyStart> starts;
+  if (!options.pivot) starts.emplace_back();
+  starts.push_back(start);
+  HandScene scene = makeHandScene(options.hand, world, starts, middle_W, options.radius, spec.condition == PickupCondition::kCldForce);
+  scene.object = object;
+  scene.cues.seed = spec.seed;
+  scene.cues.mass = options.mass;
+  scene.cues.flat_distance = flatDistance(options);
+  scene.cues.target_angle = kTargetAngle;
+  return scene;
+}
+
+}  // namespace pincer::tasks

@@ -1,0 +1,109 @@
+// hand_trial: one trial of a manipulation task, tick by tick; the same code for simulated and real devices, in virtual and in real time.
+// Whoever owns the clock calls step() once per tick with the latest samples, and sends outputs() to the devices.
+//
+//   prepare   gates ramp up, the object comes to rest; then the start tone
+//   run       until the task's judge ends it, or a fault
+//   go home   a weak spring leads the open hand back to where it starts, so that the next trial can begin
+//
+// step() allocates nothing; events and readings are kept and handed over with the trial's row at its end (finish).
+#pragma once
+#include <string>
+#include <vector>
+
+#include "tasks/experiments/hand_scene.h"
+#include "tasks/experiments/record_sink.h"
+#include "tasks/experiments/trial_verdict.h"
+#include "tasks/servo/histogram.h"
+
+namespace pincer::tasks {
+
+// What a trial's row says of it whatever came out.
+struct TrialHead {
+  std::string task;        // "sphere-pickup"
+  std::int64_t trial = 0;  // within the session, from 0
+  std::int64_t participant = 0, index = 0;
+  std::string condition;  // "force", "cld+force"
+  bool training = false;
+};
+
+class HandTrial {
+ public:
+  virtual ~HandTrial() = default;
+
+  // One tick at `now` [s on the devices' clock]. `intent` is what the participant said last (a person: what the operator or a rule says).
+  // Returns false when the trial is over.
+  bool step(const std::vector<FingerInputs>& samples, const HandIntent& intent, double now);
+
+  const std::vector<FingerOutputs>& outputs() const { return scratch_.outputs; }
+  Cue cue() const { return cue_; }  // the tone of this tick
+  const HandScene& scene() const { return scene_; }
+  const TickState& state() const { return state_; }
+  const TickScratch& scratch() const { return scratch_; }
+  double simulatedTime() const { return last_; }  // [s]
+
+  // Zero force, latched.
+  void cutForces(devices::Trip cause);
+  // Hands events, readings and the trial's row to the sink. Once, after the last step.
+  void finish();
+
+ protected:
+  HandTrial(HandScene scene, TrialHead head, RecordSink& sink);
+
+  // One tick of the counted time, `time` after the start tone [s].
+  virtual TrialVerdict judge(const HandIntent& intent, double time) = 0;
+  // What the task measured, into the trial's row.
+  virtual void fill(TrialRecord& row) const = 0;
+  // What a reading of this kind should have said.
+  virtual Vec3 truthOf(const HandReading& reading) const = 0;
+
+  void note(const char* kind, const char* detail = "");  // an event, now
+  Vec3 placeTruth() const;                               // of a reading "place"
+  Vec3 gripTruth() const;                                // of a reading "grip"
+  TickScratch& scratch() { return scratch_; }
+
+ private:
+  enum class Stage : std::uint8_t { kPrepare, kRun, kGoHome, kOver };
+  struct Event {
+    double time;
+    const char* kind;
+    const char* detail;
+  };
+  struct Reading {
+    double time;
+    HandReading said;
+    Vec3 truth;
+  };
+
+  engine::StepReport timedTick(const std::vector<FingerInputs>& samples, double now);
+  void hear(const HandIntent& intent);
+  void prepare(double now);
+  void run(const HandIntent& intent, double now);
+  bool handIsHome() const;
+  void leadHome();
+  bool faulted(double now, std::uint32_t status);
+  void end(const char* outcome, Cue cue);
+  void record(const std::vector<FingerInputs>& samples, double now, std::uint32_t status);
+  TrialRecord row() const;
+  std::string phaseTimes() const;
+
+  TrialHead head_;
+  RecordSink& sink_;
+  HandScene scene_;
+  TickState state_;
+  TickScratch scratch_;
+  Stage stage_ = Stage::kPrepare;
+  Cue cue_ = Cue::kNone;
+  HandPhase phase_ = HandPhase::kRest;
+  std::array<double, kHandPhases> phase_times_{};  // within the counted time [s]
+  double start_ = 0, stop_ = 0;                    // of the counted time [s]
+  double last_ = 0;                                // the last tick [s]
+  double tick_seconds_ = 0;
+  std::int64_t tick_ = 0;
+  const char* outcome_ = "fault";
+  devices::Trip trip_ = devices::Trip::kNone;
+  Histogram tick_times_;
+  std::vector<Event> events_;
+  std::vector<Reading> readings_;
+};
+
+}  // namespace pincer::tasks
