@@ -39,7 +39,8 @@ struct PairPoints {
 void preparePair(const Shape& a, const Shape& b);
 
 // The points of a and b that are closer than `margin` >= 0 [m], written to `out` (sorted by feature). Of many candidates the deepest are kept,
-// then those on which the solid would land first if it rocked (point_choice.h, mesh_pairs.h). Every two shapes are answered for, but two
+// then those on which the solid would land first if it rocked (point_choice.h, mesh_pairs.h); of a mesh's points whose gaps differ by less than
+// 1e-6 m the one of the lowest feature counts as the deepest, so that it is the same from tick to tick. Every two shapes are answered for, but two
 // supports (half-space, dish), which are both static, have no point. Convex pairs of one kind of shape, and two meshes, are symmetric in a
 // and b to round-off; all others exactly.
 // Allocates nothing; `cache` is memory only.

@@ -144,9 +144,18 @@ Polytope::Polytope(const std::vector<Vec3>& points, const std::string& source) {
   for (const Vec3& v : vertices_) middle += v / static_cast<double>(vertices_.size());
   for (const Face& face : faces_) thickness = std::min(thickness, face.d - face.n.dot(middle));
   if (!(thickness > flat)) rejectFlat(source);
-  const InsetHull inner = insetHull(vertices_, 0.05 * thickness);
-  inset_ = inner.corners.empty() ? 0 : inner.inset;
-  inset_vertices_ = inner.corners.empty() ? vertices_ : inner.corners;
+  inset_vertices_ = insetCorners(vertices_, 0.05 * thickness);
+  if (inset_vertices_.empty()) inset_vertices_ = vertices_;
+  inset_ = leastDepth(inset_vertices_);  // measured: Bullet's grid makes it up to a tenth less than was asked for
+}
+
+// How deep inside of every face all of `points` lie [m], 0 if one doesn't.
+double Polytope::leastDepth(const std::vector<Vec3>& points) const {
+  double least = kInfinity;
+  for (const Face& face : faces_) {
+    for (const Vec3& p : points) least = std::min(least, face.d - face.n.dot(p));
+  }
+  return std::max(least, 0.0);
 }
 
 // Faces with their loops; keeps the corners only, those where three faces meet.

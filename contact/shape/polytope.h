@@ -64,6 +64,7 @@ class Polytope {
   void setFaces(const std::vector<std::array<int, 3>>& facets, double flat, const std::string& source);
   void setEdges(const std::string& source);
   void setSurroundings();
+  double leastDepth(const std::vector<Vec3>& points) const;
 
   std::vector<Vec3> vertices_, inset_vertices_;
   std::vector<Face> faces_;

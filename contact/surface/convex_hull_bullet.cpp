@@ -9,9 +9,9 @@ namespace {
 
 static_assert(sizeof(btScalar) == sizeof(double));
 
-double computeHull(const std::vector<Vec3>& points, double shrink, double clamp, btConvexHullComputer& hull) {
-  if (points.empty()) return 0;
-  return hull.compute(points.front().data(), sizeof(Vec3), static_cast<int>(points.size()), shrink, clamp);
+void computeHull(const std::vector<Vec3>& points, double shrink, double clamp, btConvexHullComputer& hull) {
+  if (points.empty()) return;
+  hull.compute(points.front().data(), sizeof(Vec3), static_cast<int>(points.size()), shrink, clamp);
 }
 
 }  // namespace
@@ -25,15 +25,15 @@ std::vector<std::int32_t> hullCorners(const std::vector<Vec3>& points) {
   return corners;
 }
 
-InsetHull insetHull(const std::vector<Vec3>& points, double distance) {
+std::vector<Vec3> insetCorners(const std::vector<Vec3>& points, double distance) {
   btConvexHullComputer hull;
-  const double inset = computeHull(points, distance, 0.5, hull);
-  InsetHull inner{{}, inset};
+  computeHull(points, distance, 0.5, hull);
+  std::vector<Vec3> corners;
   for (int i = 0; i < hull.vertices.size(); ++i) {
     const btVector3& v = hull.vertices[i];
-    inner.corners.emplace_back(v.x(), v.y(), v.z());
+    corners.emplace_back(v.x(), v.y(), v.z());
   }
-  return inner;
+  return corners;
 }
 
 }  // namespace pincer::contact

@@ -130,17 +130,24 @@ std::vector<Patch> patchesOf(const HalfSpace&) {
   return patches;
 }
 
-// Each face as a fan of quadrilaterals with one side of no length.
+// A triangle as three quadrilaterals that meet in its middle: none has a side of no length, near which the zoom would lose its way.
+void addTriangle(std::vector<Patch>& patches, const std::array<Vec3, 3>& p) {
+  const Vec3 middle = (p[0] + p[1] + p[2]) / 3;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec3 corner = p[i], next = (p[i] + p[(i + 1) % 3]) / 2, before = (p[i] + p[(i + 2) % 3]) / 2;
+    patches.push_back({[=](double u, double v) {
+      return Vec3((1 - u) * (1 - v) * corner + u * (1 - v) * next + u * v * middle + (1 - u) * v * before);
+    }});
+  }
+}
+
+// Each face as a fan of triangles.
 std::vector<Patch> patchesOf(const Convex& c) {
   std::vector<Patch> patches;
-  const std::vector<Vec3>& corners = c.hull->vertices();
+  const auto corner = [&](int vertex) { return c.hull->vertices()[static_cast<std::size_t>(vertex)]; };
   for (const contact::Polytope::Face& face : c.hull->faces()) {
     const std::span<const int> loop = c.hull->cornersOf(face);
-    const Vec3 p0 = corners[static_cast<std::size_t>(loop[0])];
-    for (std::size_t k = 1; k + 1 < loop.size(); ++k) {
-      const Vec3 p1 = corners[static_cast<std::size_t>(loop[k])], p2 = corners[static_cast<std::size_t>(loop[k + 1])];
-      patches.push_back({[=](double u, double v) { return Vec3(p0 + u * (p1 + v * (p2 - p1) - p0)); }});
-    }
+    for (std::size_t k = 1; k + 1 < loop.size(); ++k) addTriangle(patches, {corner(loop[0]), corner(loop[k]), corner(loop[k + 1])});
   }
   return patches;
 }

@@ -280,7 +280,7 @@ TEST(Curve, KnowsNoPlaceDirectionOrScale) {
     const SurfaceVariant variant = kCurveVariants[i % 3];
     const double angle = random.uniform(0, 6.28), scale = std::pow(10.0, random.uniform(-3, 3));
     const Eigen::Rotation2Dd R(angle);
-    const Vec2 shift = 0.1 * Vec2(random.uniform(-1, 1), random.uniform(-1, 1));
+    const Vec2 shift = 0.1 * Vec2{random.uniform(-1, 1), random.uniform(-1, 1)};
     Polyline moved{{}, true};
     for (const Vec2& p : path.vertices) moved.vertices.push_back(scale * (R * p + shift));
     const Curve a(path, variant), b(moved, variant);

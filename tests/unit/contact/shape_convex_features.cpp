@@ -109,7 +109,7 @@ TEST(Polytope, HoldsItsPointsAndIsClosed) {
     }
     EXPECT_GT(hull->inset(), 0);
     for (const Polytope::Face& face : hull->faces()) {
-      for (const Vec3& p : hull->insetVertices()) ASSERT_LE(face.n.dot(p) - face.d, -0.9 * hull->inset());
+      for (const Vec3& p : hull->insetVertices()) ASSERT_LE(face.n.dot(p) - face.d, -hull->inset());
     }
   }
 }
@@ -127,7 +127,7 @@ TEST(Polytope, NearestPointIsTheOracles) {
   const Convex stone{tests::voussoir()};
   const SampledSurface surface(stone);
   for (int i = 0; i < 200; ++i) {
-    const Vec3 q(random.uniform(-0.04, 0.04), random.uniform(-0.03, 0.03), random.uniform(-0.03, 0.03));
+    const Vec3 q{random.uniform(-0.04, 0.04), random.uniform(-0.03, 0.03), random.uniform(-0.03, 0.03)};
     const NearestPoint s = nearestPoint(stone, q);
     ASSERT_NEAR(s.distance, surface.signedDistance(q), SampledSurface::kSamplingError);
     ASSERT_LE((s.p_BS + s.distance * s.n_B - q).norm(), 1e-15);

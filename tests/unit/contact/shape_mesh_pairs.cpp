@@ -148,7 +148,9 @@ TEST(MeshPairs, ApartConcaveMeshesAreAsFarAsTheNearestPairOfTriangles) {
     const PairPoints p = collide(mesh, X_BA, mesh, Pose{}, 0.01);
     const double exact = distanceOfAll(ring, X_BA, ring);
     if (exact > 0.01 || exact == 0) continue;
-    EXPECT_NEAR(leastGap(p), exact, 1e-9) << i;
+    EXPECT_GE(leastGap(p), exact - 1e-9) << i;  // round-off of triangles of 15 mm
+    EXPECT_LE(leastGap(p), exact + 1e-6)
+        << i;  // of points that differ by less, the one of the lowest feature leads, so that it stays the same
     ++apart;
   }
   EXPECT_GE(apart, 8);

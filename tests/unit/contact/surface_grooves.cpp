@@ -177,7 +177,7 @@ TEST(SurfaceGrooves, ContactsThatComeAndGoInOverlapAreEased) {
     last = tip.at(C);
     f0 = pushOf(last);
     for (int i = 0; i < 20000; ++i) {
-      v = 0.98 * v + 0.2 * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)) - 0.01 * C / C.norm();
+      v = 0.98 * v + 0.2 * Vec3{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)} - 0.01 * C / C.norm();
       Vec3 move = v;
       for (int k = 0; k < last.count; ++k) {
         const SurfaceContact& c = last.points[static_cast<std::size_t>(k)];
@@ -212,7 +212,7 @@ TEST(SurfaceGrooves, WhatIsSkippedWouldHaveFoundNothing) {
       skipped += skipping.tracker.p_BC_searched == searched && skipping.tracker.vouched > 0;
       ASSERT_EQ(a.count, b.count) << mesh.source << ' ' << i;
       ASSERT_LT((pushOf(a) - pushOf(b)).norm(), 2e-8) << mesh.source << ' ' << i;
-      v = 0.98 * v + 0.2 * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)) - 0.01 * C / C.norm();
+      v = 0.98 * v + 0.2 * Vec3{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)} - 0.01 * C / C.norm();
       Vec3 move = v;
       if (a.main().phi < -5e-4) move += 1.2 * a.main().n_B;
       C += 5e-5 * move / std::max(1.0, move.norm());
@@ -228,7 +228,7 @@ TEST(SurfaceGrooves, ManyMinimaAtOnceAreNoHarm) {
   Tip tip(bowl);
   RandomNumbers random(2);
   for (int i = 0; i < 3000; ++i) {
-    const SurfaceContacts contacts = tip.at(2e-4 * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)));
+    const SurfaceContacts contacts = tip.at(2e-4 * Vec3{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)});
     ASSERT_GE(contacts.count, 1);
     ASSERT_TRUE(pushOf(contacts).allFinite());
   }

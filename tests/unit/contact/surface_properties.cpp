@@ -33,7 +33,7 @@ std::vector<Vec3> wayOver(const SmoothMesh& object, int ticks, std::uint64_t see
   for (int i = 0; i < ticks; ++i) {
     const SurfaceContact c = object.querySphere(C, kFinger, 0, tracker, cache).main();
     way.push_back(C);
-    heading += 0.03 * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+    heading += 0.03 * Vec3{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
     heading = (heading - heading.dot(c.n_B) * c.n_B).normalized();
     C += 1e-4 * heading + std::clamp(-0.0015 * (1 - std::cos(0.01 * i)) - c.phi, -5e-5, 5e-5) * c.n_B;
   }

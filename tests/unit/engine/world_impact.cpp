@@ -150,7 +150,7 @@ TEST(Impact, ThrownBodiesNeverGainEnergy) {
     builder.addBody({"thing", n % 2 ? box : capsule, true, 0.1, material});
     const WorldModel model = builder.build();
     const auto vector = [&](double size) {
-      return Vec3(random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size));
+      return Vec3{random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size)};
     };
     WorldState state = makeState(model, {startAt(Vec3::Zero()), startAt(Vec3(0, 0, 0.1), vector(1), vector(30))}, {});
     WorldScratch scratch(model);

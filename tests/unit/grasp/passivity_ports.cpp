@@ -113,8 +113,8 @@ TEST(Passivity, DampsWithAtMostThirtyAndNeverTurnsAForceRound) {
   PassivityState state(3);
   std::vector<Vec3> p(3, Vec3::Zero()), f(3);
   for (int i = 0; i < 2000; ++i) {
-    for (Vec3& x : p) x += 1e-4 * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
-    for (Vec3& x : f) x = 5 * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+    for (Vec3& x : p) x += 1e-4 * Vec3{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
+    for (Vec3& x : f) x = 5 * Vec3{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
     const std::vector<Vec3> wanted = f;
     observePorts(options, p, 0, kTick, state);
     controlPorts(options, kTick, state, f);
