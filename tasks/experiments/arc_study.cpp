@@ -1,0 +1,214 @@
+#include "tasks/experiments/arc_study.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "contact/error.h"
+#include "tasks/participants/random.h"
+#include "tasks/study/counterbalance.h"
+
+namespace pincer::tasks {
+namespace {
+
+using contact::SurfaceVariant;
+
+constexpr double kBeyond = 0.15;                            // of the arc's ends over the strokes' [rad]
+constexpr double kLargestTurn = 0.5;                        // of a polygon that still covers the strokes [rad]
+constexpr double kBladeFlank = 0.03;                        // length of its sides [m]
+constexpr double kBladeTurn = 0.1;                          // from segment to segment of its tip [rad]
+constexpr std::uint64_t kWhichInterval = 1, kWhoFeels = 2;  // parts of a trial's seed
+
+StaircaseRule smoothnessRule() {
+  return {.start = 12 * kDegree,
+          .large_step = 0.5,
+          .small_step = 0.15,
+          .steps_are_ratios = true,
+          .large_reversals = 3,
+          .reversals = 11,
+          .averaged = 6,
+          .lowest = 0.02 * kDegree,
+          .highest = kLargestTurn,
+          .most_trials = 200};
+}
+
+StaircaseRule backlashRule() {
+  return {.start = 1.5e-3,
+          .large_step = 0.3e-3,
+          .small_step = 0.06e-3,
+          .large_reversals = 4,
+          .reversals = 14,
+          .averaged = 10,
+          .lowest = 0,
+          .highest = 12e-3,
+          .most_trials = 200};
+}
+
+StaircaseRule delayRule() {
+  return {.start = 0.15,
+          .large_step = 0.015,
+          .small_step = 0.006,
+          .large_reversals = 4,
+          .reversals = 14,
+          .averaged = 10,
+          .lowest = 0,
+          .highest = 0.5,
+          .most_trials = 200};
+}
+
+std::shared_ptr<const contact::Curve> curve(const contact::Polyline& polyline, SurfaceVariant variant) {
+  return std::make_shared<const contact::Curve>(polyline, variant);
+}
+
+}  // namespace
+
+ArcStudy smoothnessStudy() {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  ArcStudy study;
+  study.task = "smoothness-discrimination";
+  const StaircaseRule rule = smoothnessRule();
+  const auto smooth = SurfaceVariant::smooth, facet = SurfaceVariant::facet, force = SurfaceVariant::force;
+  study.conditions = {{"C1", "facets, force only", facet, {}, false, 1, rule, 0.5 * kDegree},
+                      {"C2", "force shading, force only", force, {}, false, 1, rule, 3.4 * kDegree},
+                      {"C3", "force shading + facets on the tactor", force, facet, false, 1, rule, 0.2 * kDegree},
+                      {"C4", "force and tactile shading", force, smooth, false, 1, rule, 3.5 * kDegree},
+                      {"P1", "2D algorithm, force only (pilot)", smooth, {}, false, 1, rule, 14.8 * kDegree},
+                      {"P2", "2D algorithm, force and tactor (pilot)", smooth, smooth, false, 1, rule, kNone}};
+  return study;
+}
+
+ArcStudy backlashStudy() {
+  ArcStudy study;
+  study.task = "backlash-discrimination";
+  study.quantity = ArcQuantity::kBacklash;
+  study.finger_radius = 0.013;
+  study.arc_radius = 0.095;
+  const auto smooth = SurfaceVariant::smooth;
+  study.conditions = {{"low-curvature", "95 mm cylinder", smooth, smooth, false, 1, backlashRule(), 0.46e-3},
+                      {"edge", "2-degree edge", smooth, smooth, true, 1, backlashRule(), 0.93e-3}};
+  return study;
+}
+
+ArcStudy delayStudy() {
+  ArcStudy study = backlashStudy();
+  study.task = "delay-discrimination";
+  study.quantity = ArcQuantity::kDelay;
+  const auto smooth = SurfaceVariant::smooth;
+  study.conditions = {{"whole", "whole travel", smooth, smooth, false, 1, delayRule(), 0.061},
+                      {"front-end", "tactor held at two thirds of its travel", smooth, smooth, false, 2. / 3, delayRule(), 0.132}};
+  return study;
+}
+
+void validate(const ArcStudy& study) {
+  const auto require = [&](bool ok, const char* field, double value, const char* range) {
+    if (!ok)
+      throw InputError(
+          fmt::format("{}: {} = {:g} is out of range {}. Leave it out for the published design.", study.task, field, value, range));
+  };
+  require(study.participants >= 1 && study.participants <= 10'000, "participants", study.participants, "[1, 10000]");
+  require(study.finger_radius >= 2e-3 && study.finger_radius <= 0.05, "finger_radius", study.finger_radius, "[0.002, 0.05] m");
+  require(study.arc_radius >= 0.01 && study.arc_radius <= 0.2, "arc_radius", study.arc_radius, "[0.01, 0.2] m");
+  require(study.edge_angle > 0 && study.edge_angle < std::numbers::pi, "edge_angle", study.edge_angle, "(0, pi) rad");
+  require(study.edge_radius >= 1e-4 && study.edge_radius <= 0.05, "edge_radius", study.edge_radius, "[0.0001, 0.05] m");
+  require(study.tactor_reach > 0 && study.tactor_reach <= 8e-3, "tactor_reach", study.tactor_reach, "(0, 0.008] m");
+  require(study.tactor_reach / study.finger_radius <= 1, "tactor_reach", study.tactor_reach,
+          "(0, finger_radius]: a radian of stroke either way");
+  require(study.reference_turn >= 1e-4 && study.reference_turn <= 0.1, "reference_turn", study.reference_turn, "[0.0001, 0.1] rad");
+  require(study.stiffness > 0 && study.stiffness <= 3500, "stiffness", study.stiffness, "(0, 3500] N/m");
+  require(study.strokes >= 2 && study.strokes <= 100 && study.strokes % 2 == 0, "strokes", study.strokes, "[2, 100], even");
+  require(!study.conditions.empty(), "conditions", 0, "[1, inf)");
+  for (const ArcCondition& c : study.conditions) {
+    require(c.travel_share > 0 && c.travel_share <= 1, "travel_share", c.travel_share, "(0, 1]");
+    const std::string problem = problemWith(c.staircase);
+    if (!problem.empty()) throw InputError(fmt::format("{}: condition {}: staircase: {}.", study.task, c.name, problem));
+    const double most = study.quantity == ArcQuantity::kTurn ? kLargestTurn : study.quantity == ArcQuantity::kDelay ? 0.512 : 0.05;
+    require(c.staircase.highest <= most && c.staircase.lowest >= (study.quantity == ArcQuantity::kTurn ? 1e-5 : 0), "staircase.highest",
+            c.staircase.highest, "what can be shown: a turn in [0.00001, 0.5] rad, a backlash in [0, 0.05] m, a delay in [0, 0.512] s");
+  }
+}
+
+ArcExperiment::ArcExperiment(const ArcStudy& study, const ServoOptions& servo, int stride) : study_(study), servo_(servo), stride_(stride) {
+  validate(study);
+}
+
+std::vector<StudyRun> ArcExperiment::runs() const {
+  std::vector<StudyRun> runs;
+  const auto rows = carryOverSquare(static_cast<int>(study_.conditions.size()));
+  for (int p = 0; p < study_.participants; ++p) {
+    std::int64_t place = 0;
+    for (const int c : rows[static_cast<std::size_t>(p) % rows.size()]) {
+      const ArcCondition& condition = study_.conditions[static_cast<std::size_t>(c)];
+      runs.push_back({p, place++, condition.name, condition.staircase, {}});
+    }
+  }
+  return runs;
+}
+
+std::optional<ResponseRecord> ArcExperiment::present(const StudyTrial& trial, StudySink& sink, const std::atomic<bool>& interrupted,
+                                                     ServoReport& served) {
+  const int comparison = 1 + static_cast<int>(Random(seedFor(trial.seed, kWhichInterval)).below(2));
+  StrokeObserver observer(trial.person_seed);
+  ArcTrial cycle(setupOf(trial, comparison), observer, sink);
+  const ServoReport report = runServo(servo_, cycle, interrupted);
+  served.add(report);
+  if (report.interrupted) return std::nullopt;
+  ResponseRecord response;
+  response.level = trial.stimulus.level;
+  response.interval = comparison;
+  response.answer = std::to_string(cycle.answer());
+  response.answer_value = cycle.answer();
+  response.correct = cycle.answer() == comparison;
+  cycle.measure(response);
+  return response;
+}
+
+ArcTrialSetup ArcExperiment::setupOf(const StudyTrial& trial, int comparison) const {
+  const auto found = std::find_if(study_.conditions.begin(), study_.conditions.end(),
+                                  [&](const ArcCondition& c) { return c.name == trial.run->condition; });
+  ArcTrialSetup setup;
+  setup.finger_radius = study_.finger_radius;
+  setup.path_radius = study_.finger_radius + (found->edge ? study_.edge_radius : study_.arc_radius);
+  setup.half_angle = study_.tactor_reach / study_.finger_radius;
+  setup.strokes = study_.strokes;
+  setup.stiffness = study_.stiffness;
+  setup.question = study_.quantity == ArcQuantity::kTurn ? StrokeQuestion::kRougher : StrokeQuestion::kLater;
+  for (int i = 1; i <= 2; ++i)
+    setup.intervals[static_cast<std::size_t>(i - 1)] = intervalOf(*found, i == comparison ? trial.stimulus.level : 0);
+  setup.trial = trial.trial;
+  setup.seed = seedFor(trial.seed, kWhoFeels);
+  setup.stride = stride_;
+  return setup;
+}
+
+// `level` 0: the reference.
+ArcInterval ArcExperiment::intervalOf(const ArcCondition& condition, double level) const {
+  const bool turned = study_.quantity == ArcQuantity::kTurn && level > 0;
+  const double sweep = 2 * (study_.tactor_reach / study_.finger_radius + kBeyond);
+  const contact::Polyline polyline =
+      condition.edge ? blade() : contact::arcPolygon(study_.arc_radius, turned ? level : study_.reference_turn, sweep);
+  ArcInterval interval;
+  interval.shown.force = curve(polyline, turned ? condition.force : SurfaceVariant::smooth);
+  if (condition.tactile) interval.shown.tactile = curve(polyline, turned ? *condition.tactile : SurfaceVariant::smooth);
+  interval.shown.largest_place = condition.travel_share * study_.tactor_reach;
+  if (study_.quantity == ArcQuantity::kBacklash) interval.transmission.backlash = level;
+  if (study_.quantity == ArcQuantity::kDelay) interval.transmission.delay = static_cast<int>(std::lround(1000 * level));
+  return interval;
+}
+
+// Up one side and down the other, the body on the left: from the right flank over the tip to the left one.
+contact::Polyline ArcExperiment::blade() const {
+  const double lean = 0.5 * (std::numbers::pi - study_.edge_angle);  // of a flank's normal from +z
+  contact::Polyline polyline;
+  const int segments = static_cast<int>(std::ceil(2 * lean / kBladeTurn));
+  const auto onTip = [&](double a) { return Vec2(study_.edge_radius * Vec2(-std::sin(a), std::cos(a))); };
+  const auto along = [&](double a) { return Vec2(-std::cos(a), -std::sin(a)); };  // counter-clockwise
+  polyline.vertices.push_back(onTip(-lean) - kBladeFlank * along(-lean));
+  for (int k = 0; k <= segments; ++k) polyline.vertices.push_back(onTip(lean * (2.0 * k / segments - 1)));
+  polyline.vertices.push_back(onTip(lean) + kBladeFlank * along(lean));
+  return polyline;
+}
+
+}  // namespace pincer::tasks
