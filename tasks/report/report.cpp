@@ -36,17 +36,23 @@ std::string writeFigure(const std::string& directory, const Picture& picture) {
 
 }  // namespace
 
-ReportFiles writeReport(const SessionReader& session, const std::string& html_path, const ReportOptions& options) {
+std::string plotAndWrite(std::vector<Picture>& pictures, const std::string& html_path, const ReportOptions& options, ReportFiles& files) {
   const std::filesystem::path path(html_path);
   const std::string figures_name = path.stem().string() + "_figures";
-  ReportFiles files{html_path, (path.parent_path() / figures_name).string(), {}};
-  const SessionSummary summary = summariseSession(session);
-  const std::vector<TrialRecord> trials = session.trials();
-  std::vector<Picture> pictures = wantedPictures(session, summary, trials);
+  files = {html_path, (path.parent_path() / figures_name).string(), {}};
   Gnuplot gnuplot(options.gnuplot);
   for (Picture& picture : pictures) picture.png = gnuplot.plot(picture.figure);
   makeDirectory(files.figures_directory);
   for (const Picture& picture : pictures) files.figures.push_back(writeFigure(files.figures_directory, picture));
+  return figures_name;
+}
+
+ReportFiles writeReport(const SessionReader& session, const std::string& html_path, const ReportOptions& options) {
+  const SessionSummary summary = summariseSession(session);
+  const std::vector<TrialRecord> trials = session.trials();
+  std::vector<Picture> pictures = wantedPictures(session, summary, trials);
+  ReportFiles files;
+  const std::string figures_name = plotAndWrite(pictures, html_path, options, files);
   writeAtomically(html_path, reportHtml(summary, trials, pictures, figures_name));
   return files;
 }
