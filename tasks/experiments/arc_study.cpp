@@ -151,6 +151,7 @@ std::optional<ResponseRecord> ArcExperiment::present(const StudyTrial& trial, St
                                                      ServoReport& served) {
   const int comparison = 1 + static_cast<int>(Random(seedFor(trial.seed, kWhichInterval)).below(2));
   StrokeObserver observer(trial.person_seed);
+  observer.begin(cuesOf(trial));
   ArcTrial cycle(setupOf(trial, comparison), observer, sink);
   const ServoReport report = runServo(servo_, cycle, interrupted);
   served.add(report);
@@ -158,27 +159,45 @@ std::optional<ResponseRecord> ArcExperiment::present(const StudyTrial& trial, St
   ResponseRecord response;
   response.level = trial.stimulus.level;
   response.interval = comparison;
-  response.answer = std::to_string(cycle.answer());
-  response.answer_value = cycle.answer();
-  response.correct = cycle.answer() == comparison;
+  const int answer = cycle.answered() ? observer.answer() : 0;
+  response.answer = std::to_string(answer);
+  response.answer_value = answer;
+  response.correct = answer == comparison;
   cycle.measure(response);
   return response;
 }
 
+const ArcCondition& ArcExperiment::conditionOf(const StudyTrial& trial) const {
+  return *std::find_if(study_.conditions.begin(), study_.conditions.end(),
+                       [&](const ArcCondition& c) { return c.name == trial.run->condition; });
+}
+
+double ArcExperiment::pathRadius(const ArcCondition& condition) const {
+  return study_.finger_radius + (condition.edge ? study_.edge_radius : study_.arc_radius);
+}
+
+StrokeCues ArcExperiment::cuesOf(const StudyTrial& trial) const {
+  StrokeCues cues;
+  cues.seed = seedFor(trial.seed, kWhoFeels);
+  cues.radius = pathRadius(conditionOf(trial));
+  const Pose X_WD = arcArmBase(cues.radius);
+  cues.q_WD = X_WD.q;
+  cues.p_WD = X_WD.p;
+  cues.half_angle = study_.tactor_reach / study_.finger_radius;
+  cues.strokes = study_.strokes;
+  cues.question = study_.quantity == ArcQuantity::kTurn ? StrokeQuestion::kRougher : StrokeQuestion::kLater;
+  return cues;
+}
+
 ArcTrialSetup ArcExperiment::setupOf(const StudyTrial& trial, int comparison) const {
-  const auto found = std::find_if(study_.conditions.begin(), study_.conditions.end(),
-                                  [&](const ArcCondition& c) { return c.name == trial.run->condition; });
+  const ArcCondition& condition = conditionOf(trial);
   ArcTrialSetup setup;
   setup.finger_radius = study_.finger_radius;
-  setup.path_radius = study_.finger_radius + (found->edge ? study_.edge_radius : study_.arc_radius);
-  setup.half_angle = study_.tactor_reach / study_.finger_radius;
-  setup.strokes = study_.strokes;
+  setup.path_radius = pathRadius(condition);
+  setup.start_angle = -study_.tactor_reach / study_.finger_radius;
   setup.stiffness = study_.stiffness;
-  setup.question = study_.quantity == ArcQuantity::kTurn ? StrokeQuestion::kRougher : StrokeQuestion::kLater;
-  for (int i = 1; i <= 2; ++i)
-    setup.intervals[static_cast<std::size_t>(i - 1)] = intervalOf(*found, i == comparison ? trial.stimulus.level : 0);
+  for (int i = 1; i <= 2; ++i) setup.intervals.push_back(intervalOf(condition, i == comparison ? trial.stimulus.level : 0));
   setup.trial = trial.trial;
-  setup.seed = seedFor(trial.seed, kWhoFeels);
   setup.stride = stride_;
   return setup;
 }

@@ -16,6 +16,7 @@
 #include <memory>
 
 #include "tasks/experiments/arc_trial.h"
+#include "tasks/participants/stroke_observer.h"
 
 namespace pincer::tasks {
 
@@ -63,6 +64,9 @@ class ArcExperiment final : public Experiment {
                                         ServoReport& served) override;
 
  private:
+  const ArcCondition& conditionOf(const StudyTrial& trial) const;
+  double pathRadius(const ArcCondition& condition) const;
+  StrokeCues cuesOf(const StudyTrial& trial) const;
   ArcTrialSetup setupOf(const StudyTrial& trial, int comparison) const;
   ArcInterval intervalOf(const ArcCondition& condition, double level) const;
   contact::Polyline blade() const;

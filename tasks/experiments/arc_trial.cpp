@@ -10,18 +10,11 @@ constexpr double kFingerMoves = 5e-3;      // slower, it rests [m/s]
 constexpr double kTactorMoves = 1e-3;      // likewise [m/s]
 constexpr std::int64_t kTactorTicks = 20;  // over which its speed is taken: one count of the encoder is then 0.04 mm/s
 
-// D: x right, y up, z towards the operator.
-Quat armInWorld() {
-  Mat3 R;
-  R << 1, 0, 0, 0, 0, -1, 0, 1, 0;
-  return Quat(R);
-}
-
-devices::SimArmSettings arcArm(const StrokeCues& cues) {
+devices::SimArmSettings arcArm(const ArcTrialSetup& setup) {
   devices::SimArmSettings settings;
   settings.serial = "index";
-  const Vec3 start_W = (cues.radius + 0.01) * Vec3(-std::sin(cues.half_angle), 0, std::cos(cues.half_angle));
-  settings.start_D = cues.q_WD.conjugate() * (start_W - cues.p_WD);
+  const Vec3 start_W = (setup.path_radius + 0.01) * Vec3(std::sin(setup.start_angle), 0, std::cos(setup.start_angle));
+  settings.start_D = arcArmBase(setup.path_radius).inverse() * start_W;
   return settings;
 }
 
@@ -32,29 +25,22 @@ devices::SimOneDofCldSettings arcDisplay(const ArcTrialSetup& setup) {
   return settings;
 }
 
-StrokeCues arcCues(const ArcTrialSetup& setup) {
-  StrokeCues cues;
-  cues.seed = setup.seed;
-  cues.q_WD = armInWorld();
-  cues.p_WD = Vec3(0, 0, setup.path_radius);
-  cues.radius = setup.path_radius;
-  cues.half_angle = setup.half_angle;
-  cues.strokes = setup.strokes;
-  cues.question = setup.question;
-  return cues;
-}
-
 }  // namespace
 
-ArcTrial::ArcTrial(const ArcTrialSetup& setup, StrokeObserver& observer, StudySink& sink)
-    : setup_(setup), observer_(observer), sink_(sink), arm_(arcArm(arcCues(setup))), display_(arcDisplay(setup)) {
-  const StrokeCues cues = arcCues(setup);
-  model_.X_WD = {cues.q_WD, cues.p_WD};
+// D: x right, y up, z towards the operator.
+Pose arcArmBase(double path_radius) {
+  Mat3 R;
+  R << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+  return {Quat(R), Vec3(0, 0, path_radius)};
+}
+
+ArcTrial::ArcTrial(const ArcTrialSetup& setup, OneFingerObserver& observer, StudySink& sink)
+    : setup_(setup), observer_(observer), sink_(sink), arm_(arcArm(setup)), display_(arcDisplay(setup)) {
+  model_.X_WD = arcArmBase(setup.path_radius);
   model_.finger_radius = setup.finger_radius;
   model_.stiffness = setup.stiffness;
   devices::arm(state_.gate);
   display_.setTransmission(interval().transmission);
-  observer_.begin(cues);
   // The hand is on the arm before the first tick.
   arm_.setHand(observer_.act({arm_.sample(), Vec3::Zero(), display_.sample()}, 0, Cue::kNone).pull);
 }
@@ -73,14 +59,14 @@ bool ArcTrial::tick(double now) {
   arm_.commandForce(out_.f_D);
   display_.command(out_.tactile);
   if (stage_ == Stage::kInterval) count(tactile, dt);
-  const StrokeAction action = observer_.act({arm, out_.f_D, tactile}, now, cue_);
+  const OneFingerAction action = observer_.act({arm, out_.f_D, tactile}, now, cue_);
   arm_.setHand(action.pull);
   advance(action, now);
   if (ticks_++ % setup_.stride == 0) record(tactile, now);
   return stage_ != Stage::kOver;
 }
 
-void ArcTrial::advance(const StrokeAction& action, double now) {
+void ArcTrial::advance(const OneFingerAction& action, double now) {
   cue_ = Cue::kNone;
   if (state_.gate.trip != devices::Trip::kNone) return end("fault");
   if (now > setup_.timeout) return end("timeout");
@@ -89,14 +75,15 @@ void ArcTrial::advance(const StrokeAction& action, double now) {
     entered_ = now;
     cue_ = Cue::kStart;
   } else if (stage_ == Stage::kInterval && action.interval_over) {
-    stage_ = shown_ == 0 ? Stage::kPause : Stage::kAnswer;
+    const bool last = shown_ + 1 == static_cast<int>(setup_.intervals.size());
+    stage_ = last ? Stage::kAnswer : Stage::kPause;
     entered_ = now;
-    if (shown_ == 1) return;
-    shown_ = 1;
+    if (last) return;
+    ++shown_;
     display_.setTransmission(interval().transmission);
     state_.force_tracker = state_.tactile_tracker = {};
-  } else if (stage_ == Stage::kAnswer && action.answer != 0) {
-    answer_ = action.answer;
+  } else if (stage_ == Stage::kAnswer && action.answered) {
+    answered_ = true;
     answered_after_ = now - entered_;
     end("answered");
   }

@@ -8,13 +8,13 @@
 // The set-up: an arm whose base frame D has x right, y up and z towards the operator (W: x right, y away, z up), the fingertip's pad down, a
 // 1-DOF contact location display on it whose roller moves to the right for contacts on the right of the pad.
 #pragma once
-#include <array>
 #include <optional>
+#include <vector>
 
 #include "devices/arm/sim_arm.h"
 #include "devices/cld/sim_one_dof_cld.h"
 #include "tasks/experiments/study.h"
-#include "tasks/participants/stroke_observer.h"
+#include "tasks/participants/one_finger.h"
 #include "tasks/servo/planar_tick.h"
 #include "tasks/servo/servo.h"
 
@@ -26,42 +26,43 @@ struct ArcInterval {
 };
 
 struct ArcTrialSetup {
-  double finger_radius = 0.02;  // [m]
-  double path_radius = 0.12;    // of the circle about B's origin on which the fingertip's centre goes [m]
-  double half_angle = 0.4;      // of the strokes [rad]
-  int strokes = 4;
-  double stiffness = 1000;  // of the surface [N/m]
-  double timeout = 120;     // of a trial [s]
-  StrokeQuestion question = StrokeQuestion::kRougher;
-  std::array<ArcInterval, 2> intervals;
+  double finger_radius = 0.02;         // [m]
+  double path_radius = 0.12;           // of the circle about B's origin on which the fingertip's centre goes [m]
+  double start_angle = -0.4;           // where on it the finger waits, from +z [rad]
+  double stiffness = 1000;             // of the surface [N/m]
+  double timeout = 120;                // of a trial [s]
+  std::vector<ArcInterval> intervals;  // one or two
   std::int64_t trial = 0;
-  std::uint64_t seed = 0;
   int stride = 50;  // every stride-th tick is recorded
 };
 
+// Base of the arm whose fingertip, at the arm's reset place, is on top of the path.
+Pose arcArmBase(double path_radius);
+
 class ArcTrial final : public ServoCycle {
  public:
-  ArcTrial(const ArcTrialSetup& setup, StrokeObserver& observer, StudySink& sink);
+  // `observer` has begun, and outlives the trial.
+  ArcTrial(const ArcTrialSetup& setup, OneFingerObserver& observer, StudySink& sink);
 
   bool tick(double now) override;
   void cutForces() noexcept override { cut_ = true; }
 
-  // Once the servo has returned: 1 or 2, or 0 after a fault or a time-out.
-  int answer() const { return answer_; }
+  // Once the servo has returned.
+  bool answered() const { return answered_; }  // false after a fault or a time-out
   // Outcome, duration, response time, share of contact and speeds.
   void measure(ResponseRecord& response) const;
 
  private:
   enum class Stage : std::uint8_t { kPrepare, kPause, kInterval, kAnswer, kOver };
 
-  void advance(const StrokeAction& action, double now);
+  void advance(const OneFingerAction& action, double now);
   void count(const devices::TactileSample& tactile, double dt);
   void record(const devices::TactileSample& tactile, double now);
   void end(const char* outcome);
   const ArcInterval& interval() const { return setup_.intervals[static_cast<std::size_t>(shown_)]; }
 
   ArcTrialSetup setup_;
-  StrokeObserver& observer_;
+  OneFingerObserver& observer_;
   StudySink& sink_;
   PlanarTickModel model_;
   PlanarTickState state_;
@@ -70,7 +71,8 @@ class ArcTrial final : public ServoCycle {
   devices::SimOneDofCld display_;
   Stage stage_ = Stage::kPrepare;
   Cue cue_ = Cue::kNone;
-  int shown_ = 0, answer_ = 0;
+  int shown_ = 0;
+  bool answered_ = false;
   double now_ = 0, entered_ = 0;              // [s]
   double shown_time_ = 0, contact_time_ = 0;  // [s]
   double answered_after_ = 0;                 // [s]

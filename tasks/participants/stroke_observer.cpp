@@ -35,9 +35,9 @@ void StrokeObserver::begin(const StrokeCues& cues) {
   enter(Phase::kWait);
 }
 
-StrokeAction StrokeObserver::act(const FingerPercept& finger, double time, Cue cue) {
+OneFingerAction StrokeObserver::act(const FingerPercept& finger, double time, Cue cue) {
   now_ = time;
-  StrokeAction action;
+  OneFingerAction action;
   if (phase_ == Phase::kWait && cue == Cue::kStart) enter(Phase::kLower);
   feel(finger);
   follow(action);
@@ -55,7 +55,7 @@ void StrokeObserver::enter(Phase phase) {
   returned_ = true;
 }
 
-void StrokeObserver::follow(StrokeAction& action) {
+void StrokeObserver::follow(OneFingerAction& action) {
   const double t = now_ - entered_;
   const double pressed = -limits_.press / body_.hands[0].stiffness;
   const double from = (stroke_ % 2 ? 1 : -1) * cues_.half_angle;
@@ -86,7 +86,7 @@ void StrokeObserver::follow(StrokeAction& action) {
       stroke_ = 0;
       break;
     case Phase::kAnswer:
-      if (t >= limits_.common.reaction_time) action.answer = compared();
+      action.answered = t >= limits_.common.reaction_time;
       break;
   }
   action.pull = pullAt(angle, height);

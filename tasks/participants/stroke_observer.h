@@ -19,7 +19,7 @@
 #include <cstdint>
 
 #include "tasks/participants/body.h"
-#include "tasks/participants/participant.h"
+#include "tasks/participants/one_finger.h"
 #include "tasks/participants/skin.h"
 
 namespace pincer::tasks {
@@ -49,20 +49,14 @@ struct StrokeCues {
   StrokeQuestion question = StrokeQuestion::kRougher;
 };
 
-struct StrokeAction {
-  devices::HandPull pull;
-  bool interval_over = false;  // the reading is done: for one tick
-  int answer = 0;              // 1 or 2 once given
-};
-
-class StrokeObserver {
+class StrokeObserver final : public OneFingerObserver {
  public:
   // `seed` makes the participant: hand, speed, sensitivity.
   explicit StrokeObserver(std::uint64_t seed, const StrokeLimits& limits = {}, const HandRanges& ranges = {});
 
   void begin(const StrokeCues& cues);
-  // One millisecond. Each kStart begins an interval. Allocates nothing, throws nothing.
-  StrokeAction act(const FingerPercept& finger, double time, Cue cue);
+  OneFingerAction act(const FingerPercept& finger, double time, Cue cue) override;
+  int answer() const { return compared(); }  // 1 or 2: the interval named
 
  private:
   enum class Phase : std::uint8_t { kWait, kLower, kStroke, kRaise, kRead, kAnswer };
@@ -72,7 +66,7 @@ class StrokeObserver {
   };
 
   void enter(Phase phase);
-  void follow(StrokeAction& action);
+  void follow(OneFingerAction& action);
   void feel(const FingerPercept& finger);
   void feelTurn(double place);
   void readInterval();

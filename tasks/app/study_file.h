@@ -1,0 +1,26 @@
+// study_file: the protocol of an experiment as JSON: what `pincer run TASK --print-study` prints and `--study FILE` reads. Every key may be
+// left out; then the published design holds. SI units and radians. Mistakes get line, value and remedy (tasks/scene/strict_json.h).
+#pragma once
+#include <string>
+
+#include "tasks/experiments/arc_study.h"
+#include "tasks/experiments/localisation.h"
+
+namespace pincer::tasks {
+
+// Changes what the file at `path` names. A list of conditions replaces the whole list; one with the name of a published condition begins as
+// that. Throws InputError.
+void readStudy(const std::string& path, ArcStudy& study);
+void readStudy(const std::string& path, LocalisationStudy& study);
+
+std::string studyJson(const ArcStudy& study);
+std::string studyJson(const LocalisationStudy& study);
+
+// What a session keeps: the study, the simulated participants' frozen parameters, and the fingerprint of both.
+std::string protocolJson(const ArcStudy& study);
+std::string protocolJson(const LocalisationStudy& study);
+
+// 16 hexadecimal digits that stand for a text (FNV-1a, 64 bits: G. Fowler, L. C. Noll, K.-P. Vo).
+std::string fingerprint(const std::string& text);
+
+}  // namespace pincer::tasks
