@@ -7,6 +7,7 @@
 #include "tasks/app/app.h"
 #include "tasks/app/commands.h"
 #include "tasks/report/report.h"
+#include "tasks/report/study_report.h"
 
 namespace pincer::tasks {
 namespace {
@@ -22,12 +23,21 @@ struct ReportArguments {
   bool json = false;
 };
 
+int reportStudy(const SessionReader& session, const std::string& html, bool as_json) {
+  const StudySummary summary = summariseStudy(session, session.responses());
+  fmt::print("{}\n", as_json ? studySummaryJson(summary) : formatStudyTable(summary));
+  fmt::print(as_json ? stderr : stdout, "Report: {}\n", writeStudyReport(session, html).html);
+  return kExitOk;
+}
+
 int report(const ReportArguments& arguments) {
   const SessionReader session(arguments.session);
+  const std::string beside = (std::filesystem::path(arguments.session).parent_path() / "report.html").string();
+  const std::string html = arguments.html.empty() ? beside : arguments.html;
+  if (isStudy(session.info().task)) return reportStudy(session, html, arguments.json);
   const SessionSummary summary = summariseSession(session);
   fmt::print("{}\n", arguments.json ? summaryJson(summary) : formatTable(summary));
-  const std::string beside = (std::filesystem::path(arguments.session).parent_path() / "report.html").string();
-  const ReportFiles files = writeReport(session, arguments.html.empty() ? beside : arguments.html);
+  const ReportFiles files = writeReport(session, html);
   fmt::print(arguments.json ? stderr : stdout, "Report: {}\n", files.html);
   return kExitOk;
 }

@@ -9,5 +9,10 @@ class App;
 namespace pincer::tasks {
 
 void addSpherePickupTask(CLI::App& run, int& exit_code);
+// In run_studies.cpp:
+void addSmoothnessTask(CLI::App& run, int& exit_code);
+void addBacklashTask(CLI::App& run, int& exit_code);
+void addDelayTask(CLI::App& run, int& exit_code);
+void addLocalisationTask(CLI::App& run, int& exit_code);
 
 }  // namespace pincer::tasks

@@ -120,18 +120,15 @@ std::string objectJson(const Object& object) {
   return json.text();
 }
 
-template <class Study, class Limits>
-std::string wholeProtocol(const Study& study, const Limits& limits) {
-  const std::string frozen = objectJson(study) + objectJson(limits) + objectJson(HandRanges{});
+template <class Limits>
+std::string peopleJson(const Limits& limits) {
   JsonWriter json;
-  json.beginObject().key("fingerprint").value(fingerprint(frozen)).key("study");
   FieldWriter writer(json);
-  writer.writeObject(study);
-  json.key("participant").beginObject().key("limits");
+  json.beginObject().key("limits");
   writer.writeObject(limits);
   json.key("hands");
   writer.writeObject(HandRanges{});
-  return json.endObject().endObject().text();
+  return json.endObject().text();
 }
 
 }  // namespace
@@ -140,8 +137,8 @@ void readStudy(const std::string& path, ArcStudy& study) { readStudyFile(path, s
 void readStudy(const std::string& path, LocalisationStudy& study) { readStudyFile(path, study); }
 std::string studyJson(const ArcStudy& study) { return objectJson(study); }
 std::string studyJson(const LocalisationStudy& study) { return objectJson(study); }
-std::string protocolJson(const ArcStudy& study) { return wholeProtocol(study, StrokeLimits{}); }
-std::string protocolJson(const LocalisationStudy& study) { return wholeProtocol(study, PlaceLimits{}); }
+std::string participantsJson(const ArcStudy&) { return peopleJson(StrokeLimits{}); }
+std::string participantsJson(const LocalisationStudy&) { return peopleJson(PlaceLimits{}); }
 
 std::string fingerprint(const std::string& text) {
   std::uint64_t hash = 14695981039346656037u;

@@ -16,9 +16,9 @@ void readStudy(const std::string& path, LocalisationStudy& study);
 std::string studyJson(const ArcStudy& study);
 std::string studyJson(const LocalisationStudy& study);
 
-// What a session keeps: the study, the simulated participants' frozen parameters, and the fingerprint of both.
-std::string protocolJson(const ArcStudy& study);
-std::string protocolJson(const LocalisationStudy& study);
+// The parameters of the simulated participants that do the study, frozen before it.
+std::string participantsJson(const ArcStudy& study);
+std::string participantsJson(const LocalisationStudy& study);
 
 // 16 hexadecimal digits that stand for a text (FNV-1a, 64 bits: G. Fowler, L. C. Noll, K.-P. Vo).
 std::string fingerprint(const std::string& text);

@@ -101,7 +101,7 @@ std::string htmlHead(const std::string& title, const std::string& warning) {
 
 std::string htmlFoot(const SessionInfo& info) {
   return "<h2>What was run</h2>\n" + htmlDetails("scene", info.scene_json) + htmlDetails("protocol", info.protocol_json) +
-         htmlDetails("devices", info.devices_json) + "</body>\n</html>\n";
+         htmlDetails("devices", info.devices_json) + htmlDetails("participants", info.participants_json) + "</body>\n</html>\n";
 }
 
 }  // namespace pincer::tasks

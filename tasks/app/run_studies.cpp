@@ -1,0 +1,158 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "contact/error.h"
+#include "tasks/app/app.h"
+#include "tasks/app/interrupt.h"
+#include "tasks/app/json_writer.h"
+#include "tasks/app/progress.h"
+#include "tasks/app/run_options.h"
+#include "tasks/app/run_tasks.h"
+#include "tasks/app/servo_text.h"
+#include "tasks/app/study_file.h"
+#include "tasks/app/study_session.h"
+#include "tasks/report/study_report.h"
+#include "tasks/session/atomic_file.h"
+
+namespace pincer::tasks {
+namespace {
+
+struct StudyArguments {
+  RunOptions run;
+  std::string study_file;
+  std::optional<int> participants;
+  std::optional<std::uint64_t> seed;
+  bool print_study = false;
+};
+
+// A study's parameters: the published design, changed by the file and then by the command line.
+template <class Study>
+Study studyOf(Study study, const StudyArguments& arguments) {
+  if (!arguments.study_file.empty()) readStudy(arguments.study_file, study);
+  if (arguments.participants) study.participants = *arguments.participants;
+  if (arguments.seed) study.seed = *arguments.seed;
+  validate(study);
+  return study;
+}
+
+int strideOf(const RunOptions& options) {
+  const int rate = options.sample_rate;
+  if (rate >= 1 && rate <= 1000 && 1000 % rate == 0) return 1000 / rate;
+  throw InputError(
+      fmt::format("run: --sample-rate {} is out of range: a whole number in [1, 1000] Hz that divides 1000. Take for example 1000, "
+                  "200, 50 or 20.",
+                  rate));
+}
+
+std::string devicesJsonOf(const RunOptions& options, const char* display) {
+  JsonWriter json;
+  json.beginObject().key("arms").value("simulated").key("tactile_display").value(display).key("rate").value(options.servo.rate);
+  return json.key("sample_rate").value(options.sample_rate).key("real_time").value(options.servo.real_time).endObject().text();
+}
+
+int showStudy(const StudyArguments& arguments, const std::string& directory, const StudyOutcome& outcome) {
+  const SessionReader session(directory + "/session.db");
+  const StudySummary summary = summariseStudy(session, session.responses());
+  fmt::print("{}\n", arguments.run.json ? studySummaryJson(summary) : formatStudyTable(summary));
+  const auto say = [&](const std::string& line) { fmt::print(arguments.run.json ? stderr : stdout, "{}\n", line); };
+  const ServoReport& servo = outcome.servo;
+  if (arguments.run.servo.real_time) say(servoText(servo, 1 / arguments.run.servo.rate));
+  const double simulated = static_cast<double>(servo.ticks) / arguments.run.servo.rate;
+  say(fmt::format("{:.0f} s in {:.0f} s of computing: {:.0f} times real time.", simulated, servo.wall, simulated / servo.wall));
+  say(fmt::format("Session: {}", session.path()));
+  if (outcome.interrupted) {
+    say(fmt::format("Interrupted after {} trials; they are safe. See them: pincer report {}", outcome.trials, session.path()));
+    return kExitInterrupted;
+  }
+  if (arguments.run.report) say(fmt::format("Report: {}", writeStudyReport(session, directory + "/report.html").html));
+  std::int64_t unanswered = 0;
+  for (const StudyCondition& c : summary.conditions) unanswered += c.unanswered;
+  return unanswered > 0 ? kExitCheckFailed : kExitOk;
+}
+
+template <class Study, class MakeExperiment>
+int runStudyTask(const std::string& task, const Study& published, const StudyArguments& arguments, const char* display,
+                 const MakeExperiment& make) {
+  const std::atomic<bool>& interrupted = interruptFlag();
+  const Study study = studyOf(published, arguments);
+  if (arguments.print_study) {
+    fmt::print("{}\n", studyJson(study));
+    return kExitOk;
+  }
+  auto experiment = make(study, arguments.run.servo, strideOf(arguments.run));
+  const std::string directory = outputDirectory(arguments.run, task);
+  makeDirectory(directory);
+  StudySession session;
+  session.info.task = task;
+  session.info.seed = study.seed;
+  session.info.version = PINCER_VERSION;
+  session.info.build = "compiler " __VERSION__;
+  session.info.protocol_json = studyJson(study);
+  session.info.devices_json = devicesJsonOf(arguments.run, display);
+  session.info.participants_json = participantsJson(study);
+  session.info.participants_hash = fingerprint(session.info.participants_json);
+  session.path = directory + "/session.db";
+  session.real_time = arguments.run.servo.real_time;
+  Progress line("study", 1000);
+  const StudyOutcome outcome =
+      runStudySession(experiment, session, interrupted, [&](const StudyProgress& p) { line.update(std::lround(1000 * p.share)); });
+  return showStudy(arguments, directory, outcome);
+}
+
+std::shared_ptr<StudyArguments> addStudyTask(CLI::App& run, const std::string& task, const char* what, const char* more,
+                                             CLI::App*& command) {
+  auto arguments = std::make_shared<StudyArguments>();
+  arguments->run.sample_rate = 20;  // hours of strokes
+  command = run.add_subcommand(task, what);
+  command->add_option("--participants", arguments->participants, "How many simulated participants (default: 12)");
+  command->add_option("--seed", arguments->seed, "Of all that varies; the same seed gives the same session (default: 1)");
+  command->add_option("--study", arguments->study_file, "File with parameters that differ from the published design (JSON)");
+  command->add_flag("--print-study", arguments->print_study, "Print all parameters as JSON, and run nothing");
+  addRunOptions(*command, arguments->run);
+  command->footer(fmt::format("\n{}\n\nExample:\n  pincer run {} --participants 2 --out out/{}", more, task, task));
+  return arguments;
+}
+
+void addArcTask(CLI::App& run, int& exit_code, const ArcStudy& published, const char* what, const char* more) {
+  CLI::App* command = nullptr;
+  const auto arguments = addStudyTask(run, published.task, what, more, command);
+  command->callback([arguments, published, &exit_code] {
+    const auto make = [](const ArcStudy& s, const ServoOptions& servo, int stride) { return ArcExperiment(s, servo, stride); };
+    exit_code = runStudyTask(published.task, published, *arguments, "simulated 1-DOF", make);
+  });
+}
+
+}  // namespace
+
+void addSmoothnessTask(CLI::App& run, int& exit_code) {
+  addArcTask(run, exit_code, smoothnessStudy(), "From how many segments on does a polygon feel like a circle?",
+             "A finger strokes a polygon and a circle and says which was rougher, with facets, force shading and tactile shading.");
+}
+
+void addBacklashTask(CLI::App& run, int& exit_code) {
+  addArcTask(run, exit_code, backlashStudy(), "How much backlash of a contact location display is noticed?",
+             "Virtual backlash is added to the display, on a cylinder of low curvature and on a sharp edge.");
+}
+
+void addDelayTask(CLI::App& run, int& exit_code) {
+  addArcTask(run, exit_code, delayStudy(), "How much delay of a contact location display is noticed?",
+             "A FIFO delays the display's commands, for its whole travel or with the tactor held at two thirds of it.");
+}
+
+void addLocalisationTask(CLI::App& run, int& exit_code) {
+  CLI::App* command = nullptr;
+  const auto arguments = addStudyTask(run, "repeated-localisation", "Where on the fingerpad is the tactor?",
+                                      "The tactor goes to one of five places; the participant names the place felt.", command);
+  command->callback([arguments, &exit_code] {
+    const auto make = [](const LocalisationStudy& s, const ServoOptions& servo, int stride) {
+      return LocalisationExperiment(s, servo, stride);
+    };
+    exit_code = runStudyTask("repeated-localisation", LocalisationStudy{}, *arguments, "simulated 1-DOF", make);
+  });
+}
+
+}  // namespace pincer::tasks
