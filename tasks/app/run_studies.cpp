@@ -143,6 +143,17 @@ void addDelayTask(CLI::App& run, int& exit_code) {
              "A FIFO delays the display's commands, for its whole travel or with the tactor held at two thirds of it.");
 }
 
+void addShapeTask(CLI::App& run, int& exit_code) {
+  CLI::App* command = nullptr;
+  const auto arguments =
+      addStudyTask(run, "shape-identification", "Which of seven solids is it?",
+                   "A finger feels solids, shaded or not, with and without a contact location display, and names them.", command);
+  command->callback([arguments, &exit_code] {
+    const auto make = [](const ShapeStudy& s, const ServoOptions& servo, int stride) { return ShapeExperiment(s, servo, stride); };
+    exit_code = runStudyTask("shape-identification", ShapeStudy{}, *arguments, "simulated 2-DOF", make);
+  });
+}
+
 void addLocalisationTask(CLI::App& run, int& exit_code) {
   CLI::App* command = nullptr;
   const auto arguments = addStudyTask(run, "repeated-localisation", "Where on the fingerpad is the tactor?",

@@ -14,5 +14,6 @@ void addSmoothnessTask(CLI::App& run, int& exit_code);
 void addBacklashTask(CLI::App& run, int& exit_code);
 void addDelayTask(CLI::App& run, int& exit_code);
 void addLocalisationTask(CLI::App& run, int& exit_code);
+void addShapeTask(CLI::App& run, int& exit_code);
 
 }  // namespace pincer::tasks

@@ -2,6 +2,7 @@
 #pragma once
 #include "tasks/experiments/arc_study.h"
 #include "tasks/experiments/localisation.h"
+#include "tasks/experiments/shape_study.h"
 #include "tasks/participants/place_observer.h"
 
 namespace pincer::tasks {
@@ -68,6 +69,38 @@ void visitFields(Study& s, Visit&& visit) {
   visit("published_error", s.published_error);
 }
 
+template <class Sizes, class Visit>
+requires std::same_as<std::remove_const_t<Sizes>, SolidSizes>
+void visitFields(Sizes& s, Visit&& visit) {
+  visit("radius", s.radius);
+  visit("length", s.length);
+  visit("edge_radius", s.edge_radius);
+  visit("sides", s.sides);
+}
+
+template <class Condition, class Visit>
+requires std::same_as<std::remove_const_t<Condition>, ShapeCondition>
+void visitFields(Condition& c, Visit&& visit) {
+  visit("name", c.name);
+  visit("label", c.label);
+  visit("shaded", c.shaded);
+  visit("display_tactile", c.display_tactile);
+  visit("published", c.published);
+}
+
+template <class Study, class Visit>
+requires std::same_as<std::remove_const_t<Study>, ShapeStudy>
+void visitFields(Study& s, Visit&& visit) {
+  visit("participants", s.participants);
+  visit("seed", s.seed);
+  visit("runs", s.runs);
+  visit("sizes", s.sizes);
+  visit("friction", s.friction);
+  visit("finger_radius", s.finger_radius);
+  visit("stiffness", s.stiffness);
+  visit("conditions", s.conditions);
+}
+
 // The simulated participants' parameters: written, never read, since they are frozen before a study.
 template <class Visit>
 void visitFields(const HandRanges& r, Visit&& visit) {
@@ -119,6 +152,17 @@ void visitFields(const StrokeLimits& l, Visit&& visit) {
   visit("lower_time", l.lower_time);
   visit("raise_time", l.raise_time);
   visit("lift", l.lift);
+}
+
+template <class Visit>
+void visitFields(const ShapeLimits& l, Visit&& visit) {
+  visit("common", l.common);
+  visit("place_sd", l.place_sd);
+  visit("press", l.press);
+  visit("sure", l.sure);
+  visit("most_passes", l.most_passes);
+  visit("distance", l.distance);
+  visit("approach_speed", l.approach_speed);
 }
 
 template <class Visit>

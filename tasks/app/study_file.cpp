@@ -45,12 +45,14 @@ class FieldReader {
     field = variant;
   }
   static void read(const JsonValue& v, StaircaseRule& rule) { readObject(v, rule); }
-  static void read(const JsonValue& v, std::vector<ArcCondition>& conditions) {
-    std::vector<ArcCondition> list;
+  static void read(const JsonValue& v, SolidSizes& sizes) { readObject(v, sizes); }
+  template <class Condition>
+  static void read(const JsonValue& v, std::vector<Condition>& conditions) {
+    std::vector<Condition> list;
     for (const JsonValue& item : v.array()) {
       const std::string& name = item.at("name", "Each condition has one.").text();
-      ArcCondition condition;
-      for (const ArcCondition& known : conditions)
+      Condition condition;
+      for (const Condition& known : conditions)
         if (known.name == name) condition = known;
       readObject(item, condition);
       list.push_back(std::move(condition));
@@ -93,9 +95,10 @@ class FieldWriter {
   void write(const std::optional<SurfaceVariant>& field) {
     field ? write(*field) : write(std::nan(""));  // null
   }
-  void write(const std::vector<ArcCondition>& conditions) {
+  template <class Condition>
+  void write(const std::vector<Condition>& conditions) {
     json_.beginArray();
-    for (const ArcCondition& c : conditions) writeObject(c);
+    for (const Condition& c : conditions) writeObject(c);
     json_.endArray();
   }
   template <class Object>
@@ -135,10 +138,13 @@ std::string peopleJson(const Limits& limits) {
 
 void readStudy(const std::string& path, ArcStudy& study) { readStudyFile(path, study); }
 void readStudy(const std::string& path, LocalisationStudy& study) { readStudyFile(path, study); }
+void readStudy(const std::string& path, ShapeStudy& study) { readStudyFile(path, study); }
 std::string studyJson(const ArcStudy& study) { return objectJson(study); }
 std::string studyJson(const LocalisationStudy& study) { return objectJson(study); }
+std::string studyJson(const ShapeStudy& study) { return objectJson(study); }
 std::string participantsJson(const ArcStudy&) { return peopleJson(StrokeLimits{}); }
 std::string participantsJson(const LocalisationStudy&) { return peopleJson(PlaceLimits{}); }
+std::string participantsJson(const ShapeStudy&) { return peopleJson(ShapeLimits{}); }
 
 std::string fingerprint(const std::string& text) {
   std::uint64_t hash = 14695981039346656037u;

@@ -5,6 +5,7 @@
 
 #include "tasks/experiments/arc_study.h"
 #include "tasks/experiments/localisation.h"
+#include "tasks/experiments/shape_study.h"
 
 namespace pincer::tasks {
 
@@ -12,13 +13,16 @@ namespace pincer::tasks {
 // that. Throws InputError.
 void readStudy(const std::string& path, ArcStudy& study);
 void readStudy(const std::string& path, LocalisationStudy& study);
+void readStudy(const std::string& path, ShapeStudy& study);
 
 std::string studyJson(const ArcStudy& study);
 std::string studyJson(const LocalisationStudy& study);
+std::string studyJson(const ShapeStudy& study);
 
 // The parameters of the simulated participants that do the study, frozen before it.
 std::string participantsJson(const ArcStudy& study);
 std::string participantsJson(const LocalisationStudy& study);
+std::string participantsJson(const ShapeStudy& study);
 
 // 16 hexadecimal digits that stand for a text (FNV-1a, 64 bits: G. Fowler, L. C. Noll, K.-P. Vo).
 std::string fingerprint(const std::string& text);

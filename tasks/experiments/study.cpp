@@ -32,11 +32,15 @@ class RunProgress {
   std::size_t index_ = 0;
 };
 
+const std::string& conditionOf(const StudyTrial& trial) {
+  return trial.run->condition.empty() ? trial.stimulus.condition : trial.run->condition;
+}
+
 void requireSameTrial(const ResponseRecord& earlier, const StudyTrial& trial) {
   const StudyRun& run = *trial.run;
-  if (earlier.participant == run.participant && earlier.run == run.run && earlier.index == trial.index &&
-      earlier.condition == run.condition && earlier.stimulus == trial.stimulus.name &&
-      (earlier.level == trial.stimulus.level || earlier.level != earlier.level))
+  const std::string& condition = conditionOf(trial);
+  if (earlier.participant == run.participant && earlier.run == run.run && earlier.index == trial.index && earlier.condition == condition &&
+      earlier.stimulus == trial.stimulus.name && (earlier.level == trial.stimulus.level || earlier.level != earlier.level))
     return;
   throw InputError(
       fmt::format("trial {} of the session isn't the one that this study would show: participant {}, {}, level {}. Resume with "
@@ -80,7 +84,7 @@ class StudyRunner {
     response->participant = run.participant;
     response->run = run.run;
     response->index = trial.index;
-    response->condition = run.condition;
+    response->condition = conditionOf(trial);
     response->reversal = state.take(*response);
     sink_.response(*response);
     ++outcome_.trials;

@@ -19,11 +19,12 @@ namespace pincer::tasks {
 struct ListedStimulus {
   std::string name;
   double level = 0;
+  std::string condition = {};  // where a run mixes them; else empty
 };
 
 struct StudyRun {
   std::int64_t participant = 0, run = 0;
-  std::string condition;
+  std::string condition;  // of all its trials; empty: each has its own
   std::optional<StaircaseRule> staircase;
   std::vector<ListedStimulus> list;  // where there is no staircase
 };

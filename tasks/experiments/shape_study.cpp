@@ -1,0 +1,105 @@
+#include "tasks/experiments/shape_study.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "contact/error.h"
+#include "tasks/study/counterbalance.h"
+
+namespace pincer::tasks {
+namespace {
+
+constexpr std::uint64_t kModelOrder = 4, kExplorer = 5;  // parts of seeds
+constexpr double kPublishedRight = 0.819;                // of all conditions together
+
+int solidOf(const std::string& name) {
+  return static_cast<int>(std::find(kSolidNames.begin(), kSolidNames.end(), name) - kSolidNames.begin());
+}
+
+}  // namespace
+
+std::vector<ShapeCondition> ShapeStudy::published() {
+  return {{"facets", "facets, force only", false, false, kPublishedRight},
+          {"facets+cld", "facets, CLD + force", false, true, kPublishedRight},
+          {"shaded", "shaded, force only", true, false, kPublishedRight},
+          {"shaded+cld", "shaded, CLD + force", true, true, kPublishedRight}};
+}
+
+void validate(const ShapeStudy& s) {
+  const auto require = [](bool ok, const char* field, double value, const char* range) {
+    if (!ok)
+      throw InputError(
+          fmt::format("shape-identification: {} = {:g} is out of range {}. Leave it out for the published design.", field, value, range));
+  };
+  require(s.participants >= 1 && s.participants <= 10'000, "participants", s.participants, "[1, 10000]");
+  require(s.runs >= 1 && s.runs <= 100, "runs", s.runs, "[1, 100]");
+  require(s.sizes.radius >= 0.02 && s.sizes.radius <= 0.045, "radius", s.sizes.radius, "[0.02, 0.045] m");
+  require(s.sizes.length >= 0.04 && s.sizes.length <= 0.09, "length", s.sizes.length, "[0.04, 0.09] m");
+  require(s.sizes.edge_radius > 0 && s.sizes.edge_radius <= 5e-3, "edge_radius", s.sizes.edge_radius, "(0, 0.005] m");
+  require(s.sizes.sides >= 12 && s.sizes.sides <= 200 && s.sizes.sides % 2 == 0, "sides", s.sizes.sides, "[12, 200], even");
+  require(s.friction >= 0 && s.friction <= 2, "friction", s.friction, "[0, 2]");
+  require(s.finger_radius >= 4e-3 && s.finger_radius <= 0.015, "finger_radius", s.finger_radius, "[0.004, 0.015] m");
+  require(s.stiffness > 0 && s.stiffness <= 3500, "stiffness", s.stiffness, "(0, 3500] N/m");
+  require(!s.conditions.empty(), "conditions", 0, "[1, inf)");
+}
+
+ShapeExperiment::ShapeExperiment(const ShapeStudy& study, const ServoOptions& servo, int stride)
+    : study_(study), servo_(servo), stride_(stride) {
+  validate(study);
+  for (std::size_t k = 0; k < kSolids; ++k) {
+    for (const bool shaded : {false, true}) solids_[shaded][k] = makeSolid(kSolidNames[k], shaded, study.sizes);
+  }
+}
+
+// A run shows the models of the conditions with the display, or of those without.
+std::vector<StudyRun> ShapeExperiment::runs() const {
+  std::vector<StudyRun> runs;
+  for (int p = 0; p < study_.participants; ++p) {
+    for (int k = 0; k < study_.runs; ++k) {
+      const bool display = (p + k) % 2 == 1;
+      StudyRun run{p, k, "", {}, {}};
+      for (const ShapeCondition& c : study_.conditions) {
+        for (const char* solid : kSolidNames)
+          if (c.display_tactile == display) run.list.push_back({solid, std::nan(""), c.name});
+      }
+      if (run.list.empty()) continue;
+      Random random(seedFor(seedFor(study_.seed, kModelOrder), static_cast<std::uint64_t>(p * study_.runs + k)));
+      shuffle(run.list, random);
+      runs.push_back(std::move(run));
+    }
+  }
+  return runs;
+}
+
+std::optional<ResponseRecord> ShapeExperiment::present(const StudyTrial& trial, StudySink& sink, const std::atomic<bool>& interrupted,
+                                                       ServoReport& served) {
+  const auto condition = std::find_if(study_.conditions.begin(), study_.conditions.end(),
+                                      [&](const ShapeCondition& c) { return c.name == trial.stimulus.condition; });
+  const auto solid = static_cast<std::size_t>(solidOf(trial.stimulus.name));
+  ShapeTrialSetup setup;
+  setup.solid = solids_[condition->shaded][solid];
+  setup.display_tactile = condition->display_tactile;
+  setup.friction = study_.friction;
+  setup.finger_radius = study_.finger_radius;
+  setup.stiffness = study_.stiffness;
+  setup.trial = trial.trial;
+  setup.seed = seedFor(trial.seed, kExplorer);
+  setup.stride = stride_;
+  ShapeExplorer explorer(trial.person_seed);
+  ShapeTrial cycle(setup, explorer, sink);
+  const ServoReport report = runServo(servo_, cycle, interrupted);
+  served.add(report);
+  if (report.interrupted) return std::nullopt;
+  ResponseRecord response;
+  response.stimulus = trial.stimulus.name;
+  response.level = response.answer_value = std::nan("");
+  response.answer = cycle.answered() ? kSolidNames[static_cast<std::size_t>(explorer.answer())] : "";
+  response.correct = response.answer == response.stimulus;
+  cycle.measure(response);
+  return response;
+}
+
+}  // namespace pincer::tasks

@@ -1,0 +1,174 @@
+#include "tasks/participants/shape_explorer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace pincer::tasks {
+namespace {
+
+constexpr double kFeltPush = 0.3;    // while following, a weaker push means that the finger has left the surface [N]
+constexpr double kSinkSpeed = 0.05;  // then the aim goes in [m/s]
+constexpr double kGiveWay = 20;      // else the aim follows the finger, at this rate [1/s]
+
+double angleBetweenUnits(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
+
+// Turned by a random small angle about both axes across.
+Vec3 blurred(const Vec3& direction, double sd, Random& random) {
+  const Quat q = drawRotation(sd, random);
+  return q * direction;
+}
+
+}  // namespace
+
+ShapeExplorer::ShapeExplorer(std::uint64_t seed, const ShapeLimits& limits, const HandRanges& ranges)
+    : limits_(limits), body_(drawBody(ranges, seed)), solids_(knownSolids()), random_(seed) {}
+
+void ShapeExplorer::begin(const ShapeCues& cues) {
+  cues_ = cues;
+  random_ = Random(cues.seed);
+  misplacement_W_ = limits_.common.placement_sd * random_.normal3();
+  q_felt_true_ = drawRotation(limits_.common.orientation_sd, random_);
+  belief_.fill(0);
+  passes_ = 0;
+  angle_ = 0;
+  reach_ = limits_.distance;
+  first_place_.reset();
+  tactor_moves_ = false;
+  enter(Phase::kListen);
+}
+
+const ShapeExplorer::Pass& ShapeExplorer::pass() const {
+  static const std::array<Pass, 3> kPasses{{{Vec3::UnitX(), Vec3::UnitY(), 2 * std::numbers::pi},
+                                            {Vec3::UnitX(), Vec3::UnitZ(), std::numbers::pi},
+                                            {-Vec3::UnitY(), Vec3::UnitZ(), std::numbers::pi}}};
+  return kPasses[static_cast<std::size_t>(passes_) % kPasses.size()];
+}
+
+Vec3 ShapeExplorer::ray() const {
+  if (phase_ == Phase::kAnswer) return turn_from_;
+  if (phase_ == Phase::kTurn) {
+    const Vec3 across = (pass().from - pass().from.dot(turn_from_) * turn_from_).normalized();
+    return std::cos(angle_) * turn_from_ + std::sin(angle_) * across;
+  }
+  return std::cos(angle_) * pass().from + std::sin(angle_) * pass().towards;
+}
+
+Vec3 ShapeExplorer::along() const {
+  if (phase_ == Phase::kTurn || phase_ == Phase::kAnswer) return ray().cross(Vec3::UnitZ()).normalized();  // turns are level
+  return -std::sin(angle_) * pass().from + std::cos(angle_) * pass().towards;
+}
+
+// F: -z towards the middle, x along the pass.
+Quat ShapeExplorer::held() const {
+  const Vec3 z = ray(), x = along();
+  Mat3 R;
+  R << x, z.cross(x), z;
+  return Quat(R);
+}
+
+ShapeAction ShapeExplorer::act(const FingerPercept& finger, double time, Cue cue) {
+  const double dt = time - now_;
+  now_ = time;
+  ShapeAction action;
+  if (finger.tactile.valid && finger.tactile.place_L) {
+    if (!first_place_) first_place_ = *finger.tactile.place_L;
+    tactor_moves_ = tactor_moves_ || (*finger.tactile.place_L - *first_place_).norm() > limits_.common.tactor_moves;
+  }
+  if (phase_ == Phase::kListen && cue == Cue::kStart) enter(Phase::kApproach);
+  if (phase_ == Phase::kApproach) {
+    reach_ -= limits_.approach_speed * dt;
+    if (finger.f_D.norm() > kFeltPush || reach_ < 0) enter(Phase::kFollow);
+  } else if (phase_ == Phase::kFollow) {
+    follow(finger, dt);
+  } else if (phase_ == Phase::kLeave) {
+    reach_ = std::min(limits_.distance, reach_ + limits_.approach_speed * dt);
+    if (reach_ >= limits_.distance) {
+      turn_from_ = ray();
+      ++passes_;
+      angle_ = 0;
+      const bool done = passes_ >= limits_.most_passes || (passes_ >= 3 && sureness() > limits_.sure);
+      action.finger.interval_over = done;
+      enter(done ? Phase::kAnswer : Phase::kTurn);
+    }
+  } else if (phase_ == Phase::kTurn) {
+    angle_ += limits_.approach_speed * dt / limits_.distance;
+    if (angle_ >= angleBetweenUnits(turn_from_, pass().from)) {
+      angle_ = 0;
+      enter(Phase::kApproach);
+    }
+  } else if (phase_ == Phase::kAnswer) {
+    action.finger.answered = now_ - entered_ >= limits_.common.reaction_time;
+  }
+  action.q_WF = held();
+  action.finger.pull = body_.hands[0];
+  action.finger.pull.p_D = cues_.q_WD.conjugate() * (cues_.middle_W + reach_ * ray() - cues_.p_WD);
+  return action;
+}
+
+void ShapeExplorer::enter(Phase phase) {
+  phase_ = phase;
+  entered_ = read_at_ = now_;
+}
+
+void ShapeExplorer::follow(const FingerPercept& finger, double dt) {
+  const Vec3 p_W = cues_.p_WD + cues_.q_WD * finger.arm.p_DF;
+  const double held_up = (p_W - cues_.middle_W).dot(ray());
+  const double push = finger.f_D.norm();
+  if (push < kFeltPush) {
+    reach_ = std::max(0.0, reach_ - kSinkSpeed * dt);
+  } else {
+    reach_ += kGiveWay * dt * (held_up - limits_.press / body_.hands[0].stiffness - reach_);
+  }
+  angle_ += body_.speed * dt / std::max(0.02, held_up);
+  if (push > limits_.common.force_floor && now_ - read_at_ >= limits_.common.reading_time) {
+    read_at_ = now_;
+    read(finger, p_W);
+  }
+  if (angle_ < pass().angle) return;
+  enter(Phase::kLeave);
+}
+
+void ShapeExplorer::read(const FingerPercept& finger, const Vec3& p_W) {
+  const Vec3 felt_W = p_W - cues_.middle_W + misplacement_W_ + limits_.place_sd * random_.normal3();
+  const double sd_push = limits_.common.direction_sd;
+  Vec3 n_W = blurred((cues_.q_WD * finger.f_D).normalized(), sd_push, random_);
+  double sd_n = sd_push;
+  if (const auto shown = directionOfTactor(finger, held())) {
+    const double sd_shown = std::hypot(limits_.common.tactor_sd / cues_.tip_radius, limits_.common.orientation_sd);
+    const double w_push = 1 / (sd_push * sd_push), w_shown = 1 / (sd_shown * sd_shown);
+    n_W = (w_push * n_W + w_shown * *shown).normalized();
+    sd_n = 1 / std::sqrt(w_push + w_shown);
+  }
+  const double sd_p = std::hypot(limits_.place_sd, limits_.common.placement_sd);
+  for (std::size_t k = 0; k < solids_.size(); ++k) {
+    const double off = (felt_W - solids_[k].nearest(felt_W)).norm() - cues_.tip_radius;
+    const double angle = angleBetweenUnits(n_W, solids_[k].outward(felt_W));
+    belief_[k] -= 0.5 * (off * off / (sd_p * sd_p) + angle * angle / (sd_n * sd_n));
+  }
+}
+
+// Out of the surface, from where the contact is on the pad. Absent where the tactor has stood still since the trial began.
+std::optional<Vec3> ShapeExplorer::directionOfTactor(const FingerPercept& finger, const Quat& q_WF) {
+  if (!tactor_moves_ || !finger.tactile.valid || !finger.tactile.place_L) return std::nullopt;
+  const Vec2 place = limits_.common.tactor_bias * *finger.tactile.place_L + limits_.common.tactor_sd * random_.normal2();
+  const double a = place.norm() / cues_.tip_radius;
+  Vec3 to_contact_F(0, 0, -1);
+  if (a > 0) {
+    const Vec2 along = place.normalized();
+    // L: first axis x of F; second axis pad normal x distal = -z x x = -y of F
+    to_contact_F = Vec3(std::sin(a) * along.x(), -std::sin(a) * along.y(), -std::cos(a));
+  }
+  return Vec3(-(q_felt_true_ * (q_WF * to_contact_F)));
+}
+
+int ShapeExplorer::answer() const { return static_cast<int>(std::max_element(belief_.begin(), belief_.end()) - belief_.begin()); }
+
+double ShapeExplorer::sureness() const {
+  const double best = *std::max_element(belief_.begin(), belief_.end());
+  double sum = 0;
+  for (const double b : belief_) sum += std::exp(b - best);
+  return 1 / sum;
+}
+
+}  // namespace pincer::tasks

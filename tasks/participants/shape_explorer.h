@@ -1,0 +1,93 @@
+// shape_explorer: somebody who feels a solid with one finger, round its middle and over its top, and says which of seven it is.
+//
+//   listen - approach - follow a great circle - leave - [turn to the next circle: approach] - answer
+//
+// follow   the hand's aim goes round the solid's middle at the finger's speed, always a little below where the finger has been held up, so that
+//          the finger keeps to the surface; it turns its pad towards the middle. Passes: round the middle, over the top, over the top across.
+// read     every reading time, while something is felt: the place of the fingertip and the direction of the surface,
+//
+//   place      p + m + sigma_p n                 m constant in a trial: placement_sd
+//   direction  felt from the push on the finger, direction_sd per axis; and, where the tactor moves, from its place on the pad,
+//              sigma / tip radius and the felt orientation's error, constant in a trial; the two weighed by their variances
+//
+// believe  each solid known by heart (known_solids.h) gets  -|distance to it - tip radius|^2 / 2 s_p^2 - angle^2 / 2 s_n^2  per reading, with
+//          s_p^2 = sigma_p^2 + placement_sd^2 and s_n of the direction; the answer is the likeliest, and exploring ends when it is sure.
+// The reading's own noise sigma_p and the wanted sureness are ours (choice); the rest is in body.h. The same plan in every condition.
+#pragma once
+#include <array>
+#include <optional>
+
+#include "tasks/participants/body.h"
+#include "tasks/participants/known_solids.h"
+#include "tasks/participants/one_finger.h"
+
+namespace pincer::tasks {
+
+struct ShapeLimits {
+  SensingLimits common;
+  double place_sd = 4e-3;        // sigma_p, of one reading of the finger's place, per axis [m] (choice: as between two fingers)
+  double press = 0.8;            // wanted push of the surface [N] (choice)
+  double sure = 0.95;            // probability of the answer that ends exploring (choice)
+  int most_passes = 6;           // (choice)
+  double distance = 0.075;       // of the fingertip from the middle while nothing is touched [m] (choice)
+  double approach_speed = 0.05;  // [m/s] (choice)
+};
+
+// What the participant is told.
+struct ShapeCues {
+  std::uint64_t seed = 0;  // of everything that varies from trial to trial within the participant
+  Quat q_WD = Quat::Identity();
+  Vec3 p_WD = Vec3::Zero();      // arm base [m]
+  Vec3 middle_W = Vec3::Zero();  // of the solid [m]
+  double tip_radius = 8e-3;      // of the finger [m]
+};
+
+struct ShapeAction {
+  OneFingerAction finger;
+  Quat q_WF = Quat::Identity();  // how the finger is held: its pad (-z of F) towards the middle
+};
+
+class ShapeExplorer {
+ public:
+  explicit ShapeExplorer(std::uint64_t seed, const ShapeLimits& limits = {}, const HandRanges& ranges = {});
+  void begin(const ShapeCues& cues);
+  ShapeAction act(const FingerPercept& finger, double time, Cue cue);
+  int answer() const;  // a place in kSolidNames
+  double sureness() const;
+
+ private:
+  enum class Phase : std::uint8_t { kListen, kApproach, kFollow, kLeave, kTurn, kAnswer };
+  struct Pass {
+    Vec3 from, towards;  // unit: the circle runs from + towards
+    double angle;        // [rad]
+  };
+
+  void enter(Phase phase);
+  void follow(const FingerPercept& finger, double dt);
+  void read(const FingerPercept& finger, const Vec3& p_W);
+  std::optional<Vec3> directionOfTactor(const FingerPercept& finger, const Quat& q_WF);
+  Vec3 ray() const;    // from the middle to the finger, now
+  Vec3 along() const;  // across it, the way it goes
+  const Pass& pass() const;
+  Quat held() const;
+
+  ShapeLimits limits_;
+  Body body_;
+  std::array<KnownSolid, kSolids> solids_;
+  ShapeCues cues_;
+  Random random_;
+  Vec3 misplacement_W_ = Vec3::Zero();
+  Quat q_felt_true_ = Quat::Identity();
+  std::array<double, kSolids> belief_{};  // logarithms
+
+  Phase phase_ = Phase::kListen;
+  double now_ = 0, entered_ = 0, read_at_ = 0;  // [s]
+  int passes_ = 0;
+  Vec3 turn_from_ = Vec3::UnitX();   // where the last pass ended, unit
+  double angle_ = 0;                 // gone along the pass [rad]
+  double reach_ = 0;                 // of the aim from the middle [m]
+  std::optional<Vec2> first_place_;  // of the tactor, when the trial began
+  bool tactor_moves_ = false;
+};
+
+}  // namespace pincer::tasks
