@@ -59,10 +59,10 @@ int showStudy(const StudyArguments& arguments, const std::string& directory, con
   const StudySummary summary = summariseStudy(session, session.responses());
   fmt::print("{}\n", arguments.run.json ? studySummaryJson(summary) : formatStudyTable(summary));
   const auto say = [&](const std::string& line) { fmt::print(arguments.run.json ? stderr : stdout, "{}\n", line); };
-  const ServoReport& servo = outcome.servo;
-  if (arguments.run.servo.real_time) say(servoText(servo, 1 / arguments.run.servo.rate));
-  const double simulated = static_cast<double>(servo.ticks) / arguments.run.servo.rate;
-  say(fmt::format("{:.0f} s in {:.0f} s of computing: {:.0f} times real time.", simulated, servo.wall, simulated / servo.wall));
+  if (arguments.run.servo.real_time) say(servoText(outcome.servo, 1 / arguments.run.servo.rate));
+  const double simulated = static_cast<double>(outcome.servo.ticks) / arguments.run.servo.rate;
+  say(fmt::format("{:.0f} s of trials in {:.0f} s of processor time: {:.0f} times real time.", simulated, outcome.cpu_seconds,
+                  simulated / outcome.cpu_seconds));
   say(fmt::format("Session: {}", session.path()));
   if (outcome.interrupted) {
     say(fmt::format("Interrupted after {} trials; they are safe. See them: pincer report {}", outcome.trials, session.path()));

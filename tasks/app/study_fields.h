@@ -149,6 +149,7 @@ void visitFields(const StrokeLimits& l, Visit&& visit) {
   visit("lag_difference", l.lag_difference);
   visit("sensitivity_spread", l.sensitivity_spread);
   visit("press", l.press);
+  visit("press_time", l.press_time);
   visit("lower_time", l.lower_time);
   visit("raise_time", l.raise_time);
   visit("lift", l.lift);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "contact/error.h"
+#include "tasks/measure/timing.h"
 #include "tasks/participants/random.h"
 
 namespace pincer::tasks {
@@ -103,7 +104,10 @@ class StudyRunner {
 
 StudyOutcome runStudy(Experiment& experiment, std::uint64_t seed, const std::vector<ResponseRecord>& earlier, StudySink& sink,
                       const std::atomic<bool>& interrupted, const std::function<void(const StudyProgress&)>& progress) {
-  return StudyRunner(experiment, seed, earlier, sink, interrupted).run(progress);
+  const double start = threadCpuSeconds();
+  StudyOutcome outcome = StudyRunner(experiment, seed, earlier, sink, interrupted).run(progress);
+  outcome.cpu_seconds = threadCpuSeconds() - start;
+  return outcome;
 }
 
 }  // namespace pincer::tasks

@@ -9,6 +9,7 @@ namespace pincer::tasks {
 namespace {
 
 constexpr double kSlowLow = 5, kSlowHigh = 50, kQuickHigh = 300;  // bands [Hz]
+constexpr double kObserverTick = 1e-3;                            // [s]
 constexpr double kMiddle = 0.1;                                   // a stroke's first and last tenth are the turn's, not the surface's
 
 }  // namespace
@@ -65,17 +66,19 @@ void StrokeObserver::follow(OneFingerAction& action) {
       break;
     case Phase::kLower:
       height += (pressed - limits_.lift) * minimumJerk(t, limits_.lower_time);
+      height_ = pressed;
       if (t >= limits_.lower_time) enter(Phase::kStroke);
       break;
     case Phase::kStroke:
-      height = pressed;
+      height_ += kObserverTick * (push_ - limits_.press) / (body_.hands[0].stiffness * limits_.press_time);
+      height = height_;
       angle = from * (1 - 2 * minimumJerk(t, strokeTime()));
       if (t < strokeTime()) break;
       ++stroke_;
       enter(stroke_ < cues_.strokes ? Phase::kStroke : Phase::kRaise);
       break;
     case Phase::kRaise:
-      height = pressed + (limits_.lift - pressed) * minimumJerk(t, limits_.raise_time);
+      height = height_ + (limits_.lift - height_) * minimumJerk(t, limits_.raise_time);
       if (t >= limits_.raise_time) enter(Phase::kRead);
       break;
     case Phase::kRead:
@@ -96,6 +99,7 @@ void StrokeObserver::feel(const FingerPercept& finger) {
   const double share = (now_ - entered_) / strokeTime();
   const bool counts = phase_ == Phase::kStroke && share > kMiddle && share < 1 - kMiddle;
   const Vec3 f_W = cues_.q_WD * finger.f_D;
+  push_ = f_W.norm();
   const Vec2 u = skin_.pushed({f_W.x(), f_W.z()});
   bands_[0].add(u, counts);
   bands_[1].add(u, counts);

@@ -3,7 +3,8 @@
 //
 //   wait - lower - stroke (n times, to and fro) - raise - read - [wait ... read] - answer
 //
-// It moves a hand of its own impedance at its own speed along the circle that it was told, minimum jerk, pressing lightly, whatever is shown.
+// It moves a hand of its own impedance at its own speed along the circle that it was told, minimum jerk, whatever is shown, and presses lightly:
+// the height of its aim over the circle follows the felt push slowly, h' = (push - press) / (k tau), k the hand's stiffness.
 // What it feels of an interval is one reading, drawn once, when the finger is up again:
 //
 //   rougher  four motions of the skin (skin.h): of the push and of the tactor, each in a slow and a quick band, while a stroke is in its
@@ -31,6 +32,7 @@ struct StrokeLimits {
   double lag_difference = 0.15;               // c, of a short time [-] (choice)
   double sensitivity_spread = 0.2;            // people differ: all noise times exp(spread n), n drawn once per participant (choice)
   double press = 1.0;                         // wanted push of the surface [N] (choice)
+  double press_time = 0.2;                    // tau [s] (choice)
   double lower_time = 0.4, raise_time = 0.3;  // [s] (choice)
   double lift = 0.010;                        // of a waiting finger over the path [m] (choice)
 };
@@ -85,6 +87,8 @@ class StrokeObserver final : public OneFingerObserver {
 
   Phase phase_ = Phase::kWait;
   double now_ = 0, entered_ = 0;  // [s]
+  double push_ = 0;               // felt along the path normal [N]
+  double height_ = 0;             // of the aim over the path, while stroking [m]
   int interval_ = 0, stroke_ = 0;
   int way_ = 0;           // of the tactor in the last stroke: +1, -1, 0 not known
   double turned_at_ = 0;  // its place at the last turn [m]

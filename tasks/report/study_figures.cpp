@@ -75,7 +75,7 @@ Figure staircaseFigure(const StudySummary& s, const std::vector<ResponseRecord>&
     for (const auto& [person, trials] : people) {
       for (const ResponseRecord* r : trials)
         table.row(r->condition, k, person, r->index + 1, s.headline.scale * r->level, r->correct, r->reversal);
-      table.row("", "", "", "", "", "", "");  // breaks the line between participants
+      table.endRow();  // an empty line breaks gnuplot's from one participant to the next
     }
   }
   Figure figure;
@@ -88,15 +88,15 @@ Figure staircaseFigure(const StudySummary& s, const std::vector<ResponseRecord>&
   const std::size_t columns = std::min<std::size_t>(3, s.conditions.size()), rows = (s.conditions.size() + columns - 1) / columns;
   figure.height = static_cast<int>(150 + 420 * rows);
   figure.data = {{"staircases.csv", table.take()}};
-  figure.script = figurePrelude(figure.name) + "set datafile missing ''\nunset key\n" +
-                  (s.info.task == "smoothness-discrimination" ? "set logscale y\n" : "set yrange [0:*]\n") +
+  figure.script = figurePrelude(figure.name) + "unset key\nset tics font ',15'\n" +
+                  (s.info.task == "smoothness-discrimination" ? "set logscale y\nset yrange [0.05:50]\n" : "set yrange [0:*]\n") +
                   fmt::format("set multiplot layout {},{}\n", rows, columns);
   for (std::size_t k = 0; k < s.conditions.size(); ++k) {
     const StudyCondition& c = s.conditions[k];
     figure.script += fmt::format("set title {} offset 0,-0.5\nset xlabel 'trial'\nset ylabel '{} [{}]'\n", gnuplotString(c.name), "level",
                                  s.headline.unit);
     figure.script += fmt::format(
-        "plot data skip 1 using (strlen(stringcolumn(1)) == 0 ? NaN : $2=={0} ? $4 : 1/0):5 with lines lw 0.7 lc rgb '#80{1}', "
+        "plot data skip 1 using ($2=={0} ? $4 : NaN):5 with lines lw 0.7 lc rgb '#80{1}', "
         "data skip 1 using ($2=={0} && $7==1 ? $4 : NaN):5 with points pt 7 ps 0.5 lc rgb '{2}'",
         k, palette::kBlue + 1, palette::kBlue);
     if (c.headline.n > 0)

@@ -1,0 +1,224 @@
+// Whole studies, small: the same seed gives the same answers, a killed or resumed one loses nothing, and the devices' tick is what it says.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <fstream>
+
+#include "tasks/app/study_file.h"
+#include "tasks/app/study_session.h"
+#include "tasks/experiments/arc_study.h"
+#include "tasks/experiments/localisation.h"
+#include "tasks/experiments/shape_study.h"
+#include "tests/support/allocation_guard.h"
+#include "tests/support/error_of.h"
+#include "tests/support/run_app.h"
+#include "tests/support/temporary_directory.h"
+
+namespace pincer::tasks {
+namespace {
+
+using tests::contains;
+using tests::errorOf;
+using tests::TemporaryDirectory;
+
+struct StudyMemory final : StudySink {
+  void sample(const SampleRecord&) override { ++samples; }
+  void event(const EventRecord&) override {}
+  void response(const ResponseRecord& response) override { responses.push_back(response); }
+  int samples = 0;
+  std::vector<ResponseRecord> responses;
+};
+
+// One condition, two strokes, staircases that end after a few trials.
+ArcStudy smallStudy(ArcStudy study) {
+  study.participants = 1;
+  study.strokes = 2;
+  study.conditions.resize(1);
+  study.conditions[0].staircase.reversals = 2;
+  study.conditions[0].staircase.averaged = 1;
+  study.conditions[0].staircase.most_trials = 6;
+  return study;
+}
+
+std::vector<ResponseRecord> answersOf(Experiment& experiment, std::uint64_t seed, const std::vector<ResponseRecord>& earlier = {}) {
+  StudyMemory memory;
+  const std::atomic<bool> no{false};
+  runStudy(experiment, seed, earlier, memory, no);
+  return memory.responses;
+}
+
+void expectSameAnswers(const std::vector<ResponseRecord>& a, const std::vector<ResponseRecord>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    EXPECT_EQ(a[k].trial, b[k].trial);
+    EXPECT_EQ(a[k].level, b[k].level);
+    EXPECT_EQ(a[k].answer, b[k].answer);
+    EXPECT_EQ(a[k].interval, b[k].interval);
+    EXPECT_EQ(a[k].finger_speed, b[k].finger_speed);  // to the bit
+  }
+}
+
+TEST(Study, TheSameSeedGivesTheSameAnswersAndResumingGoesOnWithThem) {
+  ArcExperiment experiment(smallStudy(backlashStudy()), {}, 50);
+  const auto whole = answersOf(experiment, 5);
+  ASSERT_GE(whole.size(), 3u);
+  for (const ResponseRecord& r : whole) EXPECT_EQ(r.outcome, "answered");
+  const std::vector<ResponseRecord> begun(whole.begin(), whole.begin() + 2);
+  expectSameAnswers(answersOf(experiment, 5, begun), {whole.begin() + 2, whole.end()});
+}
+
+TEST(Study, RefusesToResumeWhatItWouldNotHaveShown) {
+  ArcExperiment experiment(smallStudy(backlashStudy()), {}, 50);
+  ResponseRecord other;
+  other.condition = "C1";
+  EXPECT_TRUE(contains(errorOf([&] { answersOf(experiment, 5, {other}); }), "trial 0 of the session isn't the one"));
+}
+
+// A finger that strokes the circle touches it all the way, at about the speed of its hand, and no trial ends in a fault.
+TEST(Study, StrokesStayOnTheSurface) {
+  for (const ArcStudy& study : {smoothnessStudy(), backlashStudy(), delayStudy()}) {
+    ArcStudy small = smallStudy(study);
+    small.conditions[0].staircase.most_trials = 1;
+    ArcExperiment experiment(small, {}, 50);
+    const auto answers = answersOf(experiment, 1);
+    ASSERT_EQ(answers.size(), 1u);
+    EXPECT_EQ(answers[0].outcome, "answered") << study.task;
+    EXPECT_GT(answers[0].contact_share, 0.5) << study.task;  // the rest is lowering, raising and reading
+    EXPECT_GT(answers[0].finger_speed, 0.03) << study.task;
+    EXPECT_LT(answers[0].finger_speed, 0.08) << study.task;
+  }
+}
+
+TEST(Study, ABladeIsAsSharpAsItsAngleSays) {
+  ArcStudy study = smallStudy(backlashStudy());
+  study.conditions = {backlashStudy().conditions[1]};
+  study.conditions[0].staircase.most_trials = 1;
+  ArcExperiment experiment(study, {}, 50);
+  const auto answers = answersOf(experiment, 1);
+  ASSERT_EQ(answers.size(), 1u);
+  EXPECT_EQ(answers[0].outcome, "answered");
+  EXPECT_GT(answers[0].contact_share, 0.2);  // strokes of 16 mm take less time than lowering and reading
+}
+
+TEST(Study, PlacesAreShownWhereTheyAreNamed) {
+  LocalisationStudy study;
+  study.participants = 1;
+  study.repetitions = 2;
+  LocalisationExperiment experiment(study, {}, 50);
+  const auto answers = answersOf(experiment, 3);
+  ASSERT_EQ(answers.size(), 10u);
+  double sum = 0;
+  for (const ResponseRecord& r : answers) {
+    EXPECT_EQ(r.outcome, "answered");
+    sum += std::abs(r.answer_value - r.level);
+  }
+  EXPECT_LT(sum / 10, 3e-3);  // 1.3 mm expected, its SD over ten answers 0.31 mm: five of them
+}
+
+TEST(Study, SolidsAreFeltWithoutAFault) {
+  ShapeStudy study;
+  study.participants = 1;
+  study.runs = 1;
+  study.conditions = {study.conditions[2]};  // shaded, force only
+  ShapeExperiment experiment(study, {}, 50);
+  auto runs = experiment.runs();
+  ASSERT_EQ(runs.size(), 1u);
+  ASSERT_EQ(runs[0].list.size(), 7u);
+  StudyMemory memory;
+  const std::atomic<bool> no{false};
+  ServoReport served;
+  for (std::size_t k = 0; k < (std::getenv("PINCER_LONG_TESTS") ? 7u : 2u); ++k) {
+    const auto response = experiment.present({0, 0, &runs[0], runs[0].list[k], k, 1}, memory, no, served);
+    ASSERT_TRUE(response);
+    EXPECT_EQ(response->outcome, "answered") << response->stimulus;
+    EXPECT_GT(response->contact_share, 0.4) << response->stimulus;
+  }
+}
+
+// A finger pressed into the circle by d gets k d outwards, and the tactor goes where the finger touches.
+TEST(PlanarTick, ForceAndPlaceAreThoseOfTheCircle) {
+  const auto circle = std::make_shared<const contact::Curve>(contact::arcPolygon(0.1, 1e-3, 1.0), contact::SurfaceVariant::smooth);
+  PlanarTickModel model;
+  model.gate.ramp_time = 0;
+  model.gate.slew = 1e9;
+  PlanarTickState state;
+  devices::arm(state.gate);
+  const double a = 0.2, depth = 1e-3;
+  devices::ArmSample sample;
+  sample.valid = true;
+  sample.p_DF = (0.1 + model.finger_radius - depth) * Vec3(std::sin(a), 0, std::cos(a));
+  const PlanarStimulus stimulus{circle, circle, 8e-3};
+  const std::int64_t allocations = tests::allocationCount();
+  const PlanarTickOutput out = planarTick(model, stimulus, state, sample, 0, 1e-3);
+  EXPECT_EQ(tests::allocationCount(), allocations);
+  EXPECT_NEAR(out.normal_force, model.stiffness * depth, 1e-3);  // the polygon's circle is 1.3e-8 m off: (1e-3)^2 / 8 of 0.1 m
+  EXPECT_NEAR(out.f_D.x(), model.stiffness * depth * std::sin(a), 1e-3);
+  EXPECT_NEAR(out.tactile.place_L.x(), -model.finger_radius * a, 1e-5);
+  EXPECT_FALSE(out.tactile.parked);
+  EXPECT_TRUE(planarTick(model, {circle, nullptr, 8e-3}, state, sample, 1e-3, 1e-3).tactile.parked);
+}
+
+TEST(StudyFile, ComesBackAsItWasWritten) {
+  const TemporaryDirectory dir;
+  ArcStudy written = smoothnessStudy();
+  written.strokes = 6;
+  written.conditions[2].staircase.small_step = 0.25;
+  std::ofstream(dir / "study.json") << studyJson(written);
+  ArcStudy read = backlashStudy();
+  readStudy(dir / "study.json", read);
+  EXPECT_EQ(studyJson(read), studyJson(written));
+}
+
+TEST(StudyFile, NamesTheKeyThatIsWrong) {
+  const TemporaryDirectory dir;
+  std::ofstream(dir / "study.json") << "{\n  \"strokez\": 4\n}";
+  ArcStudy study = backlashStudy();
+  const std::string error = errorOf([&] { readStudy(dir / "study.json", study); });
+  EXPECT_TRUE(contains(error, "study.json:2") && contains(error, "strokes")) << error;
+}
+
+TEST(StudySession, LosesNoFinishedTrialWhenItIsKilled) {
+  const TemporaryDirectory dir;
+  const std::string path = dir / "session.db", mark = dir / "mark";
+  const pid_t child = ::fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {  // kills itself in the middle of the third trial
+    LocalisationStudy study;
+    LocalisationExperiment experiment(study, {}, 50);
+    const std::atomic<bool> no{false};
+    StudySession session;
+    session.info.task = "repeated-localisation";
+    session.path = path;
+    int done = 0;
+    runStudySession(experiment, session, no, [&](const StudyProgress&) {
+      if (++done == 3) ::raise(SIGKILL);
+    });
+    ::_exit(1);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  ASSERT_TRUE(WIFSIGNALED(status));
+  const SessionReader session(path);
+  EXPECT_FALSE(session.complete());
+  EXPECT_EQ(session.responses().size(), 3u);
+}
+
+TEST(StudyApp, RunsReportsAndPrintsItsStudy) {
+  const TemporaryDirectory dir;
+  std::ofstream(dir / "small.json") << R"({"strokes": 2, "conditions": [{"name": "whole", "staircase": {"most_trials": 2}}]})";
+  const auto printed = tests::runPincer({"run", "delay-discrimination", "--study", dir / "small.json", "--print-study"});
+  EXPECT_EQ(printed.exit_code, 0) << printed.error;
+  EXPECT_TRUE(contains(printed.out, "\"strokes\": 2")) << printed.out;
+  const auto run = tests::runPincer(
+      {"run", "delay-discrimination", "--participants", "1", "--study", dir / "small.json", "--out", dir / "out", "--no-report", "--json"});
+  EXPECT_EQ(run.exit_code, 0) << run.error;
+  EXPECT_TRUE(contains(run.out, "\"task\": \"delay-discrimination\"")) << run.out;
+  const auto bad = tests::runPincer({"run", "delay-discrimination", "--participants", "0"});
+  EXPECT_EQ(bad.exit_code, 3);
+  EXPECT_TRUE(contains(bad.error, "participants = 0 is out of range [1, 10000]")) << bad.error;
+}
+
+}  // namespace
+}  // namespace pincer::tasks
