@@ -22,7 +22,7 @@ std::string nameOf(DeviceState state) {
 
 bool isFinite(const ArmSample& sample) {
   return std::isfinite(sample.time) && sample.p_DF.allFinite() && (!sample.v_DF || sample.v_DF->allFinite()) &&
-         (!sample.q_DF || sample.q_DF->coeffs().allFinite());
+         (!sample.q_DF || sample.q_DF->coeffs().allFinite()) && (!sample.J || sample.J->allFinite());
 }
 
 }  // namespace pincer::devices

@@ -32,6 +32,7 @@ struct ArmSample {
   std::optional<Vec3> v_DF;               // measured velocity [m/s]
   std::optional<Quat> q_DF;               // gimbal orientation
   std::optional<std::uint32_t> switches;  // bit per button
+  std::optional<Mat3> J;                  // d p_DF / d q [m/rad], of arms whose joints are known; tau = J^T f_D
 };
 
 // Whether every number in `sample` that is there is one.
@@ -47,6 +48,10 @@ class Arm {
   virtual ArmSample sample() = 0;
   // Force on the finger [N], in D. Only the gate (devices/gate) calls it.
   virtual void commandForce(const Vec3& f_D) = 0;
+  // The operator armed the gate: an arm with a latch of its own may take forces again.
+  virtual void arm() {}
+  // Zero force at once, from any thread, until arm(): for who finds that the servo doesn't answer.
+  virtual void stop() noexcept {}
 };
 
 }  // namespace pincer::devices

@@ -120,6 +120,8 @@ void SimArm::setFault(SimFault fault) {
   takeSample();
 }
 
+Vec3 SimArm::peakTorque() const { return settings_.peak_force * kLever; }
+
 Vec3 SimArm::trueTip_D() const { return forward(q_); }
 
 Vec3 SimArm::trueVelocity_D() const { return jacobian(q_) * w_; }
@@ -167,6 +169,7 @@ void SimArm::takeSample() {
   sample_.valid = fault_ != SimFault::kInvalidSamples && fault_ != SimFault::kUnplugged;
   if (!sample_.valid) return;
   sample_.q_DF = gimbal_;
+  sample_.J = jacobian(measuredAngles());
   sample_.p_DF =
       fault_ == SimFault::kNotFinitePosition ? Vec3(Vec3::Constant(std::numeric_limits<double>::quiet_NaN())) : forward(measuredAngles());
 }

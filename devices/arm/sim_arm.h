@@ -64,6 +64,8 @@ class SimArm final : public Arm {
 
   // The truth, for records and tests; no participant may see it.
   double time() const { return time_; }
+  // The largest torques of the motors [N m]: peak_force at the reset place.
+  Vec3 peakTorque() const;
   Vec3 trueTip_D() const;           // [m]
   Vec3 trueVelocity_D() const;      // [m/s]
   Vec3 handForce_D() const;         // of the hand on the tip [N]

@@ -16,6 +16,14 @@ Vec3 shortened(const Vec3& v, double longest) {
   return (v / largest).normalized() * (longest * kJustBelow);
 }
 
+// `f` scaled so that no joint bears more than its torque; safe where J^T f overflows, because |f| is bounded before.
+Vec3 withinTorque(const GateLimits& limits, const ArmSample& sample, const Vec3& f) {
+  if (!limits.peak_torque || !sample.J) return f;
+  const double load = (sample.J->transpose() * f).cwiseQuotient(*limits.peak_torque).cwiseAbs().maxCoeff();
+  if (load <= 1) return f;
+  return std::isfinite(load) ? Vec3(f * (kJustBelow / load)) : Vec3::Zero();
+}
+
 bool clockIsSound(const GateLimits& limits, double dt) { return dt > 0 && dt <= limits.watchdog_time; }
 
 bool isFresh(const GateLimits& limits, const GateInput& in, double newest) {
@@ -50,10 +58,11 @@ double heatAfter(const GateLimits& limits, double heat, const Vec3& f_D, double 
 }
 
 Vec3 shaped(const GateLimits& limits, const GateInput& in, const GateState& state) {
-  Vec3 f = shortened(in.f_D, limits.peak_force);
+  Vec3 f = withinTorque(limits, in.sample, shortened(in.f_D, limits.peak_force));
   f *= ramp(limits, state.armed_for);
   f = shortened(f, thermalForce(limits, state.heat));
-  return shortened(state.f_D + shortened(f - state.f_D, limits.slew * in.dt), limits.peak_force);
+  f = shortened(state.f_D + shortened(f - state.f_D, limits.slew * in.dt), limits.peak_force);
+  return withinTorque(limits, in.sample, f);
 }
 
 }  // namespace
@@ -70,6 +79,9 @@ std::optional<std::string> problemWith(const GateLimits& limits) {
   if (!(limits.ramp_time >= 0 && std::isfinite(limits.ramp_time))) return wrong("ramp_time", limits.ramp_time, "[0, inf) s");
   if (!positive(limits.top_speed)) return wrong("top_speed", limits.top_speed, "(0, inf) m/s");
   if (!positive(limits.watchdog_time)) return wrong("watchdog_time", limits.watchdog_time, "(0, inf) s");
+  for (int i = 0; limits.peak_torque && i < 3; ++i) {
+    if (!positive((*limits.peak_torque)[i])) return wrong("peak_torque", (*limits.peak_torque)[i], "(0, inf) N m");
+  }
   return std::nullopt;
 }
 

@@ -2,14 +2,16 @@
 //
 //   trips      not finite, fault before, invalid sample, over-speed, missed deadline, stale sample: zero at once, until an operator arms
 //   peak       |f| <= peak_force, direction kept
+//   torque     f / max(1, max_i |(J^T f)_i| / peak_torque_i): one common scale, direction kept
 //   ramp       f min(1, t_armed / ramp_time)
 //   thermal    |f|^2 <= f_cont^2 + (H - heat) / tau,   d heat / dt = |f|^2 - f_cont^2, heat >= 0,   tau = thermal_time / 10,
 //              H = (f_peak^2 - f_cont^2) (thermal_time + tau): peak_force from cold lasts thermal_time, then sinks smoothly to f_cont
 //   slew       |f - f_last| <= slew dt
 //
-// in this order. Slew comes last of all, because its bound is one on what the motor gets: a stage behind it could break it. It can delay
-// the thermal stage by peak_force / slew at most. (Passivity joins the order with grasp/'s observer; joint torques with the arms that
-// report theirs.) The stages and their order are ours.
+// in this order, behind the passivity controller of grasp/passivity (tasks/servo/tick.cpp). Slew comes last, because its bound is one on
+// what the motor gets: a stage behind it could break it. It can delay the thermal stage by peak_force / slew at most. Only the torque
+// bound is looked at once more behind it: where the arm moved so that the last force would overload a joint now, torque wins over slew.
+// The torque stage needs both `peak_torque` and a sample that knows its joints. The stages and their order are ours.
 #pragma once
 #include <cstdint>
 #include <limits>
@@ -22,13 +24,14 @@
 namespace pincer::devices {
 
 struct GateLimits {
-  double peak_force = 8.5;        // [N], > 0
-  double continuous_force = 1.4;  // [N], > 0
-  double thermal_time = 10;       // the time that peak_force may last from cold [s], > 0
-  double slew = 1000;             // [N/s], > 0
-  double ramp_time = 2;           // from arming to full force [s], >= 0
-  double top_speed = 2.0;         // of the fingertip [m/s], > 0
-  double watchdog_time = 3e-3;    // oldest sample that is still trusted, longest time between two calls [s], > 0
+  double peak_force = 8.5;               // [N], > 0
+  double continuous_force = 1.4;         // [N], > 0
+  double thermal_time = 10;              // the time that peak_force may last from cold [s], > 0
+  double slew = 1000;                    // [N/s], > 0
+  double ramp_time = 2;                  // from arming to full force [s], >= 0
+  double top_speed = 2.0;                // of the fingertip [m/s], > 0
+  double watchdog_time = 3e-3;           // oldest sample that is still trusted, longest time between two calls [s], > 0
+  std::optional<Vec3> peak_torque = {};  // of the joints [N m], each > 0; absent: not limited
 };
 
 // What is wrong with `limits`, as a sentence with field, value and range; absent if nothing is.

@@ -189,8 +189,43 @@ TEST(ForceGate, NamesTheLimitThatIsOutOfRange) {
   GateLimits limits;
   limits.slew = -1;
   EXPECT_NE(problemWith(limits).value().find("slew = -1"), std::string::npos);
+  limits = {};
+  limits.peak_torque = Vec3(1, 1, 0);
+  EXPECT_NE(problemWith(limits).value().find("peak_torque"), std::string::npos);
   limits = {.peak_force = kNan};
   EXPECT_NE(problemWith(limits).value().find("peak_force"), std::string::npos);
+}
+
+TEST(ForceGate, ScalesAllJointsByOneFactorWhereOneWouldBearTooMuch) {
+  Loop loop;
+  loop.limits.ramp_time = 0;
+  loop.limits.peak_torque = Vec3(1.0, 0.5, 2.0);
+  Mat3 J;
+  J << 0.2, 0, 0.1, 0, 0.3, 0, 0, 0.1, 0.2;
+  loop.in.sample.J = J;
+  const Vec3 wanted(3, 4, -1);
+  const Vec3 f = loop.ticks(50, wanted);
+  EXPECT_NEAR((J.transpose() * f)[1], 0.5, 1e-12) << "the second joint is at its bound";
+  EXPECT_NEAR(f.cross(wanted).norm(), 0, 1e-12) << "the direction is kept";
+  EXPECT_EQ(loop.ticks(50, Vec3(0.1, 0.1, 0.1)), Vec3(0.1, 0.1, 0.1)) << "below the bound nothing changes";
+}
+
+TEST(ForceGate, TorqueWinsOverSlewWhenTheArmMovesIntoAWorsePosture) {
+  Loop loop;
+  loop.limits.ramp_time = 0;
+  loop.limits.peak_torque = Vec3::Constant(1.0);
+  loop.in.sample.J = Mat3(0.2 * Mat3::Identity());
+  ASSERT_NEAR(loop.ticks(20, Vec3(5, 0, 0)).x(), 5, 1e-9);
+  loop.in.sample.J = Mat3(2 * Mat3::Identity());
+  EXPECT_LE(loop.tick(Vec3(5, 0, 0)).x(), 0.5);
+}
+
+TEST(ForceGate, AnInfiniteLoadIsNoForce) {
+  Loop loop;
+  loop.limits.ramp_time = 0;
+  loop.limits.peak_torque = Vec3::Constant(1e-300);
+  loop.in.sample.J = Mat3(1e300 * Mat3::Identity());
+  EXPECT_EQ(loop.ticks(10, Vec3(5, 0, 0)), Vec3::Zero());
 }
 
 // A million ticks of whatever an adversary thinks of.
@@ -207,6 +242,7 @@ class Adversary {
     in_.sample.valid = true;
     in_.sample.p_DF = Vec3::Zero();
     in_.sample.time = in_.now - draw_.uniform(0, 1e-3);
+    in_.sample.J = posture();
     if (draw_.below(200) == 0) spoil();
     return in_;
   }
@@ -228,8 +264,17 @@ class Adversary {
         return std::exp(draw_.uniform(-740, 700)) * Vec3{draw_.uniform(-1, 1), draw_.uniform(-1, 1), draw_.uniform(-1, 1)};
     }
   }
+  // An arm that moves: its levers change by up to 1 % per tick, or it doesn't know them.
+  std::optional<Mat3> posture() {
+    for (int i = 0; i < 9; ++i) J_(i / 3, i % 3) = std::clamp(J_(i / 3, i % 3) + draw_.uniform(-3e-3, 3e-3), -0.3, 0.3);
+    if (draw_.below(100) == 0) return std::nullopt;
+    return J_;
+  }
   void spoil() {
-    switch (draw_.below(7)) {
+    switch (draw_.below(8)) {
+      case 7:
+        if (in_.sample.J) (*in_.sample.J)(draw_.below(3), draw_.below(3)) = anyNumber();
+        break;
       case 0:
         in_.f_D[draw_.below(3)] = anyNumber();
         break;
@@ -256,6 +301,7 @@ class Adversary {
 
   tests::RandomNumbers draw_;
   GateInput in_;
+  Mat3 J_ = 0.2 * Mat3::Identity();
 };
 
 void expectSafe(const GateLimits& limits, const GateInput& in, const GateState& before, const GateState& after, const Vec3& f) {
@@ -269,7 +315,18 @@ void expectSafe(const GateLimits& limits, const GateInput& in, const GateState& 
     return;
   }
   const double rounding = 1e-15 * limits.peak_force;  // of one addition and subtraction
-  ASSERT_LE((f - before.f_D).norm(), limits.slew * in.dt + rounding);
+  const bool torque_limited = limits.peak_torque && in.sample.J;
+  if (torque_limited) {
+    const Vec3 load = (in.sample.J->transpose() * f).cwiseQuotient(*limits.peak_torque);
+    ASSERT_LE(load.cwiseAbs().maxCoeff(), 1 + 1e-12);
+    const double before_load = (in.sample.J->transpose() * before.f_D).cwiseQuotient(*limits.peak_torque).cwiseAbs().maxCoeff();
+    if (before_load <= 1) {
+      ASSERT_LE((f - before.f_D).norm(), limits.slew * in.dt + 1e-12) << "only a worse posture may cut faster";
+    }
+  }
+  if (!torque_limited) {
+    ASSERT_LE((f - before.f_D).norm(), limits.slew * in.dt + rounding);
+  }
   const double ramp = limits.ramp_time > 0 ? std::min(1.0, after.armed_for / limits.ramp_time) : 1;
   ASSERT_LE(f.norm(), std::max(limits.peak_force * ramp, before.f_D.norm()) + rounding);
 }
@@ -281,6 +338,7 @@ TEST(ForceGate, IsSafeWhateverComesIn) {
     GateLimits limits;
     limits.ramp_time = seed % 2 ? 0.05 : 0;
     limits.thermal_time = seed < 5 ? 0.2 : 100;
+    if (seed % 3 == 0) limits.peak_torque = Vec3(0.8, 0.8, 0.6);
     int armed_ticks = 0;
     for (int i = 0; i < 100000; ++i) {
       if (!state.armed && adversary.rearms()) arm(state);

@@ -1,0 +1,78 @@
+#include "devices/usb/usb_arm.h"
+
+namespace pincer::devices::usb {
+
+std::string UsbArm::identity() const { return deviceIdentity().model + " " + deviceIdentity().serial; }
+
+ArmSample UsbArm::sample() {
+  readings_.take();
+  const auto& [state, sent_ns] = readings_.latest();
+  ArmSample sample;
+  sample.time = sinceEpoch(sent_ns);
+  const bool gave_up = state.limp && arming_ != 0 && state.arming == arming_;
+  sample.valid = linkState() == DeviceState::kReady && state.valid && !gave_up;
+  if (!sample.valid) return sample;
+  sample.p_DF = state.p_DF;
+  sample.v_DF = state.v_DF;
+  sample.q_DF = state.q_DF;
+  if (state.switches) sample.switches = *state.switches;
+  return sample;
+}
+
+void UsbArm::commandForce(const Vec3& f_D) {
+  const bool may = armed_.load(std::memory_order_acquire) && f_D.allFinite();
+  commands_.put({may ? f_D : Vec3::Zero(), kForceDeadline, may ? arming_ : std::uint16_t{0}, signal_});
+  signal_ = Signal::kNone;
+  waker_.wake();
+}
+
+void UsbArm::arm() {
+  arming_ = static_cast<std::uint16_t>(arming_ == 0xffff ? 1 : arming_ + 1);  // 0 arms nothing
+  stop_.store(false, std::memory_order_relaxed);
+  armed_.store(linkState() == DeviceState::kReady, std::memory_order_release);
+}
+
+void UsbArm::stop() noexcept {
+  armed_.store(false, std::memory_order_release);
+  stop_.store(true, std::memory_order_release);
+  waker_.wake();
+}
+
+void UsbArm::attach(std::int64_t now, std::uint32_t sequence) {
+  armed_.store(false, std::memory_order_release);
+  DeviceLink::attach(now, sequence);
+}
+
+void UsbArm::detach() {
+  armed_.store(false, std::memory_order_release);
+  DeviceLink::detach();
+}
+
+bool UsbArm::takeState(const Frame& frame, std::int64_t sent) {
+  const auto state = armStateIn(frame);
+  if (!state) return false;
+  readings_.put({*state, sent});
+  answered(state->answers);
+  return true;
+}
+
+bool UsbArm::takeCapabilities(const Frame& frame) {
+  const auto capabilities = armCapabilitiesIn(frame);
+  if (!capabilities) return false;
+  if (!has_capabilities_) capabilities_ = *capabilities;  // a device keeps them; the servo may be reading
+  return has_capabilities_ = true;
+}
+
+// Whatever was asked before a stop or an unplugging is not force any more.
+bool UsbArm::takeCommand(Frame& frame) {
+  if (!commands_.take()) return false;
+  ArmCommand command = commands_.latest();
+  if (!armed_.load(std::memory_order_acquire)) {
+    command.f_D = Vec3::Zero();
+    command.arming = 0;
+  }
+  frame = toFrame(command);
+  return true;
+}
+
+}  // namespace pincer::devices::usb

@@ -1,0 +1,360 @@
+#include <fcntl.h>
+#include <libusb.h>
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+#include "devices/usb/usb_bus.h"
+
+namespace pincer::devices::usb {
+namespace {
+
+constexpr int kInFlight = 2;        // transfers that wait for the device at any time
+constexpr int kFailuresInARow = 8;  // after which a port is given up
+constexpr int kWaitMs = 20;         // between looks at what is due, with nothing going on
+
+// The addresses of the first endpoints of each direction. libusb 1.0.26 may leave an endpoint that the descriptor counts empty: address 0.
+struct Endpoints {
+  std::uint8_t in = 0, out = 0;
+  std::uint8_t in_type = LIBUSB_TRANSFER_TYPE_INTERRUPT, out_type = LIBUSB_TRANSFER_TYPE_INTERRUPT;
+};
+
+bool isPacketEndpoint(const libusb_endpoint_descriptor& e) {
+  const int type = e.bmAttributes & LIBUSB_TRANSFER_TYPE_MASK;
+  return e.bEndpointAddress != 0 && (type == LIBUSB_TRANSFER_TYPE_INTERRUPT || type == LIBUSB_TRANSFER_TYPE_BULK) &&
+         (e.wMaxPacketSize & 0x7ff) >= static_cast<int>(kFrameSize);
+}
+
+Endpoints endpointsOf(libusb_device* device) {
+  Endpoints found;
+  libusb_config_descriptor* config = nullptr;
+  if (libusb_get_active_config_descriptor(device, &config) != 0) return found;
+  if (config->bNumInterfaces > 0 && config->interface[0].num_altsetting > 0) {
+    const libusb_interface_descriptor& face = config->interface[0].altsetting[0];
+    for (int i = 0; i < face.bNumEndpoints && face.endpoint != nullptr; ++i) {
+      const libusb_endpoint_descriptor& e = face.endpoint[i];
+      if (!isPacketEndpoint(e)) continue;
+      const bool in = (e.bEndpointAddress & LIBUSB_ENDPOINT_IN) != 0;
+      std::uint8_t& address = in ? found.in : found.out;
+      if (address != 0) continue;
+      address = e.bEndpointAddress;
+      (in ? found.in_type : found.out_type) = e.bmAttributes & LIBUSB_TRANSFER_TYPE_MASK;
+    }
+  }
+  libusb_free_config_descriptor(config);
+  return found;
+}
+
+struct Transfer {
+  libusb_transfer* transfer = nullptr;
+  std::array<std::uint8_t, 2 * kFrameSize> buffer{};  // longer than a frame, so that a too long packet is seen as one
+  bool flying = false;
+  bool done = false;  // set by libusb's callback, looked at by the loop
+};
+
+void LIBUSB_CALL markDone(libusb_transfer* transfer) { static_cast<Transfer*>(transfer->user_data)->done = true; }
+
+struct PortState {
+  libusb_device* device = nullptr;  // null: free
+  libusb_device_handle* handle = nullptr;
+  Endpoints endpoints;
+  std::array<Transfer, kInFlight> in;
+  Transfer out;
+  FrameBytes packet{};  // being sent
+  int failures = 0;
+  bool closing = false, told_closed = false;
+};
+
+std::string placeOf(libusb_device* device) {
+  return "USB device " + std::to_string(libusb_get_bus_number(device)) + "-" + std::to_string(libusb_get_port_number(device));
+}
+
+std::string openProblem(libusb_device* device, int error) {
+  if (error == LIBUSB_ERROR_ACCESS) {
+    return placeOf(device) +
+           ": no permission to open it. Install the udev rule (docs/devices.md) and join its group: sudo usermod -aG plugdev $USER; then "
+           "log in "
+           "again and replug the device. No need to be root.";
+  }
+  if (error == LIBUSB_ERROR_BUSY) return placeOf(device) + ": another program uses it. Close that program.";
+  return placeOf(device) + ": it can't be opened (" + libusb_error_name(error) + "). Unplug it and plug it in again.";
+}
+
+}  // namespace
+
+std::int64_t monotonicNs() {
+  timespec t;
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return static_cast<std::int64_t>(t.tv_sec) * 1'000'000'000 + t.tv_nsec;
+}
+
+class UsbBus::Thread {
+ public:
+  Thread(UsbPorts& ports, Clock clock) : ports_(ports), clock_(std::move(clock)) {
+    wake_fd_ = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+    if (wake_fd_ < 0) throw std::runtime_error("USB: no more file descriptors. Close other programs.");
+    if (const int error = libusb_init(&context_); error != 0) {
+      ::close(wake_fd_);
+      throw std::runtime_error(std::string("USB: libusb can't start (") + libusb_error_name(error) + ").");
+    }
+    thread_ = std::thread([this] { run(); });
+  }
+  ~Thread() {
+    stop_ = true;
+    wake();
+    thread_.join();
+    libusb_exit(context_);
+    ::close(wake_fd_);
+  }
+  Thread(const Thread&) = delete;
+  Thread& operator=(const Thread&) = delete;
+
+  void wake() noexcept {
+    const std::uint64_t one = 1;
+    [[maybe_unused]] const auto written = ::write(wake_fd_, &one, sizeof one);  // it can only be full, and then it wakes anyway
+  }
+
+ private:
+  void run() {
+    const bool told = watchPlugs();
+    if (!told) lookForDevices();
+    handleEvents();
+    openArrived();
+    ports_.searched();
+    while (!stop_) {
+      wait();
+      handleEvents();
+      if (!told) lookForDevices();
+      closeLeft();
+      openArrived();
+      for (int i = 0; i < kMaxPorts; ++i) serve(i);
+    }
+    closeAll();
+  }
+
+  // Whether the system tells of plugs.
+  bool watchPlugs() {
+    if (libusb_has_capability(LIBUSB_CAP_HAS_HOTPLUG) == 0) return false;
+    const auto events = static_cast<libusb_hotplug_event>(LIBUSB_HOTPLUG_EVENT_DEVICE_ARRIVED | LIBUSB_HOTPLUG_EVENT_DEVICE_LEFT);
+    return libusb_hotplug_register_callback(context_, events, LIBUSB_HOTPLUG_ENUMERATE, kVendorId, kProductId, LIBUSB_HOTPLUG_MATCH_ANY,
+                                            &Thread::plugged, this, nullptr) == 0;
+  }
+  static int LIBUSB_CALL plugged(libusb_context*, libusb_device* device, libusb_hotplug_event event, void* self) {
+    auto& thread = *static_cast<Thread*>(self);
+    (event == LIBUSB_HOTPLUG_EVENT_DEVICE_ARRIVED ? thread.arrived_ : thread.left_).push_back(libusb_ref_device(device));
+    return 0;
+  }
+  // Where the system doesn't: once a second.
+  void lookForDevices() {
+    const std::int64_t now = monotonicNs();
+    if (now < next_look_) return;
+    next_look_ = now + 1'000'000'000;
+    libusb_device** list = nullptr;
+    const auto count = libusb_get_device_list(context_, &list);
+    for (std::ptrdiff_t i = 0; i < count; ++i) {
+      libusb_device_descriptor d;
+      if (libusb_get_device_descriptor(list[i], &d) != 0 || d.idVendor != kVendorId || d.idProduct != kProductId || portOf(list[i]))
+        continue;
+      arrived_.push_back(libusb_ref_device(list[i]));
+    }
+    if (count >= 0) libusb_free_device_list(list, 1);
+  }
+
+  void wait() {
+    fds_.clear();
+    fds_.push_back({wake_fd_, POLLIN, 0});
+    if (const libusb_pollfd** list = libusb_get_pollfds(context_)) {
+      for (const libusb_pollfd** fd = list; *fd != nullptr; ++fd) fds_.push_back({(*fd)->fd, (*fd)->events, 0});
+      libusb_free_pollfds(list);
+    }
+    ::poll(fds_.data(), fds_.size(), kWaitMs);
+    std::uint64_t count = 0;
+    [[maybe_unused]] const auto read = ::read(wake_fd_, &count, sizeof count);
+  }
+
+  void handleEvents() {
+    timeval none{0, 0};
+    libusb_handle_events_timeout_completed(context_, &none, nullptr);
+  }
+
+  PortState* portOf(libusb_device* device) {
+    for (PortState& p : states_) {
+      if (p.device == device) return &p;
+    }
+    return nullptr;
+  }
+
+  void openArrived() {
+    while (!arrived_.empty()) {
+      libusb_device* device = arrived_.front();
+      arrived_.erase(arrived_.begin());
+      open(device);
+      libusb_unref_device(device);
+    }
+  }
+
+  void open(libusb_device* device) {
+    const auto free = std::find_if(states_.begin(), states_.end(), [](const PortState& p) { return p.device == nullptr; });
+    if (free == states_.end()) return ports_.problem("More than 16 USB devices are plugged in; unplug those that aren't needed.");
+    PortState& p = *free;
+    if (portOf(device) != nullptr) return;
+    libusb_device_handle* handle = nullptr;
+    int error = libusb_open(device, &handle);
+    if (error != 0) return ports_.problem(openProblem(device, error));
+    p.endpoints = endpointsOf(device);
+    if (p.endpoints.in == 0 || p.endpoints.out == 0) {
+      libusb_close(handle);
+      return ports_.problem(placeOf(device) + ": it lacks a 64-byte endpoint in each direction (docs/usb-protocol.md).");
+    }
+    error = libusb_claim_interface(handle, 0);
+    if (error != 0) {
+      libusb_close(handle);
+      return ports_.problem(openProblem(device, error));
+    }
+    p.device = libusb_ref_device(device);
+    p.handle = handle;
+    p.failures = 0;
+    p.closing = false;
+    start(p);
+    ports_.opened(static_cast<int>(free - states_.begin()), clock_());
+  }
+
+  void start(PortState& p) {
+    for (Transfer& t : p.in) {
+      t.transfer = libusb_alloc_transfer(0);
+      libusb_fill_interrupt_transfer(t.transfer, p.handle, p.endpoints.in, t.buffer.data(), static_cast<int>(t.buffer.size()), markDone, &t,
+                                     0);
+      t.transfer->type = p.endpoints.in_type;
+      submit(p, t);
+    }
+    p.out.transfer = libusb_alloc_transfer(0);
+    libusb_fill_interrupt_transfer(p.out.transfer, p.handle, p.endpoints.out, p.packet.data(), kFrameSize, markDone, &p.out, 0);
+    p.out.transfer->type = p.endpoints.out_type;
+  }
+
+  void submit(PortState& p, Transfer& t) {
+    t.done = false;
+    t.flying = libusb_submit_transfer(t.transfer) == 0;
+    if (!t.flying && ++p.failures >= kFailuresInARow) p.closing = true;
+  }
+
+  void serve(int port) {
+    PortState& p = states_[static_cast<std::size_t>(port)];
+    if (p.device == nullptr) return;
+    for (Transfer& t : p.in) {
+      if (t.flying && t.done) finishIn(port, p, t);
+    }
+    if (p.out.flying && p.out.done) {
+      p.out.flying = false;
+      finished(p, *p.out.transfer);
+    }
+    if (!p.closing) {
+      for (Transfer& t : p.in) {
+        if (!t.flying && !p.closing) submit(p, t);
+      }
+      if (!p.out.flying && !p.closing && ports_.toSend(port, p.packet, clock_())) submit(p, p.out);
+    }
+    if (p.closing) close(port, p);
+  }
+
+  void finishIn(int port, PortState& p, Transfer& t) {
+    t.flying = false;
+    if (!finished(p, *t.transfer)) return;
+    ports_.received(port, std::span(t.buffer).first(static_cast<std::size_t>(std::max(0, t.transfer->actual_length))), clock_());
+  }
+
+  // Whether the transfer brought its packet. A stalled endpoint is cleared; whatever fails too often in a row closes the port.
+  bool finished(PortState& p, libusb_transfer& transfer) {
+    switch (transfer.status) {
+      case LIBUSB_TRANSFER_COMPLETED:
+        p.failures = 0;
+        return true;
+      case LIBUSB_TRANSFER_NO_DEVICE:
+        p.closing = true;
+        return false;
+      case LIBUSB_TRANSFER_STALL:
+        if (libusb_clear_halt(p.handle, transfer.endpoint) == LIBUSB_ERROR_NO_DEVICE) p.closing = true;
+        [[fallthrough]];
+      default:
+        if (++p.failures >= kFailuresInARow) p.closing = true;
+        return false;
+    }
+  }
+
+  void closeLeft() {
+    for (libusb_device* device : left_) {
+      if (PortState* p = portOf(device)) p->closing = true;
+      std::erase_if(arrived_, [&](libusb_device* d) {  // it left before it was opened
+        if (d == device) libusb_unref_device(d);
+        return d == device;
+      });
+      libusb_unref_device(device);
+    }
+    left_.clear();
+  }
+
+  // Once every transfer has come back.
+  void close(int port, PortState& p) {
+    if (!p.told_closed) ports_.closed(port, clock_());
+    p.told_closed = true;
+    bool flying = false;
+    const auto recall = [&](Transfer& t) {
+      if (t.flying && t.done) t.flying = false;
+      if (t.flying) libusb_cancel_transfer(t.transfer);
+      flying = flying || t.flying;
+    };
+    for (Transfer& t : p.in) recall(t);
+    recall(p.out);
+    if (flying) return;
+    for (Transfer& t : p.in) libusb_free_transfer(t.transfer), t = Transfer{};
+    libusb_free_transfer(p.out.transfer), p.out = Transfer{};
+    libusb_release_interface(p.handle, 0);
+    libusb_close(p.handle);
+    libusb_unref_device(p.device);
+    p.device = nullptr;
+    p.told_closed = false;
+  }
+
+  void closeAll() {
+    for (int round = 0; round < 200; ++round) {  // transfers come back at once, or their kernel driver is broken
+      bool open = false;
+      for (int i = 0; i < kMaxPorts; ++i) {
+        PortState& p = states_[static_cast<std::size_t>(i)];
+        if (p.device == nullptr) continue;
+        p.closing = true;
+        close(i, p);
+        open = open || p.device != nullptr;
+      }
+      if (!open) break;
+      wait();
+      handleEvents();
+    }
+    for (libusb_device* device : arrived_) libusb_unref_device(device);
+    for (libusb_device* device : left_) libusb_unref_device(device);
+  }
+
+  UsbPorts& ports_;
+  Clock clock_;
+  libusb_context* context_ = nullptr;
+  int wake_fd_ = -1;
+  std::atomic<bool> stop_{false};
+  std::vector<libusb_device*> arrived_, left_;
+  std::vector<pollfd> fds_;
+  std::array<PortState, kMaxPorts> states_;
+  std::int64_t next_look_ = 0;
+  std::thread thread_;
+};
+
+UsbBus::UsbBus(UsbPorts& ports, Clock clock) : thread_(std::make_unique<Thread>(ports, std::move(clock))) {}
+UsbBus::~UsbBus() = default;
+void UsbBus::wake() noexcept { thread_->wake(); }
+
+}  // namespace pincer::devices::usb

@@ -1,0 +1,122 @@
+#include <fmt/format.h>
+#include <umockdev.h>
+
+#include <chrono>
+#include <stdexcept>
+
+#include "tests/emulation/emulated_bus.h"
+#include "tests/emulation/usbfs_interpose.h"
+
+namespace pincer::emulation {
+namespace {
+
+// Device, configuration, vendor interface, endpoints 0x01 and 0x81 (interrupt, 64 bytes, every frame).
+constexpr const char* kDescriptors =
+    "120100020000004009120100000101020301"
+    "09022000010100C032"
+    "0904000002FF000000"
+    "07050103400001"
+    "07058103400001";
+
+void require(bool ok, GError* error, const char* what) {
+  if (ok) return;
+  const std::string message = std::string(what) + ": " + (error != nullptr ? error->message : "failed");
+  g_clear_error(&error);
+  throw std::runtime_error(message);
+}
+
+}  // namespace
+
+struct EmulatedBus::Testbed {
+  UMockdevTestbed* testbed = umockdev_testbed_new();
+  ~Testbed() { g_object_unref(testbed); }
+};
+
+// Only with a testbed is umockdev in effect, if it is linked in.
+std::string EmulatedBus::obstacle() {
+  const Testbed testbed;
+  return umockdev_in_mock_environment() ? "" : "umockdev's preload library isn't in effect here, so no device can be emulated";
+}
+
+EmulatedBus::EmulatedBus() : testbed_(std::make_unique<Testbed>()) {}
+
+EmulatedBus::~EmulatedBus() {
+  stopRealTime();
+  for (std::size_t i = 0; i < slots_.size(); ++i) unplug(static_cast<int>(i));
+}
+
+int EmulatedBus::add(std::shared_ptr<Firmware> firmware) {
+  Slot slot;
+  slot.firmware = std::move(firmware);
+  slot.path = fmt::format("/devices/pci0000:00/0000:00:14.0/usb1/1-{}", slots_.size() + 1);
+  slots_.push_back(std::move(slot));
+  const int device = static_cast<int>(slots_.size()) - 1;
+  plug(device);
+  return device;
+}
+
+void EmulatedBus::prepare(int device) {
+  Slot& slot = slots_[static_cast<std::size_t>(device)];
+  slot.device = std::make_shared<UsbfsDevice>(slot.firmware);
+  slot.prepared = true;
+}
+
+void EmulatedBus::plug(int device) {
+  Slot& slot = slots_[static_cast<std::size_t>(device)];
+  if (slot.plugged) return;
+  const int address = next_address_;
+  next_address_ = next_address_ == 120 ? 2 : next_address_ + 1;  // as Linux counts them up
+  slot.firmware->powerUp();
+  if (!slot.prepared) prepare(device);
+  slot.prepared = false;
+  slot.node = fmt::format("/dev/bus/usb/001/{:03}", address);
+  attachUsbfs(slot.node, slot.device);
+  const std::string description = fmt::format(
+      "P: {}\nN: bus/usb/001/{:03}\nE: SUBSYSTEM=usb\nE: DRIVER=usb\nE: BUSNUM=001\nE: DEVNUM={:03}\nE: DEVNAME=/dev/bus/usb/001/{:03}\n"
+      "E: DEVTYPE=usb_device\nE: PRODUCT=1209/1/100\nA: bConfigurationValue=1\\n\nA: busnum=1\\n\nA: devnum={}\\n\nA: speed=12\\n\n"
+      "H: descriptors={}\n",
+      slot.path, address, address, address, address, slot.descriptors.empty() ? kDescriptors : slot.descriptors);
+  GError* error = nullptr;
+  require(umockdev_testbed_add_from_string(testbed_->testbed, description.c_str(), &error) != 0, error, "emulated device");
+  slot.plugged = true;
+  umockdev_testbed_uevent(testbed_->testbed, ("/sys" + slot.path).c_str(), "add");
+}
+
+void EmulatedBus::unplug(int device) {
+  Slot& slot = slots_[static_cast<std::size_t>(device)];
+  if (!slot.plugged) return;
+  slot.plugged = false;
+  slot.device->unplug();
+  attachUsbfs(slot.node, nullptr);
+  umockdev_testbed_uevent(testbed_->testbed, ("/sys" + slot.path).c_str(), "remove");
+  umockdev_testbed_remove_device(testbed_->testbed, ("/sys" + slot.path).c_str());
+}
+
+void EmulatedBus::advance(double dt) {
+  for (Slot& slot : slots_) {
+    if (slot.plugged) slot.device->advance(dt);
+  }
+}
+
+void EmulatedBus::runInRealTime() {
+  running_ = true;
+  thread_ = std::thread([this] {
+    using Time = std::chrono::steady_clock;
+    auto last = Time::now();
+    for (auto due = last; running_;) {
+      due += std::chrono::milliseconds(1);
+      std::this_thread::sleep_until(due);
+      const auto now = Time::now();
+      due = std::max(due, now - std::chrono::milliseconds(5));
+      advance(std::chrono::duration<double>(now - last).count());
+      last = now;
+    }
+  });
+}
+
+void EmulatedBus::stopRealTime() {
+  running_ = false;
+  if (thread_.joinable()) thread_.join();
+}
+
+}  // namespace pincer::emulation

@@ -1,0 +1,101 @@
+// usbfs_device: one plugged-in USB device as Linux shows it to libusb: URBs submitted, reaped and discarded, a descriptor to poll, and the
+// faults that a cable and a device can have, each at a chosen transfer.
+//
+// Readiness for poll: libusb is given the write end of a pipe as the device's descriptor. Full: nothing to reap; drained: writable, so
+// something can be reaped; read end closed: POLLERR, so unplugged.
+#pragma once
+#include <linux/usbdevice_fs.h>
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <set>
+
+#include "tests/emulation/firmware.h"
+
+namespace pincer::emulation {
+
+enum class TransferFault : std::uint8_t {
+  kNone,
+  kStall,          // the endpoint halts until it is cleared
+  kShort,          // 40 of the 64 bytes
+  kEmpty,          // no bytes at all
+  kGarbled,        // one bit flipped
+  kDuplicate,      // the same packet once more
+  kLate,           // after its successor
+  kLost,           // never
+  kProtocolError,  // EPROTO: noise on the wire
+  kOverflow,       // more bytes than a packet has
+  kWrongMagic,     // the rest sound, checksum right
+  kWrongVersion,
+  kWrongType,
+  kBadValue,  // a value out of range
+  kSubmitFails,
+};
+constexpr int kTransferFaults = 14;  // but kNone
+const char* nameOf(TransferFault fault);
+
+// A URB and what its owner needs to give it back.
+struct Urb {
+  usbdevfs_urb* urb = nullptr;
+  std::uint64_t key = 0;  // address in the client
+  void* cookie = nullptr;
+};
+
+class UsbfsDevice {
+ public:
+  explicit UsbfsDevice(std::shared_ptr<Firmware> firmware) : firmware_(std::move(firmware)) {}
+  ~UsbfsDevice();
+  UsbfsDevice(const UsbfsDevice&) = delete;
+  UsbfsDevice& operator=(const UsbfsDevice&) = delete;
+
+  // The client's side. Answers are 0 or a negative errno.
+  int open(int& fd);
+  void opened(int read_fd, int write_fd);  // with a descriptor made elsewhere
+  void closed();
+  int submit(Urb urb);
+  int reap(Urb& urb);
+  int discard(std::uint64_t key);
+  int clearHalt(unsigned endpoint);
+  bool gone() const;
+
+  // The cable's side.
+  void advance(double dt);
+  void unplug();
+  // The `index`-th transfer from now (0: the next) to the host (`in`) or from it suffers `fault`.
+  void injectAt(std::int64_t index, bool in, TransferFault fault);
+  std::int64_t faultsDone() const;
+  std::int64_t transfers() const;
+  // Access to the firmware while nothing else runs in it.
+  template <typename F>
+  auto with(F&& f) {
+    const std::lock_guard lock(mutex_);
+    return f(*firmware_);
+  }
+
+ private:
+  void pump();
+  bool completeIn(Urb urb);
+  bool alterIn(usb::FrameBytes& bytes, usbdevfs_urb& urb, TransferFault fault);
+  int takeOut(Urb urb);
+  void control(usbdevfs_urb& urb);
+  void finish(Urb urb);
+  void show();  // readiness
+  TransferFault faultAt(bool in);
+
+  mutable std::mutex mutex_;
+  std::shared_ptr<Firmware> firmware_;
+  std::deque<Urb> waiting_;  // for packets from the device
+  std::deque<Urb> done_;
+  std::deque<usb::FrameBytes> held_;
+  std::set<unsigned> halted_;
+  std::map<std::int64_t, TransferFault> in_faults_, out_faults_;
+  std::int64_t in_count_ = 0, out_count_ = 0, faults_done_ = 0;
+  int read_fd_ = -1, write_fd_ = -1;
+  bool raised_ = true, gone_ = false, has_late_ = false;
+  usb::FrameBytes late_{};
+};
+
+}  // namespace pincer::emulation
