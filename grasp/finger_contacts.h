@@ -8,4 +8,8 @@ namespace pincer::grasp {
 // nearest body and the direction of it. Geometry at the predicted middle of the tick. Advances the trackers in `state`.
 void findFingerContacts(const GraspModel& model, GraspState& state, GraspScratch& scratch);
 
+// Contacts of one finger at X_WF with one body at X_WB, in the body's frame; p_BT its own points there.
+contact::FingerContacts fingerOnBody(const GraspModel& model, GraspState& state, contact::PatchCache& patches, int finger, int body,
+                                     const Pose& X_WB, const Pose& X_WF, double margin);
+
 }  // namespace pincer::grasp

@@ -3,13 +3,31 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/motion/driven_motion.h"
+#include "grasp/baseline/baseline.h"
 #include "grasp/finger_contacts.h"
 
 namespace pincer::grasp {
 namespace {
 
-void setInputs(std::span<const FingerInput> inputs, GraspScratch& scratch) {
-  for (std::size_t i = 0; i < inputs.size(); ++i) scratch.inputs[i] = {inputs[i].p_WF, inputs[i].v_WF, inputs[i].f_W};
+// The finger turns evenly from where it was at the end of the last tick.
+void setRotation(const FingerInput& input, const FingerState& last, double h, engine::PointInput& point, Quat& q_mid_WF) {
+  q_mid_WF = input.q_WF;
+  if (!last.seen || last.q_WF.coeffs() == input.q_WF.coeffs()) return;
+  const Vec3 turn_W = engine::rotationVectorOf(input.q_WF * last.q_WF.conjugate());
+  point.w_W = turn_W / h;
+  q_mid_WF = quatFromRotationVector(0.5 * turn_W) * last.q_WF;
+}
+
+void setInputs(const GraspModel& model, const GraspState& state, std::span<const FingerInput> inputs, GraspScratch& scratch) {
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    engine::PointInput& point = scratch.inputs[i];
+    point = {inputs[i].p_WF, inputs[i].v_WF, inputs[i].f_W};
+    setRotation(inputs[i], state.fingers[i], model.world.options.h, point, scratch.q_mid_WF[i]);
+    const engine::DrivenPointModel& coupling = model.fingers[i].coupling;
+    point.turned = model.fingers[i].along_normal || coupling.twist_stiffness + coupling.twist_damping > 0;
+    if (point.turned) point.R_WA = frameFromNormal(state.fingers[i].n_W);
+  }
 }
 
 // Sums the contacts of one finger into its report; returns the direction from its centre to their force-weighted mean place.
@@ -20,6 +38,7 @@ Vec3 sumContacts(const GraspScratch& scratch, int finger, double h, FingerReport
     if (c.a.kind != engine::SideKind::kPoint || c.a.index != finger || !c.active()) continue;
     const double f_n = c.r[2] / h;
     report.f_contact_W += c.impulse_W / h;
+    if (engine::rowsOf(c.material) > engine::kTorsionRow) report.torsion += c.r[engine::kTorsionRow] * c.material.torsion_radius / h;
     report.normal_force += f_n;
     report.sliding = report.sliding || c.sliding;
     tangential += (c.impulse_W - c.r[2] * c.n_W()) / h;
@@ -45,15 +64,39 @@ void averageOverTick(const engine::PointScratch& point, double tick, FingerRepor
   report.tangential_force = (report.f_contact_W - report.n_W * report.f_contact_W.dot(report.n_W)).norm();
 }
 
-void reportFinger(const GraspModel& model, const GraspState& state, const FingerInput& input, int finger, GraspScratch& scratch) {
+// Where on the pad it is touched, or would be.
+void reportPlace(const GraspModel& model, int finger, const Vec3& touch_W, GraspScratch& scratch) {
+  FingerReport& report = scratch.fingers[finger];
+  const FingerModel& f = model.fingers[finger];
+  const Quat q_FW = scratch.q_mid_WF[finger].conjugate();  // all geometry is that of the middle of the tick
+  const Vec3& n_W = scratch.nearest_n_W[finger];
+  const Vec3& nearest_p_F = scratch.nearest_p_F[finger];
+  if (report.touching && f.shape)
+    report.place_L = placeOnPad(f, q_FW * (report.p_WC - scratch.world.points[finger].p_mid_W), q_FW * -report.n_W);
+  if (report.touching && !f.shape) report.place_L = placeOnPad(f, q_FW * touch_W);
+  if (report.touching || n_W.isZero(0)) return;
+  report.nearest_place_L = f.shape ? placeOnPad(f, nearest_p_F, q_FW * -n_W) : placeOnPad(f, q_FW * -n_W);
+}
+
+// What the next tick needs to know of this one.
+void rememberFinger(const GraspModel& model, const FingerInput& input, FingerReport& report, const FingerModel& finger,
+                    FingerState& memory) {
+  if (report.touching && memory.touching) report.place_rate_L = (report.place_L - memory.place_L) / model.world.options.h;
+  if (finger.pad.isSoft()) report.patch_radius = patchRadius(finger.pad, finger.radius, report.normal_force);
+  memory.seen = true;
+  memory.q_WF = input.q_WF;
+  memory.touching = report.touching;
+  memory.normal_force = report.normal_force;
+  memory.place_L = report.place_L;
+  if (report.touching) memory.n_W = report.n_W;
+}
+
+void reportFinger(const GraspModel& model, const GraspState& state, int finger, GraspScratch& scratch) {
   const double h = scratch.world.h;
   FingerReport& report = scratch.fingers[finger];
   const engine::PointScratch& point = scratch.world.points[finger];
-  const Quat q_FW = input.q_WF.conjugate();
   const Vec3 touch_W = sumContacts(scratch, finger, h, report);
-  if (report.touching) report.place_L = placeOnPad(model.fingers[finger], q_FW * touch_W);
-  const Vec3& n_W = scratch.nearest_n_W[finger];
-  if (!report.touching && !n_W.isZero(0)) report.nearest_place_L = placeOnPad(model.fingers[finger], q_FW * -n_W);
+  reportPlace(model, finger, touch_W, scratch);
   const double tick = model.world.options.h;
   if (h < tick) averageOverTick(point, tick, report);
   const Vec3 a_W = (state.world.points[finger].v_W - point.v_tick_W) / tick;
@@ -89,22 +132,34 @@ GraspScratch::GraspScratch(const GraspModel& model)
       inputs(model.fingers.size()),
       nearest_n_W(model.fingers.size()),
       fingers(model.fingers.size()),
-      orientations(model.fingers.size()) {}
+      baselines(model.fingers.size()),
+      orientations(model.fingers.size()),
+      q_mid_WF(model.fingers.size(), Quat::Identity()),
+      nearest_p_F(model.fingers.size()) {}
 
 GraspState makeState(const GraspModel& model, const std::vector<engine::BodyStart>& starts, const std::vector<Vec3>& fingers) {
-  GraspState state{engine::makeState(model.world, starts, fingers), {}};
+  GraspState state{engine::makeState(model.world, starts, fingers), {}, {}, {}};
   state.trackers.resize(model.fingers.size() * model.world.bodies.size());
+  const auto has_shape = [](const FingerModel& f) { return f.shape.has_value(); };
+  if (std::any_of(model.fingers.begin(), model.fingers.end(), has_shape)) state.tips.resize(state.trackers.size());
+  state.fingers.resize(model.fingers.size());
   return state;
 }
 
 engine::StepReport step(const GraspModel& model, GraspState& state, GraspScratch& scratch, std::span<const FingerInput> inputs,
                         std::span<const engine::MotionInput> motions) {
-  setInputs(inputs, scratch);
+  setInputs(model, state, inputs, scratch);
+  renderBaselines(model, state, scratch, inputs);
   FingerContacts contacts(model, state, scratch, inputs);
   const engine::StepReport report = engine::step(model.world, state.world, scratch.world, {scratch.inputs, motions}, &contacts);
   if (report.asleep) return report;  // and the fingers' reports are those of the last tick
   for (int i = 0; i < static_cast<int>(inputs.size()); ++i) {
-    reportFinger(model, state, inputs[i], i, scratch);
+    if (model.fingers[i].method == FingerMethod::kProxy) {
+      reportFinger(model, state, i, scratch);
+    } else {
+      scratch.fingers[i] = scratch.baselines[i];
+    }
+    rememberFinger(model, inputs[i], scratch.fingers[i], model.fingers[i], state.fingers[i]);
     scratch.orientations[i] = inputs[i].q_WF;
   }
   engine::mark(scratch.world, engine::Stage::kFingerReport);
@@ -116,7 +171,17 @@ Vec2 placeOnPad(const FingerModel& finger, const Vec3& d_F) {
   const Vec2 tangent(d_F.dot(finger.distal_F), d_F.dot(radial_F));
   const double sine = tangent.norm();
   if (sine < 1e-300) return Vec2::Zero();
+  if (finger.shape) return placeOnPad(finger, contact::supportOf(*finger.shape, d_F), d_F);
   return (finger.radius * std::atan2(sine, d_F.dot(finger.pad_normal_F)) / sine) * tangent;
+}
+
+Vec2 placeOnPad(const FingerModel& finger, const Vec3& p_F, const Vec3& normal_F) {
+  if (!finger.shape) return placeOnPad(finger, normal_F);
+  const Vec3 from_centre = p_F - contact::supportOf(*finger.shape, finger.pad_normal_F);
+  const Vec2 tangent(from_centre.dot(finger.distal_F), from_centre.dot(finger.pad_normal_F.cross(finger.distal_F)));
+  const double length = tangent.norm();
+  if (length < 1e-300) return Vec2::Zero();
+  return contact::arcOverSkin(*finger.shape, finger.pad_normal_F, normal_F, p_F) / length * tangent;
 }
 
 }  // namespace pincer::grasp

@@ -5,6 +5,7 @@
 
 #include "contact/shape/finger_query.h"
 #include "engine/world/step.h"
+#include "grasp/baseline/baseline_state.h"
 #include "grasp/model.h"
 
 namespace pincer::grasp {
@@ -17,9 +18,22 @@ struct FingerInput {
   Vec3 f_W = Vec3::Zero();       // force on the proxy besides the coupling [N]
 };
 
+// What a finger remembers besides its proxy.
+struct FingerState {
+  bool seen = false;             // a tick has been
+  Quat q_WF = Quat::Identity();  // orientation at the end of the last tick
+  bool touching = false;         // in the last tick, and there:
+  Vec3 n_W = Vec3::UnitZ();      //   normal of the body
+  double normal_force = 0;       //   [N]
+  Vec2 place_L = Vec2::Zero();   //   place on the pad [m]
+  BaselineState baseline;
+};
+
 struct GraspState {
   engine::WorldState world;
   std::vector<contact::SurfaceTracker> trackers;  // finger-major: fingers x bodies
+  std::vector<contact::FingerTracker> tips;       // likewise, of fingers that aren't spheres; empty if there are none
+  std::vector<FingerState> fingers;
 };
 
 // What a finger feels after a tick.
@@ -33,7 +47,10 @@ struct FingerReport {
   double normal_force = 0;       // [N], >= 0
   double tangential_force = 0;   // [N]
   bool sliding = false;
-  Vec2 place_L = Vec2::Zero();          // contact on the pad: arc length (distal, radial) from the pad's centre [m]
+  double torsion = 0;                   // moment of the contacts on the finger, about n_W [N m]
+  double patch_radius = 0;              // of a soft pad [m]
+  Vec2 place_L = Vec2::Zero();          // contact on the pad: arc length from the pad's centre, towards (distal, radial) [m]
+  Vec2 place_rate_L = Vec2::Zero();     // its velocity over the tick; zero where the finger didn't touch before [m/s]
   double gap = 0;                       // to the nearest body [m]; larger than `reach`: a lower bound
   Vec2 nearest_place_L = Vec2::Zero();  // where the nearest point would touch the pad, while nothing does [m]
 };
@@ -42,9 +59,12 @@ struct GraspScratch {
   explicit GraspScratch(const GraspModel& model);
   engine::WorldScratch world;
   std::vector<engine::PointInput> inputs;
-  std::vector<Vec3> nearest_n_W;      // per finger, of the nearest body
-  std::vector<FingerReport> fingers;  // the tick's result
-  std::vector<Quat> orientations;     // of the fingers in it
+  std::vector<Vec3> nearest_n_W;        // per finger, of the nearest body
+  std::vector<FingerReport> fingers;    // the tick's result
+  std::vector<FingerReport> baselines;  // of fingers that aren't proxies (baseline.h)
+  std::vector<Quat> orientations;       // of the fingers at its end
+  std::vector<Quat> q_mid_WF;           // and in its middle
+  std::vector<Vec3> nearest_p_F;        // per finger: its own point nearest to the nearest body, in F [m]
 };
 
 // State with every body at `starts` and every finger's device at `fingers` [m].
@@ -54,7 +74,10 @@ GraspState makeState(const GraspModel& model, const std::vector<engine::BodyStar
 engine::StepReport step(const GraspModel& model, GraspState& state, GraspScratch& scratch, std::span<const FingerInput> inputs,
                         std::span<const engine::MotionInput> motions = {});
 
-// Arc-length place on the pad of the fingertip point in direction `d_F` (unit, from the centre): azimuthal equidistant about the pad normal.
+// Place on the pad of the fingertip's point in direction `d_F` (unit, from the centre): arc length over the skin from the pad's centre (the
+// finger's support point along the pad normal), in the direction in which it lies about the pad normal.
 Vec2 placeOnPad(const FingerModel& finger, const Vec3& d_F);
+// The same of any finger's surface point `p_F` [m] with outward normal `normal_F`.
+Vec2 placeOnPad(const FingerModel& finger, const Vec3& p_F, const Vec3& normal_F);
 
 }  // namespace pincer::grasp

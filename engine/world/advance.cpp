@@ -15,7 +15,10 @@ void applyImpulse(WorldScratch& scratch, const Side& side, const Vec3& arm_W, co
     mover.touched = true;
     mover.closing = mover.closing || c.closing;
   };
-  if (side.kind == SideKind::kPoint) return push(scratch.points[side.index]);
+  if (side.kind == SideKind::kPoint) {
+    scratch.points[side.index].twist_impulse += moment_W.dot(c.n_W());
+    return push(scratch.points[side.index]);
+  }
   BodyScratch& body = scratch.bodies[side.index];
   push(body);
   body.angular_impulse_W += arm_W.cross(impulse_W) + moment_W;
@@ -35,7 +38,10 @@ void gatherImpulses(const WorldModel& model, WorldScratch& scratch) {
     rest(body);
     body.angular_impulse_W.setZero();
   }
-  for (PointScratch& point : scratch.points) rest(point);
+  for (PointScratch& point : scratch.points) {
+    rest(point);
+    point.twist_impulse = 0;
+  }
   for (Contact& c : scratch.contacts) {
     if (!c.active()) continue;
     Vec3 moment_W = Vec3::Zero();
@@ -74,12 +80,35 @@ void advanceBody(const BodyModel& body, double h, BodyScratch& scratch, BodyStat
   if (scratch.touched) scratch.end = {s.v_W, angularVelocity(body.rotation, s.X_WI.q, s.L_W)};
 }
 
+// Past what the device turns. After position: that asks `touching` too.
+void advanceTwist(double h, PointScratch& scratch, PointState& s) {
+  scratch.end.w_W = scratch.free.w_W;
+  if (scratch.inverse_twist <= 0) return;
+  const double old = s.twist_rate;
+  s.twist_rate = scratch.twist_rate + scratch.inverse_twist * scratch.twist_impulse;
+  scratch.end.w_W += scratch.inverse_twist * scratch.twist_impulse * scratch.R_WA.col(2);
+  s.twist += !scratch.closing && s.touching ? 0.5 * h * (old + s.twist_rate) : h * s.twist_rate;
+}
+
+// In axes of the coupling that aren't the world's; none of them is locked.
+void advanceTurned(const std::array<AxisForm, 3>& forms, double h, const Vec3& v_old, const PointScratch& scratch, PointState& s) {
+  const Vec3 old_A = scratch.R_WA.transpose() * v_old, new_A = scratch.R_WA.transpose() * s.v_W;
+  Vec3 way_A;
+  for (int i = 0; i < 3; ++i) {
+    const bool second_order = !scratch.closing && (forms[i] == AxisForm::kFourthOrder || s.touching);
+    way_A[i] = second_order ? 0.5 * h * (old_A[i] + new_A[i]) : h * new_A[i];
+  }
+  s.p_W += scratch.R_WA * way_A;
+}
+
 void advancePoint(const std::array<AxisForm, 3>& forms, double h, PointScratch& scratch, PointState& s) {
   const Vec3 v_old = s.v_W;
-  s.v_W = scratch.free.v_W + scratch.inverse_mass.cwiseProduct(scratch.impulse_W);
+  s.v_W = scratch.free.v_W + scratch.response(scratch.impulse_W);
   if (scratch.quiet && isSlow(s.v_W) && isSlow(v_old)) s.v_W.setZero();
   scratch.end.v_W = s.v_W;
-  for (int i = 0; i < 3; ++i) {
+  advanceTwist(h, scratch, s);
+  if (scratch.turned) advanceTurned(forms, h, v_old, scratch, s);
+  for (int i = 0; i < 3 && !scratch.turned; ++i) {
     const bool second_order = !scratch.closing && (forms[i] == AxisForm::kFourthOrder || s.touching);
     if (forms[i] == AxisForm::kLocked) {
       s.p_W[i] = scratch.p_target_W[i];

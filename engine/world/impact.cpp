@@ -270,7 +270,7 @@ bool addsEnergy(const WorldModel& model, const WorldScratch& scratch) {
     add(s.angular_impulse_W, s.start.w_W, s.inverse_inertia_W * s.angular_impulse_W);
   }
   for (const PointScratch& s : scratch.points) {
-    if (s.touched) add(s.impulse_W, s.start.v_W, s.inverse_mass.cwiseProduct(s.impulse_W));
+    if (s.touched) add(s.impulse_W, s.start.v_W, s.response(s.impulse_W));
   }
   return energy > kEnergyRoundOff * moved;
 }
@@ -351,7 +351,7 @@ void applyImpacts(const WorldModel& model, WorldState& state, WorldScratch& scra
     state.bodies[i].L_W += scratch.bodies[i].angular_impulse_W;
   }
   for (std::size_t i = 0; i < model.points.size(); ++i) {
-    state.points[i].v_W += scratch.points[i].inverse_mass.cwiseProduct(scratch.points[i].impulse_W);
+    state.points[i].v_W += scratch.points[i].response(scratch.points[i].impulse_W);
     scratch.points[i].tick_impulse_W += scratch.points[i].impulse_W;
   }
 }

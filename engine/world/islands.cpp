@@ -1,6 +1,7 @@
 #include "engine/world/islands.h"
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 
 #include "engine/world/contact_rows.h"
@@ -21,7 +22,8 @@ int moverOf(const WorldModel& model, const WorldScratch& scratch, const Side& si
     if (body.joint_group >= 0) return model.joint_groups[body.joint_group].bodies.front();  // joined bodies are one mover
     return body.dynamic ? side.index : -1;
   }
-  return scratch.points[side.index].inverse_mass.isZero(0) ? -1 : static_cast<int>(model.bodies.size()) + side.index;
+  const PointScratch& point = scratch.points[side.index];
+  return point.inverse_mass.isZero(0) && point.inverse_twist <= 0 ? -1 : static_cast<int>(model.bodies.size()) + side.index;
 }
 
 int rootOf(std::vector<int>& parent, int mover) {
@@ -95,14 +97,16 @@ Mat3 rootOfInertia(const FreeRotation& rotation, const Quat& q_WI) {
   return q_WI.toRotationMatrix() * rotation.root_inverse_moments.asDiagonal();
 }
 
-void fillPointSide(const Contact& c, int rows, double sign, const Vec3& inverse_mass, ContactSide& out) {
-  const Vec3 root = sign * inverse_mass.cwiseSqrt();
+void fillPointSide(const Contact& c, int rows, double sign, const PointScratch& point, ContactSide& out) {
+  const Vec3 root = sign * point.inverse_mass.cwiseSqrt();
   for (int k = 0; k < rows; ++k) {
     for (int j = 0; j < 3; ++j) {
-      out.A[k][j] = k < 3 ? root[j] * c.R_WC(j, k) : 0;
+      const double along = k >= 3 ? 0 : point.turned ? point.R_WA.col(j).dot(c.R_WC.col(k)) : c.R_WC(j, k);
+      out.A[k][j] = root[j] * along;
       out.A[k][3 + j] = 0;
     }
   }
+  if (rows > kTorsionRow) out.A[kTorsionRow][3] = sign * radiusOf(c, kTorsionRow) * std::sqrt(point.inverse_twist);
 }
 
 void fillBodySide(const Contact& c, int rows, double sign, const Vec3& arm_W, double root_mass, const Mat3& F, ContactSide& out) {
@@ -122,7 +126,7 @@ void fillSide(const WorldModel& model, const WorldScratch& scratch, const Contac
   if (mover < 0) return;
   const Side& side = is_a ? c.a : c.b;
   const double sign = is_a ? 1 : -1;
-  if (side.kind == SideKind::kPoint) return fillPointSide(c, rows, sign, scratch.points[side.index].inverse_mass, out);
+  if (side.kind == SideKind::kPoint) return fillPointSide(c, rows, sign, scratch.points[side.index], out);
   const BodyModel& body = model.bodies[side.index];
   const Vec3& arm_W = is_a ? c.arm_a_W : c.arm_b_W;
   if (body.joint_group < 0) return fillBodySide(c, rows, sign, arm_W, body.root_inverse_mass, s.root_inertia[mover], out);

@@ -27,6 +27,8 @@ void checkMaterial(const std::string& body, const Material& m) {
                "It is about two thirds of the contact patch's radius: a few mm.");
   requireRange(body + ".material.rolling_radius", m.rolling_radius, 0, 1,
                "Friction times it is the arm of the force that resists rolling: a hundredth to a tenth of a ball's radius.");
+  requireRange(body + ".material.stribeck_speed", m.stribeck_speed, 0, 100,
+               "In m/s; 0 if friction doesn't change with speed, else about 0.01.");
 }
 
 bool isSupportOnly(const contact::Shape& shape) {
@@ -133,7 +135,14 @@ Material combine(const Material& a, const Material& b) {
   m.restitution = std::sqrt(a.restitution * b.restitution);
   m.torsion_radius = std::max(a.torsion_radius, b.torsion_radius);
   m.rolling_radius = std::max(a.rolling_radius, b.rolling_radius);
+  m.stribeck_speed = std::max(a.stribeck_speed, b.stribeck_speed);
   return m;
+}
+
+double slidingFriction(const Material& m, double speed) {
+  if (m.stribeck_speed <= 0 || m.mu_d == m.mu_s) return m.mu_d;
+  const double ratio = speed / m.stribeck_speed;
+  return m.mu_d + (m.mu_s - m.mu_d) * std::exp(-ratio * ratio);
 }
 
 WorldBuilder::WorldBuilder(const WorldOptions& options) {
@@ -171,6 +180,8 @@ int WorldBuilder::addBody(const BodySpec& spec) {
 
 int WorldBuilder::addPoint(const DrivenPointModel& point) {
   requireRange(point.name + ".mass", point.mass, 0, 1e6, "A proxy's mass is zero or positive, in kilograms.");
+  requireRange(point.name + ".twist_stiffness", point.twist_stiffness, 0, 1e6, "In N m/rad; a fingertip has about 0.3.");
+  requireRange(point.name + ".twist_damping", point.twist_damping, 0, 1e6, "In N m s/rad; 0.001 suits a fingertip.");
   for (int axis = 0; axis < 3; ++axis) {
     requireRange(fmt::format("{}.stiffness[{}]", point.name, axis), point.stiffness[axis], 0, 1e9, "In N/m; 1000 suits a fingertip.");
     requireRange(fmt::format("{}.damping[{}]", point.name, axis), point.damping[axis], 0, 1e6, "In N s/m; 5 suits a fingertip.");

@@ -24,6 +24,7 @@ struct Material {
   double restitution = 0;     // of the normal velocity [-], 0 .. 1
   double torsion_radius = 0;  // e_t [m]: the contact carries a torsional moment up to e_t mu f_n; 0 for a point contact
   double rolling_radius = 0;  // e_r [m]: and one that resists rolling, up to e_r mu f_n. All share one cone (contact_problem.h)
+  double stribeck_speed = 0;  // v_s [m/s]: what slides at speed v has mu_d + (mu_s - mu_d) exp(-(v/v_s)^2); 0: mu_d at any speed
 };
 
 // What the solver sees of a contact: 3 rows, with torsion 4, with rolling 6.
@@ -62,6 +63,8 @@ struct DrivenPointModel {
   double mass = 0;                        // [kg], >= 0
   Vec3 stiffness = Vec3::Constant(1000);  // k [N/m], >= 0; mass + stiffness must be positive on every free axis
   Vec3 damping = Vec3::Constant(5);       // d [N s/m], >= 0
+  // Turns about the contact normal against its own spring: k_tau [N m/rad], d_tau [N m s/rad], both >= 0; both 0: it turns as it is told.
+  double twist_stiffness = 0, twist_damping = 0;
   Eigen::Array<bool, 3, 1> locked = Eigen::Array<bool, 3, 1>::Constant(false);  // this axis follows its target exactly
 };
 
@@ -71,6 +74,10 @@ enum class AxisForm : unsigned char {
   kFourthOrder,  // Fox-Goodwin quadrature of the spring: 4th order in the tick where the coupling is soft for the proxy's mass
   kImplicit,     // force at the end of the tick: stable for any stiffness and for massless proxies, 1st order
 };
+
+// Friction coefficient of what slides at `speed` [m/s]. Source: R. Stribeck, Z. VDI 46 (1902); the exponential form after B. Armstrong-Helouvry,
+// P. Dupont, C. Canudas de Wit, Automatica 30 (1994) 1083-1138, eq. (5), with the exponent 2.
+double slidingFriction(const Material& m, double speed);
 
 // A pair of bodies that may touch: all that is constant about it.
 struct PairModel {

@@ -71,31 +71,42 @@ PointAxis implicitAxis(const AxisInput& a, double theta) {
   return {(a.m * a.v + a.h * (a.f + a.d * a.v_target_end) - spring) / mass, 1 / mass};
 }
 
+// How it turns: as the device does, and about the contact normal past that, against a spring without inertia.
+void predictTwist(const DrivenPointModel& point, const PointState& s, const PointInput& in, double h, PointScratch& out) {
+  out.start.w_W = out.free.w_W = out.input_ok ? in.w_W : Vec3::Zero();
+  out.inverse_twist = 0;
+  if (!(point.twist_stiffness + point.twist_damping > 0)) return;
+  const AxisInput a{0, point.twist_stiffness, point.twist_damping, s.twist, s.twist_rate, 0, 0, 0, 0, h};
+  const PointAxis axis = implicitAxis(a, s.touching ? 0.5 : 1.0);
+  out.inverse_twist = axis.inverse_mass;
+  out.twist_rate = axis.v_free;
+  out.start.w_W += s.twist_rate * out.R_WA.col(2);
+  out.free.w_W += axis.v_free * out.R_WA.col(2);
+}
+
 void predictPoint(const DrivenPointModel& point, const std::array<AxisForm, 3>& forms, const PointState& s, const PointInput& in, double h,
                   PointScratch& out) {
-  out.input_ok = in.p_target_W.allFinite() && in.v_target_W.allFinite() && in.f_W.allFinite();
+  out.input_ok = in.p_target_W.allFinite() && in.v_target_W.allFinite() && in.f_W.allFinite() && in.w_W.allFinite() && in.R_WA.allFinite();
   out.p_target_W = out.input_ok ? in.p_target_W : s.p_target_W;
   out.v_target_W = out.input_ok ? in.v_target_W : Vec3::Zero();
   const Vec3 f_W = out.input_ok ? in.f_W : Vec3::Zero();
   out.start.v_W = s.v_W;
+  out.turned = in.turned && out.input_ok;
+  if (out.turned) out.R_WA = in.R_WA;
+  const auto inAxes = [&](const Vec3& v) { return out.turned ? Vec3(out.R_WA.transpose() * v) : v; };
+  const Vec3 e_A = inAxes(s.p_W - s.p_target_W), v_A = inAxes(s.v_W), v_target_A = inAxes(s.v_target_W);
+  const Vec3 v_end_A = inAxes(out.v_target_W), step_A = inAxes(out.p_target_W - s.p_target_W), f_A = inAxes(f_W);
   for (int i = 0; i < 3; ++i) {
-    const AxisInput a{point.mass,
-                      point.stiffness[i],
-                      point.damping[i],
-                      s.p_W[i] - s.p_target_W[i],
-                      s.v_W[i],
-                      s.v_target_W[i],
-                      out.v_target_W[i],
-                      out.p_target_W[i] - s.p_target_W[i],
-                      f_W[i],
-                      h};
-    PointAxis axis{out.v_target_W[i], 0};
+    const AxisInput a{point.mass, point.stiffness[i], point.damping[i], e_A[i], v_A[i], v_target_A[i], v_end_A[i], step_A[i], f_A[i], h};
+    PointAxis axis{v_end_A[i], 0};
     if (forms[i] == AxisForm::kFourthOrder) axis = fourthOrderAxis(a);
     if (forms[i] == AxisForm::kImplicit) axis = implicitAxis(a, s.touching ? 0.5 : 1.0);
     out.free.v_W[i] = axis.v_free;
     out.inverse_mass[i] = axis.inverse_mass;
     out.p_mid_W[i] = forms[i] == AxisForm::kLocked ? 0.5 * (s.p_W[i] + out.p_target_W[i]) : s.p_W[i] + 0.5 * h * s.v_W[i];
   }
+  if (out.turned) out.free.v_W = out.R_WA * out.free.v_W.eval();
+  predictTwist(point, s, in, h, out);
 }
 
 }  // namespace
@@ -137,6 +148,8 @@ void predictImpact(const WorldModel& model, const WorldState& state, WorldScratc
     const double mass = model.points[i].mass;
     out.p_mid_W = state.points[i].p_W;
     out.start.v_W = out.free.v_W = out.end.v_W = state.points[i].v_W;
+    out.turned = false;
+    out.inverse_twist = 0;
     for (int axis = 0; axis < 3; ++axis) out.inverse_mass[axis] = model.points[i].locked[axis] || mass <= 0 ? 0 : 1 / mass;
   }
   if (!model.joints.empty()) predictJoints(model, scratch);

@@ -32,8 +32,8 @@ void recall(const WorldState& state, WorldScratch& scratch, Contact& c) {
   c.R_WC = memory ? carriedFrame(n_W, memory->n_W, memory->t1_W) : frameFromNormal(n_W);
   c.arm_a_W = c.p_W - centre(scratch, c.a);
   c.arm_b_W = c.p_W - centre(scratch, c.b);
-  c.mu = memory && memory->sliding ? c.material.mu_d : c.material.mu_s;
   c.v_start_C = relativeVelocity(c, mover(scratch, c.a).start, mover(scratch, c.b).start);
+  c.mu = memory && memory->sliding ? slidingFriction(c.material, c.v_start_C.head<2>().norm()) : c.material.mu_s;
   c.settling = memory ? memory->settling : 0;
   c.offset_C.setZero();
   if (memory && memory->active && !memory->sliding) c.offset_C = memory->offset_C;

@@ -60,6 +60,10 @@ struct PointInput {
   Vec3 p_target_W = Vec3::Zero();  // [m]
   Vec3 v_target_W = Vec3::Zero();  // [m/s]
   Vec3 f_W = Vec3::Zero();         // [N]
+  Vec3 w_W = Vec3::Zero();         // with which what the point stands for turns, over the tick [rad/s]
+  // Axes of the coupling where they aren't the world's; the third is that of its twist.
+  bool turned = false;
+  Mat3 R_WA = Mat3::Identity();
 };
 
 // What a body or point went through in this part of the tick.
@@ -80,11 +84,22 @@ struct BodyScratch : MoverScratch {
 };
 struct PointScratch : MoverScratch {
   Vec3 p_mid_W = Vec3::Zero();
-  Vec3 inverse_mass = Vec3::Zero();                           // effective, per world axis, of the implicit spring-damper [1/kg]
+  Vec3 inverse_mass = Vec3::Zero();  // effective, per axis of A, of the implicit spring-damper [1/kg]
+  bool turned = false;               // A isn't W
+  Mat3 R_WA = Mat3::Identity();
+  double inverse_twist = 0;                                   // effective inverse inertia about A's third axis [1/(kg m^2)]
+  double twist_rate = 0;                                      // about it, past what the device turns, if nothing touched [rad/s]
+  double twist_impulse = 0;                                   // of all contacts about their normals [N m s]
   Vec3 p_target_W = Vec3::Zero(), v_target_W = Vec3::Zero();  // at the end of the tick
   Vec3 v_tick_W = Vec3::Zero();                               // velocity at the start of the tick
   Vec3 tick_impulse_W = Vec3::Zero();                         // of all contacts over all parts of the tick [N s]
   bool input_ok = true;
+
+  // Change of velocity by an impulse.
+  Vec3 response(const Vec3& impulse) const {
+    if (!turned) return inverse_mass.cwiseProduct(impulse);
+    return R_WA * inverse_mass.cwiseProduct(R_WA.transpose() * impulse);
+  }
 };
 
 // One direction that a joint blocks or brakes, see joints.h.

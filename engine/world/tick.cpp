@@ -17,12 +17,14 @@ bool isFinite(const MotionInput& in) {
   return in.X_WB.p.allFinite() && in.X_WB.q.coeffs().allFinite() && in.motion.v_W.allFinite() && in.motion.w_W.allFinite();
 }
 
-bool isFinite(const PointInput& in) { return in.p_target_W.allFinite() && in.v_target_W.allFinite() && in.f_W.allFinite(); }
+bool isFinite(const PointInput& in) {
+  return in.p_target_W.allFinite() && in.v_target_W.allFinite() && in.f_W.allFinite() && in.w_W.allFinite() && in.R_WA.allFinite();
+}
 
 bool isFinite(const WorldState& state) {
   double sum = 0;  // a NaN or infinity anywhere survives the sum
   for (const BodyState& b : state.bodies) sum += b.X_WI.p.sum() + b.X_WI.q.coeffs().sum() + b.v_W.sum() + b.L_W.sum();
-  for (const PointState& p : state.points) sum += p.p_W.sum() + p.v_W.sum();
+  for (const PointState& p : state.points) sum += p.p_W.sum() + p.v_W.sum() + p.twist + p.twist_rate;
   return std::isfinite(sum);
 }
 

@@ -12,7 +12,8 @@ std::vector<GraspContact> graspContacts(const GraspModel& model, const GraspScra
                                 c.b.kind == engine::SideKind::kBody && c.b.index == body;
     if (!finger_on_body || !c.active()) continue;
     // c.r acts on the finger
-    contacts.push_back({c.a.index, c.p_W, c.R_WC, c.mu, c.material.torsion_radius, c.r[2] / h, -c.r.head<2>() / h, c.r[3] / h});
+    contacts.push_back({c.a.index, c.p_W, c.R_WC, c.mu, c.material.torsion_radius, c.r[2] / h, -c.r.head<2>() / h,
+                        c.material.torsion_radius * c.r[engine::kTorsionRow] / h});
   }
   return contacts;
 }

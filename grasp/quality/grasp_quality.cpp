@@ -55,6 +55,10 @@ GraspQuality graspQuality(std::vector<GraspContact> contacts, const Vec3& p_WC, 
   const double reach = weight_W.isZero(0) ? 0 : wrenches.shoot(held).t;
   if (weight_W.isZero(0)) q.least_squeeze = 0;
   if (reach > 0) q.least_squeeze = 1 / reach;
+  for (int k = 0; k < 12; ++k) {
+    const Vec6 w = (k % 2 == 0 ? -1 : 1) * Vec6::Unit(k / 2);  // what the contacts must give
+    q.resisted[static_cast<std::size_t>(k)] = wrenches.shoot(w).t * (k < 6 ? 1 : q.rho);
+  }
   addInternalForces(q, p_WC);
   return q;
 }

@@ -3,6 +3,8 @@
 // Sources: C. Ferrari, J. Canny, ICRA 1992, 2290-2295 (epsilon, volume); V.-D. Nguyen, Int. J. Robotics Res. 7 (1988) 3-16 (force closure);
 // T. Yoshikawa, K. Nagai, IEEE Trans. Robotics Autom. 7 (1991) 67-77 (internal force: the part that moves nothing).
 #pragma once
+#include <array>
+
 #include "grasp/quality/wrench_set.h"
 
 namespace pincer::grasp {
@@ -18,7 +20,10 @@ struct GraspQuality {
   std::vector<double> slip_margins;  // per contact
   std::vector<Vec3> internal_f_W;    // per contact: the part of its force on the body that the other contacts cancel [N]
   double squeeze = 0;                // summed normal force [N]
-  double least_squeeze = 0;          // that could hold the body's weight [N]; infinite if none can
+  // The wrench cone along the world's axes: the largest force or torque on the body that its contacts can resist per newton of squeeze, alone:
+  // pushes along x, -x, y, -y, z, -z [N/N], then turns about them [N m/N]; 0 where none is resisted.
+  std::array<double, 12> resisted{};
+  double least_squeeze = 0;  // that could hold the body's weight [N]; infinite if none can
 };
 
 // `body` must be a dynamic one. Empty contacts: rank 0, least_squeeze infinite.

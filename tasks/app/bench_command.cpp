@@ -8,6 +8,7 @@
 #include "tasks/app/measure_command.h"
 #include "tasks/bench/contact_bench.h"
 #include "tasks/bench/engine/engine_bench.h"
+#include "tasks/bench/grasp/grasp_bench.h"
 #include "tasks/bench/study_bench.h"
 
 namespace pincer::tasks {
@@ -41,10 +42,20 @@ Examples:
   pincer bench study
   pincer bench study --only staircase --observers 20000)";
 
+constexpr const char* kGraspExample = R"(
+What fingers hold, feel and cost: friction cones, slip, drift, soft pads, rolling, energy that sampling makes and passivity takes back, and published
+methods on the same scenes, each figure beside what pincer promises (docs/grasp.md). Exit code 1 if a promise isn't kept.
+
+Examples:
+  pincer bench grasp
+  pincer bench grasp --only hold
+  pincer bench grasp --only coupling --out out/bench)";
+
 struct BenchArguments {
   MeasureOptions measure;
   ContactBenchOptions contact;
   EngineBenchOptions engine;
+  GraspBenchOptions grasp;
   StudyBenchOptions study;
 };
 
@@ -86,6 +97,15 @@ void addStudyBench(CLI::App& bench, const std::shared_ptr<BenchArguments>& argum
       [arguments, &exit_code] { exit_code = runMeasurements(studyMeasurements(arguments->study), arguments->measure, "bench study"); });
 }
 
+void addGraspBench(CLI::App& bench, const std::shared_ptr<BenchArguments>& arguments, int& exit_code) {
+  CLI::App* grasp = bench.add_subcommand("grasp", "Fingers: what they hold, feel and cost, beside published methods");
+  addMeasureOptions(*grasp, arguments->measure);
+  grasp->add_option("--out", arguments->grasp.out, "Directory for the map of stiffness, mass and rate (CSV and PNG)");
+  grasp->footer(kGraspExample);
+  grasp->callback(
+      [arguments, &exit_code] { exit_code = runMeasurements(graspMeasurements(arguments->grasp), arguments->measure, "bench grasp"); });
+}
+
 }  // namespace
 
 void addBenchCommand(CLI::App& app, int& exit_code) {
@@ -95,6 +115,7 @@ void addBenchCommand(CLI::App& app, int& exit_code) {
   bench->footer("\nExample:\n  pincer bench contact --only cost");
   addContactBench(*bench, arguments, exit_code);
   addEngineBench(*bench, arguments, exit_code);
+  addGraspBench(*bench, arguments, exit_code);
   addStudyBench(*bench, arguments, exit_code);
 }
 

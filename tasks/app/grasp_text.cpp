@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 
+#include "grasp/quality/finger_distance.h"
 #include "grasp/quality/grasp_quality.h"
 
 namespace pincer::tasks {
@@ -52,11 +54,36 @@ std::string weightText(const grasp::GraspQuality& q) {
   return fmt::format("squeeze {:.4g} N in all; its weight needs {:.4g} N", q.squeeze, q.least_squeeze);
 }
 
+// What the present squeeze can resist, along the world's axes.
+std::string coneText(const grasp::GraspQuality& q) {
+  constexpr std::array<const char*, 6> axes = {"+x", "-x", "+y", "-y", "+z", "-z"};
+  std::string pushes, turns;
+  for (std::size_t k = 0; k < 6; ++k) {
+    pushes += fmt::format(" {} {:.3g}", axes[k], q.squeeze * q.resisted[k]);
+    turns += fmt::format(" {} {:.3g}", axes[k], 1e3 * q.squeeze * q.resisted[k + 6]);
+  }
+  return fmt::format("resists pushes of{} N; turns of{} N mm", pushes, turns);
+}
+
+constexpr double kNearby = 0.1;  // further fingers aren't on their way to a body [m]
+
+std::string distanceText(const Simulation& simulation) {
+  std::string out;
+  for (const grasp::FingerDistance& d : grasp::fingerDistances(simulation.model(), simulation.state())) {
+    if (!simulation.scene().bodies[static_cast<std::size_t>(d.body)].dynamic || d.gap > kNearby) continue;
+    out += fmt::format("  {:<14} {:.4g} mm from {}, at ({:.4g}, {:.4g}, {:.4g}) mm of the world, ({:.4g}, {:.4g}) mm of the pad\n",
+                       simulation.scene().fingers[static_cast<std::size_t>(d.finger)].model.name, 1e3 * d.gap,
+                       simulation.scene().bodies[static_cast<std::size_t>(d.body)].name, 1e3 * d.p_body_W.x(), 1e3 * d.p_body_W.y(),
+                       1e3 * d.p_body_W.z(), 1e3 * d.place_L.x(), 1e3 * d.place_L.y());
+  }
+  return out.empty() ? out : "\nFingers near bodies that can move\n" + out;
+}
+
 }  // namespace
 
 std::string graspText(const Simulation& simulation) {
   const std::vector<HeldBody> held = heldBodies(simulation);
-  if (held.empty()) return "\nNo finger presses a body that can move.\n";
+  if (held.empty()) return "\nNo finger presses a body that can move.\n" + distanceText(simulation);
   std::string out;
   for (const HeldBody& body : held) {
     const grasp::GraspQuality& q = body.quality;
@@ -65,10 +92,24 @@ std::string graspText(const Simulation& simulation) {
       out += fmt::format("  {:<14} presses {:.4g} N, {:.1f} % of its friction left, internal force {:.4g} N\n",
                          fingerName(simulation, q.contacts[i]), q.contacts[i].f_n, 100 * q.slip_margins[i], q.internal_f_W[i].norm());
     }
-    out += fmt::format("  {}\n  {}\n", strengthText(q), weightText(q));
+    out += fmt::format("  {}\n  {}\n  {}\n", strengthText(q), weightText(q), coneText(q));
   }
-  return out;
+  return out + distanceText(simulation);
 }
+
+namespace {
+
+void writeDistances(const Simulation& simulation, JsonWriter& json) {
+  json.key("distances").beginArray();
+  for (const grasp::FingerDistance& d : grasp::fingerDistances(simulation.model(), simulation.state())) {
+    json.beginObject().key("finger").value(simulation.scene().fingers[static_cast<std::size_t>(d.finger)].model.name);
+    json.key("body").value(simulation.scene().bodies[static_cast<std::size_t>(d.body)].name).key("gap").value(d.gap);
+    json.key("p_finger_W").value(d.p_finger_W).key("p_body_W").value(d.p_body_W).key("n_W").value(d.n_W).endObject();
+  }
+  json.endArray();
+}
+
+}  // namespace
 
 void writeGrasps(const Simulation& simulation, JsonWriter& json) {
   json.key("grasps").beginArray();
@@ -84,9 +125,12 @@ void writeGrasps(const Simulation& simulation, JsonWriter& json) {
       json.beginObject().key("finger").value(fingerName(simulation, q.contacts[i])).key("normal_force").value(q.contacts[i].f_n);
       json.key("slip_margin").value(q.slip_margins[i]).key("internal_f_W").value(q.internal_f_W[i]).endObject();
     }
+    json.endArray().key("resisted").beginArray();
+    for (const double r : q.resisted) json.value(r);
     json.endArray().endObject();
   }
   json.endArray();
+  writeDistances(simulation, json);
 }
 
 }  // namespace pincer::tasks

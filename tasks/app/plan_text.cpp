@@ -92,10 +92,36 @@ std::string touchForm(const engine::BodyModel& body) {
                      body.material.mu_d);
 }
 
+// What the coupling asks of an arm, by Colgate and Schenkel's bound, and whether its arm has it.
+std::string armForm(const grasp::FingerModel& f, double tick) {
+  const double stiffness = f.coupling.stiffness.maxCoeff(), damping = f.coupling.damping.maxCoeff();
+  const double needed = grasp::requiredDamping(stiffness, damping, tick);
+  const std::string need = fmt::format("{:g} N/m and {:g} N s/m held for {:g} ms need an arm with {:.3g} N s/m of its own to be passive",
+                                       stiffness, damping, 1e3 * tick, needed);
+  if (!f.arm) return need;
+  if (f.arm->damping > needed) return fmt::format("{}; this one has {:g}", need, f.arm->damping);
+  const double stable = grasp::stableStiffness(*f.arm, damping, tick), passive = grasp::passiveStiffness(*f.arm, damping, tick);
+  return fmt::format(
+      "WARNING: {}; this one has {:g}. It carries {:.3g} N/m passively and buzzes above {:.3g} N/m: lower the coupling, "
+      "raise the rate, or switch passivity on",
+      need, f.arm->damping, passive, stable);
+}
+
+std::string tipForm(const grasp::FingerModel& f) {
+  constexpr std::array<const char*, 4> names = {"sphere", "capsule", "ellipsoid", "pad"};
+  std::string text = fmt::format("r {:g} mm", 1e3 * f.radius);
+  if (f.shape) text = fmt::format("{} within {:g} mm", names[f.shape->index()], 1e3 * f.radius);
+  if (f.pad.isSoft()) text += f.pad.modulus > 0 ? ", soft pad by Hertz" : fmt::format(", soft pad of {:g} mm", 1e3 * f.pad.patch_radius);
+  if (f.along_normal) text += ", coupling along the contact's axes";
+  if (f.method != grasp::FingerMethod::kProxy)
+    text += fmt::format(", rendered by {}", grasp::kFingerMethodNames[static_cast<std::size_t>(f.method)]);
+  return text;
+}
+
 void describeFinger(const grasp::GraspModel& model, std::size_t finger, std::vector<PlanLine>& lines) {
   const grasp::FingerModel& f = model.fingers[finger];
-  lines.push_back(
-      {"finger", f.name, fmt::format("r {:g} mm, {}", 1e3 * f.radius, couplingForm(f.coupling, model.world.point_forms[finger]))});
+  lines.push_back({"finger", f.name, fmt::format("{}, {}", tipForm(f), couplingForm(f.coupling, model.world.point_forms[finger]))});
+  lines.push_back({"arm", f.name, armForm(f, model.world.options.h)});
   for (const engine::BodyModel& body : model.world.bodies) {
     lines.push_back({"touch", fmt::format("{} - {}", f.name, body.name), touchForm(body)});
   }

@@ -109,6 +109,7 @@ void fingerInputs(const Scene& scene, double time, std::span<grasp::FingerInput>
     const TimedPoint device = finger.trajectory.at(time);
     inputs[i].p_WF = device.p_W;
     inputs[i].v_WF = device.v_W;
+    inputs[i].q_WF = quatFromRotationVector(finger.turn.at(time).p_W);
     inputs[i].f_W = finger.f_W;
   }
 }

@@ -16,6 +16,7 @@ namespace pincer::tasks {
 struct SceneFinger {
   grasp::FingerModel model;
   Trajectory trajectory;    // of the device; a single point when the finger rests
+  Trajectory turn;          // rotation vectors of the finger frame F [rad]
   Vec3 f_W = Vec3::Zero();  // constant force on the proxy, besides the coupling [N]
 };
 

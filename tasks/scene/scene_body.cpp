@@ -30,6 +30,9 @@ engine::Material readMaterial(const JsonValue& json) {
   if (const JsonValue* v = json.find("restitution")) material.restitution = v->number(kRestitution);
   if (const JsonValue* v = json.find("torsion_radius")) material.torsion_radius = v->number(kTorsionRadius);
   if (const JsonValue* v = json.find("rolling_radius")) material.rolling_radius = v->number(kRollingRadius);
+  if (const JsonValue* v = json.find("stribeck_speed")) {
+    material.stribeck_speed = v->number({.min = 0, .max = 100, .remedy = "In m/s: below it friction rises to mu_s; 0: it doesn't."});
+  }
   return material;
 }
 

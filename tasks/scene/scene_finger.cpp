@@ -11,6 +11,11 @@ namespace {
 constexpr NumberRule kProxyMass = {.min = 0, .max = 100, .remedy = "In kilograms; 0 gives a massless tip behind its spring."};
 constexpr NumberRule kStiffness = {.min = 0, .max = 1e6, .remedy = "In N/m; typical: 200 to 2000."};
 constexpr NumberRule kDamping = {.min = 0, .max = 1e5, .remedy = "In N s/m; typical: 2 to 5."};
+constexpr NumberRule kTwist = {.min = 0, .max = 1e3, .remedy = "In N m/rad or N m s/rad; a fingertip has about 0.3 and 0.001."};
+constexpr NumberRule kPatch = {.min = 0, .max = 0.1, .min_open = true, .remedy = "In metres; a fingertip's patch has 0.004 to 0.006."};
+constexpr NumberRule kModulus = {.min = 0, .max = 1e12, .min_open = true, .remedy = "In pascals; a fingertip has about 1e5."};
+constexpr NumberRule kArmMass = {.min = 1e-4, .max = 100, .remedy = "In kilograms, at the tip."};
+constexpr NumberRule kFingerTurn = {.min = -100, .max = 100, .remedy = "An axis times an angle in radians."};
 constexpr NumberRule kForce = {.min = -1e4, .max = 1e4, .remedy = "In newtons."};
 constexpr std::array<std::string_view, 3> kAxes = {"x", "y", "z"};
 
@@ -29,54 +34,113 @@ void requireHeldAxes(const JsonValue& json, const engine::DrivenPointModel& coup
   }
 }
 
-engine::DrivenPointModel readCoupling(const JsonValue& json) {
-  engine::DrivenPointModel coupling;
+// One number, [x, y, z] in the world, or {"normal": .., "tangential": ..} of the contact.
+void readDirections(const JsonValue& json, const NumberRule& rule, Vec3& value, bool& along_normal) {
+  if (json.kind() != JsonValue::Kind::kObject) {
+    value = readPerAxis(json, rule);
+    return;
+  }
+  json.allowOnly(keys::kPerDirection);
+  const double tangential = json.at("tangential", "Along the surface.").number(rule);
+  value = Vec3(tangential, tangential, json.at("normal", "Against the surface.").number(rule));
+  along_normal = true;
+}
+
+void requireOneKindOfAxes(const JsonValue& json) {
+  const JsonValue *stiffness = json.find("stiffness"), *damping = json.find("damping");
+  const auto has = [](const JsonValue* v, JsonValue::Kind kind) { return v && v->kind() == kind; };
+  const bool along = has(stiffness, JsonValue::Kind::kObject) || has(damping, JsonValue::Kind::kObject);
+  if (!along) return;
+  for (const JsonValue* v : {stiffness, damping}) {
+    if (has(v, JsonValue::Kind::kArray))
+      v->reject("is along the world's axes, but the other one along the contact's. Give both in one way.");
+  }
+  if (const JsonValue* v = json.find("locked")) v->reject("locks axes of the world, but the coupling is along the contact's. Remove one.");
+}
+
+void readCoupling(const JsonValue& json, grasp::FingerModel& finger) {
+  engine::DrivenPointModel& coupling = finger.coupling;
+  requireOneKindOfAxes(json);
   if (const JsonValue* v = json.find("mass")) coupling.mass = v->number(kProxyMass);
-  if (const JsonValue* v = json.find("stiffness")) coupling.stiffness = readPerAxis(*v, kStiffness);
-  if (const JsonValue* v = json.find("damping")) coupling.damping = readPerAxis(*v, kDamping);
+  if (const JsonValue* v = json.find("stiffness")) readDirections(*v, kStiffness, coupling.stiffness, finger.along_normal);
+  if (const JsonValue* v = json.find("damping")) readDirections(*v, kDamping, coupling.damping, finger.along_normal);
   if (const JsonValue* v = json.find("locked")) {
     for (const JsonValue& axis : v->array()) coupling.locked[static_cast<Eigen::Index>(axis.oneOf(kAxes))] = true;
   }
+  if (const JsonValue* v = json.find("twist_stiffness")) coupling.twist_stiffness = v->number(kTwist);
+  if (const JsonValue* v = json.find("twist_damping")) coupling.twist_damping = v->number(kTwist);
+  coupling.name = finger.name;
   requireHeldAxes(json, coupling);
-  return coupling;
 }
 
-TimedPoint readKeyframe(const JsonValue& json, double after) {
-  json.allowOnly(keys::kKeyframe);
-  const JsonValue& time = json.at("time", "In seconds.");
-  const double t = time.number({.min = 0, .max = 1e6, .remedy = "In seconds from the start."});
-  if (t <= after) time.reject(fmt::format("doesn't come after {}. Keyframes go forward in time.", after));
-  return {t, json.at("position", "Where the finger is then [m].").vector(kCoordinate), Vec3::Zero()};
+// Pad and tip.
+void readTipOf(const JsonValue& json, const Scene& scene, grasp::FingerModel& finger) {
+  const JsonValue *shape = json.find("shape"), *radius = json.find("radius");
+  if (shape && radius) radius->reject("says again how large the tip is, which \"shape\" does. Keep one of the two.");
+  if (radius) finger.radius = radius->number(kLength);
+  if (shape) finger.shape = readFingerShape(*shape, scene.file);
+  if (shape) finger.radius = contact::boundingRadiusOf(*finger.shape);
+  const JsonValue *patch = json.find("patch_radius"), *modulus = json.find("modulus");
+  if (patch && modulus) patch->reject("and \"modulus\" both say how large the patch is. Keep one of the two.");
+  if (patch) finger.pad.patch_radius = patch->number(kPatch);
+  if (modulus) finger.pad.modulus = modulus->number(kModulus);
+  if (const JsonValue* v = json.find("effective_radius")) finger.pad.effective_radius = v->number(kLength);
 }
 
-Trajectory readKeyframes(const JsonValue& json) {
-  std::vector<TimedPoint> keyframes;
-  for (const JsonValue& keyframe : json.array())
-    keyframes.push_back(readKeyframe(keyframe, keyframes.empty() ? -1 : keyframes.back().time));
-  if (keyframes.empty()) json.reject("is empty. For a finger that rests, use \"position\".");
-  return Trajectory::throughKeyframes(std::move(keyframes));
+grasp::ArmPort readArm(const JsonValue& json) {
+  json.allowOnly(keys::kArm);
+  grasp::ArmPort arm;
+  if (const JsonValue* v = json.find("mass")) arm.mass = v->number(kArmMass);
+  if (const JsonValue* v = json.find("damping")) arm.damping = v->number(kDamping);
+  return arm;
 }
 
-Trajectory readTrajectory(const JsonValue& json, const std::string& scene_file) {
+struct FingerPath {
+  Trajectory place, turn;
+};
+
+FingerPath readKeyframes(const JsonValue& json, const Vec3& rotation) {
+  std::vector<TimedPoint> places, turns;
+  Vec3 turn = rotation;
+  double last = -1;
+  for (const JsonValue& keyframe : json.array()) {
+    keyframe.allowOnly(keys::kKeyframe);
+    const JsonValue& time = keyframe.at("time", "In seconds.");
+    const double t = time.number({.min = 0, .max = 1e6, .remedy = "In seconds from the start."});
+    if (t <= last) time.reject(fmt::format("doesn't come after {}. Keyframes go forward in time.", last));
+    last = t;
+    if (const JsonValue* v = keyframe.find("rotation")) turn = v->vector(kFingerTurn);
+    places.push_back({t, keyframe.at("position", "Where the finger is then [m].").vector(kCoordinate), Vec3::Zero()});
+    turns.push_back({t, turn, Vec3::Zero()});
+  }
+  if (places.empty()) json.reject("is empty. For a finger that rests, use \"position\".");
+  return {Trajectory::throughKeyframes(std::move(places)), Trajectory::throughKeyframes(std::move(turns))};
+}
+
+Trajectory constantTurn(const Vec3& rotation) { return Trajectory::throughKeyframes({{0, rotation, Vec3::Zero()}}); }
+
+FingerPath readTrajectory(const JsonValue& json, const std::string& scene_file, const Vec3& rotation) {
   json.allowOnly(keys::kTrajectory);
   const JsonValue* keyframes = json.find("keyframes");
   const JsonValue* csv = json.find("csv");
   if ((keyframes != nullptr) == (csv != nullptr)) json.reject("needs either \"keyframes\" or \"csv\".");
-  if (keyframes) return readKeyframes(*keyframes);
+  if (keyframes) return readKeyframes(*keyframes, rotation);
   try {
-    return readTrajectoryCsv(besideScene(scene_file, csv->text()));
+    return {readTrajectoryCsv(besideScene(scene_file, csv->text())), constantTurn(rotation)};
   } catch (const InputError& error) {
     csv->reject(fmt::format("can't be used: {}", error.what()));
   }
 }
 
-Trajectory readMotion(const JsonValue& json, const std::string& scene_file) {
+FingerPath readMotion(const JsonValue& json, const std::string& scene_file) {
   const JsonValue* position = json.find("position");
   const JsonValue* trajectory = json.find("trajectory");
   if (position && trajectory) position->reject("says again where the trajectory starts. Keep one of the two.");
-  if (trajectory) return readTrajectory(*trajectory, scene_file);
+  const JsonValue* turn = json.find("rotation");
+  const Vec3 rotation = turn ? turn->vector(kFingerTurn) : Vec3::Zero();
+  if (trajectory) return readTrajectory(*trajectory, scene_file, rotation);
   if (!position) json.reject("needs \"position\" [m] for a finger that rests, or \"trajectory\".");
-  return Trajectory::throughKeyframes({{0, position->vector(kCoordinate), Vec3::Zero()}});
+  return {Trajectory::throughKeyframes({{0, position->vector(kCoordinate), Vec3::Zero()}}), constantTurn(rotation)};
 }
 
 }  // namespace
@@ -85,10 +149,13 @@ SceneFinger readFinger(const JsonValue& json, const Scene& scene) {
   json.allowOnly(keys::kFinger);
   SceneFinger finger;
   finger.model.name = readName(json, scene, fmt::format("finger{}", scene.fingers.size()));
-  if (const JsonValue* v = json.find("radius")) finger.model.radius = v->number(kLength);
-  finger.model.coupling = readCoupling(json);
-  finger.model.coupling.name = finger.model.name;
-  finger.trajectory = readMotion(json, scene.file);
+  readTipOf(json, scene, finger.model);
+  readCoupling(json, finger.model);
+  if (const JsonValue* v = json.find("method")) finger.model.method = static_cast<grasp::FingerMethod>(v->oneOf(grasp::kFingerMethodNames));
+  if (const JsonValue* v = json.find("arm")) finger.model.arm = readArm(*v);
+  const FingerPath path = readMotion(json, scene.file);
+  finger.trajectory = path.place;
+  finger.turn = path.turn;
   if (const JsonValue* v = json.find("force")) finger.f_W = v->vector(kForce);
   return finger;
 }

@@ -17,11 +17,19 @@ inline constexpr std::array<Word, 3> kBodyKeyframe = {"time", "position", "rotat
 inline constexpr std::array<Word, 6> kJoint = {"type", "body", "to", "point", "axis", "damping"};
 inline constexpr std::array<Word, 4> kJointTypes = {"pivot", "slider", "ball", "weld"};
 inline constexpr std::array<Word, 3> kPair = {"bodies", "touch", "material"};
-inline constexpr std::array<Word, 5> kMaterial = {"mu_s", "mu_d", "restitution", "torsion_radius", "rolling_radius"};
-inline constexpr std::array<Word, 9> kFinger = {"name",   "radius", "mass",     "stiffness", "damping",
-                                                "locked", "force",  "position", "trajectory"};
+inline constexpr std::array<Word, 6> kMaterial = {"mu_s", "mu_d", "restitution", "torsion_radius", "rolling_radius", "stribeck_speed"};
+inline constexpr std::array<Word, 18> kFinger = {
+    "name",     "radius",   "shape",      "method", "mass",         "stiffness", "damping",          "locked",          "force",
+    "position", "rotation", "trajectory", "arm",    "patch_radius", "modulus",   "effective_radius", "twist_stiffness", "twist_damping"};
+inline constexpr std::array<Word, 2> kPerDirection = {"normal", "tangential"};
+inline constexpr std::array<Word, 2> kArm = {"mass", "damping"};
+inline constexpr std::array<Word, 4> kFingerShapeTypes = {"sphere", "capsule", "ellipsoid", "pad"};
+inline constexpr std::array<Word, 2> kSphereTip = {"type", "radius"};
+inline constexpr std::array<Word, 3> kCapsuleTip = {"type", "radius", "half"};
+inline constexpr std::array<Word, 2> kEllipsoidTip = {"type", "semi_axes"};
+inline constexpr std::array<Word, 6> kPadTip = {"type", "points", "file", "units", "scale", "rounding"};
 inline constexpr std::array<Word, 2> kTrajectory = {"keyframes", "csv"};
-inline constexpr std::array<Word, 2> kKeyframe = {"time", "position"};
+inline constexpr std::array<Word, 3> kKeyframe = {"time", "position", "rotation"};
 inline constexpr std::array<Word, 2> kRecord = {"interval", "quantities"};
 inline constexpr std::array<Word, 6> kExpectation = {"quantity", "time", "relation", "value", "tolerance", "because"};
 

@@ -30,6 +30,10 @@ SceneMotion readBodyTrajectory(const JsonValue& json, engine::BodyStart& start, 
 engine::JointModel readJoint(const JsonValue& json, const Scene& scene);
 ScenePair readPair(const JsonValue& json, const Scene& scene);
 
+// Corners given as "points" or in a "file".
+std::vector<Vec3> readPoints(const JsonValue& json, const std::string& file);
+contact::FingerShape readFingerShape(const JsonValue& json, const std::string& file);
+
 SceneFinger readFinger(const JsonValue& json, const Scene& scene);
 
 // Both after bodies, fingers, tick and duration are known.

@@ -92,6 +92,8 @@ contact::Shape readMesh(const JsonValue& json, const std::string& scene_file) {
   }
 }
 
+}  // namespace
+
 std::vector<Vec3> readPoints(const JsonValue& json, const std::string& scene_file) {
   const JsonValue* points = json.find("points");
   if ((points != nullptr) == (json.find("file") != nullptr))
@@ -104,6 +106,8 @@ std::vector<Vec3> readPoints(const JsonValue& json, const std::string& scene_fil
   for (const JsonValue& point : points->array()) corners.push_back(point.vector(kCoordinate));
   return corners;
 }
+
+namespace {
 
 contact::Shape readConvex(const JsonValue& json, const std::string& scene_file) {
   try {

@@ -1,5 +1,6 @@
 #include "tasks/servo/tick.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -19,7 +20,8 @@ Vec3 filteredVelocity(const TickModel& model, const MountState& mount, const dev
 }
 
 // D -> W. A sample that can't be used leaves the finger where it was; the gate trips on it.
-void locateFinger(const TickModel& model, TickState& state, int i, const devices::ArmSample& sample, grasp::FingerInput& input) {
+void locateFinger(const TickModel& model, TickState& state, int i, const devices::ArmSample& sample, double now,
+                  grasp::FingerInput& input) {
   MountState& mount = state.mounts[i];
   const Pose& X_WD = model.mounts[i].X_WD;
   const bool usable = sample.valid && devices::isFinite(sample);
@@ -29,15 +31,19 @@ void locateFinger(const TickModel& model, TickState& state, int i, const devices
     if (!mount.seen) {  // the proxy starts where the finger is
       engine::PointState& proxy = state.grasp.world.points[i];
       proxy.p_W = proxy.p_target_W = p_WF;
+      state.grasp.fingers[i].seen = false;  // nor has it turned there
     }
     mount.p_WF = p_WF;
     mount.sample_time = sample.time;
     mount.seen = true;
+    // A gimbal that says nothing for a tick hasn't turned back: that would drag along whatever the finger touches.
+    if (sample.q_DF) mount.q_DF = *sample.q_DF;
   } else {
     mount.v_WF.setZero();
     if (!mount.seen) mount.p_WF = state.grasp.world.points[i].p_W;
   }
-  input = {mount.p_WF, mount.v_WF, usable && sample.q_DF ? X_WD.q * *sample.q_DF : X_WD.q, Vec3::Zero()};
+  const double lead = model.pose_hold == PoseHold::kFirst ? std::clamp(now - mount.sample_time, 0.0, model.most_lead) : 0;
+  input = {mount.p_WF + lead * mount.v_WF, mount.v_WF, X_WD.q * mount.q_DF, Vec3::Zero()};
 }
 
 Vec3 gatedForce(const TickModel& model, MountState& mount, const FingerMount& config, const devices::ArmSample& sample,
@@ -93,7 +99,7 @@ TickScratch::TickScratch(const TickModel& model)
 engine::StepReport tick(const TickModel& model, TickState& state, TickScratch& scratch, const std::vector<FingerInputs>& inputs,
                         double now) {
   const int n = static_cast<int>(model.mounts.size());
-  for (int i = 0; i < n; ++i) locateFinger(model, state, i, inputs[i].arm, scratch.inputs[i]);
+  for (int i = 0; i < n; ++i) locateFinger(model, state, i, inputs[i].arm, now, scratch.inputs[i]);
   const engine::StepReport report = grasp::step(model.grasp, state.grasp, scratch.grasp, scratch.inputs);
   for (int i = 0; i < n; ++i) scratch.f_user_W[i] = scratch.grasp.fingers[i].f_user_W;
   keepPassive(model, state, scratch);

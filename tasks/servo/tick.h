@@ -26,10 +26,16 @@ struct FingerMount {
   bool display_tactile = true;  // false: the force-only condition, the tactor stays parked
 };
 
+// What stands for a device's pose at a tick whose sample is older than the tick: the sample (zero-order hold), or the sample led on with its velocity
+// (first-order hold), for `most_lead` at the most.
+enum class PoseHold : std::uint8_t { kZero, kFirst };
+
 struct TickModel {
   grasp::GraspModel grasp;
-  std::vector<FingerMount> mounts;    // one per finger
-  double velocity_cutoff = 60;        // of the low-pass on finger velocity [Hz]
+  std::vector<FingerMount> mounts;  // one per finger
+  double velocity_cutoff = 60;      // of the low-pass on finger velocity [Hz]
+  PoseHold pose_hold = PoseHold::kZero;
+  double most_lead = 3e-3;            // [s]
   grasp::PassivityOptions passivity;  // off unless switched on: simulated arms need none, motors do
 };
 
@@ -42,6 +48,7 @@ struct FingerInputs {
 struct MountState {
   bool seen = false;                              // a valid sample has come
   Vec3 p_WF = Vec3::Zero(), v_WF = Vec3::Zero();  // last finger pose, filtered velocity
+  Quat q_DF = Quat::Identity();                   // last orientation on the arm
   double sample_time = 0;
   Vec3 f_lead_W = Vec3::Zero();  // what leads the hand somewhere, besides what it touches; set by the experiment [N]
   devices::GateState gate;

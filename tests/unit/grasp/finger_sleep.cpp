@@ -7,7 +7,7 @@ namespace pincer::grasp {
 namespace {
 
 TEST(FingerSleep, HoldsAPinchAndWakesAtATouch) {
-  tests::GraspWorld w = tests::pinchedBall(0.05, 0.8), other = tests::pinchedBall(0.05, 0.8);
+  tests::GraspWorld w = tests::pinchedBall(0.05, 0.8, 1000, 3.3e-3), other = tests::pinchedBall(0.05, 0.8, 1000, 3.3e-3);
   other.model.world.options.sleep = false;
   GraspScratch scratch(w.model), other_scratch(other.model);
   std::vector<FingerInput> inputs = tests::squeezing(2e-3);
@@ -21,9 +21,9 @@ TEST(FingerSleep, HoldsAPinchAndWakesAtATouch) {
   bool asleep = false;
   for (int i = 0; i < 1500; ++i) asleep = tick();
   ASSERT_TRUE(asleep);
-  inputs[0].q_WF = Quat(Eigen::AngleAxisd(0.1, Vec3::UnitZ()));  // the pad turns: nothing moves, but it is felt elsewhere
+  inputs[0].q_WF = Quat(Eigen::AngleAxisd(1e-3, Vec3::UnitZ()));  // the pad turns, and the ball with it
   EXPECT_FALSE(tick());
-  for (int i = 0; i < 3; ++i) asleep = tick();
+  for (int i = 0; i < 1500; ++i) asleep = tick();
   EXPECT_TRUE(asleep);
   inputs[1].f_W.z() = 1e-6;
   EXPECT_FALSE(tick());

@@ -251,6 +251,40 @@ TEST(SceneReader, SaysWhereTheSceneNamesABadMesh) {
   EXPECT_NE(shading.find("Did you mean \"facet\"?"), std::string::npos) << shading;
 }
 
+std::string sceneWithFinger(const std::string& finger) {
+  return "{\"version\": 1, \"duration\": 1, \"bodies\": [], \"fingers\": [" + finger + "]}";
+}
+
+TEST(SceneFingers, TipsPadsAndCouplingsAreRead) {
+  const Scene scene =
+      parseScene(sceneWithFinger("{\"shape\": {\"type\": \"ellipsoid\", \"semi_axes\": [0.009, 0.008, 0.007]}, \"position\": [0, 0, 1],"
+                                 "\"stiffness\": {\"normal\": 2000, \"tangential\": 800}, \"modulus\": 1e5, \"twist_stiffness\": 0.3,"
+                                 "\"method\": \"penalty\", \"arm\": {\"mass\": 0.06, \"damping\": 0.4}, \"rotation\": [0, 0.5, 0]}"),
+                 "test");
+  const grasp::FingerModel& f = scene.fingers.front().model;
+  ASSERT_TRUE(f.shape && f.arm);
+  EXPECT_EQ(std::get<contact::EllipsoidTip>(*f.shape).semi_axes, Vec3(0.009, 0.008, 0.007));
+  EXPECT_EQ(f.radius, 0.009);
+  EXPECT_TRUE(f.along_normal);
+  EXPECT_EQ(f.coupling.stiffness, Vec3(800, 800, 2000));
+  EXPECT_EQ(f.coupling.twist_stiffness, 0.3);
+  EXPECT_EQ(f.pad.modulus, 1e5);
+  EXPECT_EQ(f.method, grasp::FingerMethod::kPenalty);
+  EXPECT_EQ(f.arm->damping, 0.4);
+  EXPECT_EQ(scene.fingers.front().turn.at(0.5).p_W, Vec3(0, 0.5, 0));
+}
+
+TEST(SceneFingers, ContradictionsAreNamed) {
+  const auto message = [](const std::string& finger) { return messageFor(sceneWithFinger(finger)); };
+  EXPECT_NE(message("{\"position\": [0, 0, 1], \"radius\": 0.01, \"shape\": {\"type\": \"sphere\", \"radius\": 0.01}}").find("says again"),
+            std::string::npos);
+  EXPECT_NE(message("{\"position\": [0, 0, 1], \"patch_radius\": 0.005, \"modulus\": 1e5}").find("Keep one"), std::string::npos);
+  EXPECT_NE(message("{\"position\": [0, 0, 1], \"stiffness\": {\"normal\": 1, \"tangential\": 1}, \"locked\": [\"x\"]}")
+                .find("along the contact's"),
+            std::string::npos);
+  EXPECT_NE(message("{\"position\": [0, 0, 1], \"method\": \"penality\"}").find("Did you mean \"penalty\"?"), std::string::npos);
+}
+
 // The schema that editors use and the reader know the same keys.
 TEST(SceneSchema, NamesExactlyTheKeysThatTheReaderKnows) {
   const JsonValue schema = readJson(kSourceDir + "/docs/scene.schema.json");
@@ -275,7 +309,11 @@ TEST(SceneSchema, NamesExactlyTheKeysThatTheReaderKnows) {
                                                                                         {"half_space", keys::kHalfSpace},
                                                                                         {"dish", keys::kDish},
                                                                                         {"mesh", keys::kMesh},
-                                                                                        {"convex", keys::kConvex}};
+                                                                                        {"convex", keys::kConvex},
+                                                                                        {"sphere_tip", keys::kSphereTip},
+                                                                                        {"capsule_tip", keys::kCapsuleTip},
+                                                                                        {"ellipsoid_tip", keys::kEllipsoidTip},
+                                                                                        {"pad_tip", keys::kPadTip}};
   for (const auto& [name, words] : parts) {
     const std::vector<std::string>& found = schema.at("$defs").at(name).at("properties").keys();
     EXPECT_EQ(std::vector<std::string>(words.begin(), words.end()), found) << name;

@@ -312,5 +312,34 @@ TEST(Tick, PassivityChangesForcesOnlyWhereItIsOn) {
   EXPECT_GT(braked.state.passivity.acted, 0);
 }
 
+// Late samples, led on: the world sees the finger where it would be by now.
+TEST(Tick, LeadsLateSamplesOnWithAFirstOrderHold) {
+  LiveRig held, led;
+  led.model.pose_hold = PoseHold::kFirst;
+  for (LiveRig* rig : {&held, &led}) {
+    rig->run(200);
+    std::vector<FingerInputs> samples = samplesAt(rig->model, rig->next);
+    for (FingerInputs& s : samples) s.arm.time -= 2e-3;  // two ticks old when it comes
+    rig->step(samples);
+  }
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Vec3 raw_W = held.state.mounts[i].p_WF;
+    EXPECT_EQ(held.scratch.inputs[i].p_WF, raw_W);
+    EXPECT_LT((led.scratch.inputs[i].p_WF - raw_W - 2e-3 * led.state.mounts[i].v_WF).norm(), 1e-12);
+  }
+}
+
+// A gimbal that is silent for a tick hasn't turned back to the arm's own axes.
+TEST(Tick, KeepsTheOrientationThatWasReadLast) {
+  LiveRig rig;
+  rig.run(200);
+  const Quat before = rig.scratch.inputs[0].q_WF;
+  std::vector<FingerInputs> samples = samplesAt(rig.model, rig.next);
+  samples[0].arm.q_DF.reset();
+  rig.step(samples);
+  EXPECT_LT(angleBetween(rig.scratch.inputs[0].q_WF, before), 1e-9);
+  EXPECT_GT(angleBetween(before, rig.model.mounts[0].X_WD.q), 0.01);
+}
+
 }  // namespace
 }  // namespace pincer::tasks

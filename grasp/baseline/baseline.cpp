@@ -1,0 +1,213 @@
+#include "grasp/baseline/baseline.h"
+
+#include <algorithm>
+
+#include "grasp/baseline/nearest_outside.h"
+#include "grasp/finger_contacts.h"
+
+namespace pincer::grasp {
+namespace {
+
+constexpr double kSmoothedSlip = 1e-3;  // below it the penalty's friction grows with speed [m/s]
+constexpr double kLookAround = 1e-3;    // surfaces further than the proxy moves, plus this, don't matter [m]
+constexpr int kMoves = 4;               // of the proxy per tick, each with the surfaces seen anew
+constexpr double kResting = 1e-6;       // a proxy this near to a surface rests on it [m]
+
+// A surface near the finger, in W.
+struct NearSurface {
+  int body = 0;
+  Vec3 p_W, n_W;  // where, and the normal of the force
+  Vec3 facet_W;   // the normal of what is really there: the same but for force shading
+  double phi = 0;
+};
+
+struct NearSurfaces {
+  std::array<NearSurface, kMostPlanes> all;
+  int count = 0;
+
+  void add(const NearSurface& s) {
+    if (count < kMostPlanes) all[static_cast<std::size_t>(count++)] = s;
+  }
+  const NearSurface* nearest() const {
+    const auto end = all.begin() + count;
+    const auto least = std::min_element(all.begin(), end, [](const auto& a, const auto& b) { return a.phi < b.phi; });
+    return count > 0 ? &*least : nullptr;
+  }
+};
+
+class BaselineFinger {
+ public:
+  BaselineFinger(const GraspModel& model, GraspState& state, GraspScratch& scratch, const FingerInput& input, int finger)
+      : model_(model),
+        state_(state),
+        scratch_(scratch),
+        input_(input),
+        index_(finger),
+        finger_(model.fingers[static_cast<std::size_t>(finger)]),
+        memory_(state.fingers[static_cast<std::size_t>(finger)].baseline),
+        k_(finger_.coupling.stiffness.x()) {}
+
+  FingerReport run() {
+    if (finger_.method == FingerMethod::kPenalty) {
+      penalty();
+    } else {
+      godObject();
+    }
+    finish();
+    memory_.p_WF = input_.p_WF;
+    return report_;
+  }
+
+ private:
+  // Everything within `margin` of the finger at `p_W`.
+  NearSurfaces look(const Vec3& p_W, double margin, bool afresh) {
+    NearSurfaces near;
+    for (int body = 0; body < static_cast<int>(model_.world.bodies.size()); ++body) {
+      const Pose X_WB = engine::bodyPose(model_.world, state_.world, body);
+      const std::size_t pair = static_cast<std::size_t>(index_) * model_.world.bodies.size() + static_cast<std::size_t>(body);
+      if (afresh) state_.trackers[pair] = {};
+      const Vec3 p_BC = X_WB.q.conjugate() * (p_W - X_WB.p);
+      if (contact::lowerBoundOfGap(model_.world.bodies[static_cast<std::size_t>(body)].shape, p_BC, finger_.radius) > margin) continue;
+      const contact::FingerContacts found =
+          fingerOnBody(model_, state_, scratch_.world.patches, index_, body, X_WB, {input_.q_WF, p_W}, margin);
+      for (int i = 0; i < found.count; ++i) {
+        const contact::SurfaceContact& s = found.points[static_cast<std::size_t>(i)];
+        if (s.phi > margin) continue;
+        const Vec3 to_centre = finger_.shape ? s.n_B : Vec3(signOf(s.phi + finger_.radius) * (p_BC - s.p_BS).normalized());
+        near.add({body, X_WB * s.p_BS, X_WB.q * s.n_B, X_WB.q * to_centre, s.phi});
+      }
+    }
+    return near;
+  }
+
+  Vec3 surfaceVelocity(const NearSurface& s) const {
+    const engine::BodyState& body = state_.world.bodies[static_cast<std::size_t>(s.body)];
+    return body.v_W + engine::bodyAngularVelocity(model_.world, state_.world, s.body).cross(s.p_W - body.X_WI.p);
+  }
+
+  void penalty() {
+    const NearSurfaces near = look(input_.p_WF, 0, true);
+    const double d = finger_.coupling.damping.x();
+    for (int i = 0; i < near.count; ++i) {
+      const NearSurface& s = near.all[static_cast<std::size_t>(i)];
+      const Vec3 v = input_.v_WF - surfaceVelocity(s), v_t = v - v.dot(s.n_W) * s.n_W;
+      const double f_n = std::max(-k_ * s.phi - d * v.dot(s.n_W), 0.0), speed = v_t.norm();
+      const double mu = model_.world.bodies[static_cast<std::size_t>(s.body)].material.mu_d;
+      Vec3 f = f_n * s.n_W;
+      if (speed > 0) f -= mu * f_n * std::min(1.0, speed / kSmoothedSlip) / speed * v_t;
+      push(s, f, f_n);
+      report_.sliding = report_.sliding || speed > kSmoothedSlip;
+    }
+  }
+
+  Vec3 proxyInWorld() const {
+    if (!memory_.has_proxy) return input_.p_WF;
+    return memory_.body < 0 ? memory_.p_P : engine::bodyPose(model_.world, state_.world, memory_.body) * memory_.p_P;
+  }
+
+  // Where the proxy is to go: the device, or what friction and shading leave of the way to it.
+  Vec3 goalFor(const Vec3& proxy_W, const NearSurface* resting) {
+    const Vec3 way = input_.p_WF - proxy_W;
+    if (finger_.method == FingerMethod::kGodObject || !resting || resting->phi > kResting) return input_.p_WF;
+    const double pressed = -way.dot(resting->n_W);
+    if (pressed <= 0) return input_.p_WF;
+    const Vec3 along = way + pressed * resting->n_W;
+    const engine::Material& material = model_.world.bodies[static_cast<std::size_t>(resting->body)].material;
+    const double length = along.norm(), held = material.mu_s * pressed;
+    report_.sliding = length > held;
+    const double kept = report_.sliding ? 1 - material.mu_d * pressed / length : 0;
+    return proxy_W + kept * along - pressed * resting->facet_W;
+  }
+
+  void godObject() {
+    Vec3 proxy_W = proxyInWorld();
+    NearSurfaces near = look(proxy_W, (input_.p_WF - proxy_W).norm() + kLookAround, false);
+    const Vec3 goal = goalFor(proxy_W, near.nearest());
+    NearestOutside placed{goal, {}};
+    for (int move = 0; move < kMoves; ++move) {
+      std::array<OuterSide, kMostPlanes> planes;
+      for (int i = 0; i < near.count; ++i) {
+        const NearSurface& s = near.all[static_cast<std::size_t>(i)];
+        planes[static_cast<std::size_t>(i)] = {s.facet_W, s.facet_W.dot(proxy_W) - s.phi};
+      }
+      placed = nearestOutside({planes.data(), static_cast<std::size_t>(near.count)}, goal);
+      const bool arrived = (placed.x - proxy_W).norm() < 1e-9;
+      proxy_W = placed.x;
+      if (arrived) break;
+      near = look(proxy_W, (goal - proxy_W).norm() + kLookAround, false);
+    }
+    takeForce(proxy_W, near, placed);
+  }
+
+  // The spring's force, shared by the surfaces that hold the proxy.
+  void takeForce(const Vec3& proxy_W, const NearSurfaces& near, const NearestOutside& placed) {
+    double sum = 0, most = 0;
+    int main = -1;
+    for (int i = 0; i < near.count; ++i) {
+      const double lambda = placed.lambda[static_cast<std::size_t>(i)];
+      sum += lambda;
+      if (lambda > most) main = i;
+      most = std::max(most, lambda);
+    }
+    memory_ = {true, -1, proxy_W, memory_.p_WF};
+    if (main < 0) return;
+    const Vec3 f_W = k_ * (proxy_W - input_.p_WF);
+    for (int i = 0; i < near.count; ++i) {
+      const NearSurface& s = near.all[static_cast<std::size_t>(i)];
+      const double share = placed.lambda[static_cast<std::size_t>(i)] / sum;
+      if (share > 0) push(s, share * f_W, share * f_W.dot(s.n_W));
+    }
+    memory_.body = near.all[static_cast<std::size_t>(main)].body;
+    memory_.p_P = engine::bodyPose(model_.world, state_.world, memory_.body).inverse() * proxy_W;
+  }
+
+  // Force `f_W` on the user at surface `s`; the body gets the opposite, as an outer force during the coming tick.
+  void push(const NearSurface& s, const Vec3& f_W, double f_n) {
+    const engine::BodyModel& body = model_.world.bodies[static_cast<std::size_t>(s.body)];
+    report_.f_contact_W += f_W;
+    report_.normal_force += f_n;
+    report_.p_WC += f_n * s.p_W;
+    if (report_.body < 0 || f_n > largest_) {
+      report_.body = s.body;
+      report_.n_W = s.n_W;
+    }
+    largest_ = std::max(largest_, f_n);
+    if (!body.dynamic) return;
+    engine::BodyState& b = state_.world.bodies[static_cast<std::size_t>(s.body)];
+    const double h = model_.world.options.h;
+    b.v_W -= h * body.inverse_mass * f_W;
+    b.L_W -= h * (s.p_W - b.X_WI.p).cross(f_W);
+  }
+
+  void finish() {
+    report_.f_user_W = report_.f_contact_W;
+    report_.touching = report_.normal_force > 0;
+    report_.gap = kInfinity;
+    if (!report_.touching) return;
+    report_.p_WC /= report_.normal_force;
+    report_.tangential_force = (report_.f_contact_W - report_.f_contact_W.dot(report_.n_W) * report_.n_W).norm();
+    report_.place_L = placeOnPad(finger_, input_.q_WF.conjugate() * -report_.n_W);
+  }
+
+  const GraspModel& model_;
+  GraspState& state_;
+  GraspScratch& scratch_;
+  const FingerInput& input_;
+  const int index_;
+  const FingerModel& finger_;
+  BaselineState& memory_;
+  const double k_;
+  FingerReport report_;
+  double largest_ = 0;
+};
+
+}  // namespace
+
+void renderBaselines(const GraspModel& model, GraspState& state, GraspScratch& scratch, std::span<const FingerInput> inputs) {
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    if (model.fingers[i].method == FingerMethod::kProxy) continue;
+    scratch.baselines[i] = BaselineFinger(model, state, scratch, inputs[i], static_cast<int>(i)).run();
+  }
+}
+
+}  // namespace pincer::grasp

@@ -1,0 +1,68 @@
+#include "tasks/bench/grasp/bench_grasp.h"
+
+#include <cmath>
+
+namespace pincer::tasks {
+
+grasp::FingerModel benchFinger(const char* name, double stiffness, double damping) {
+  grasp::FingerModel finger;
+  finger.name = name;
+  finger.radius = kBenchTip;
+  finger.coupling.stiffness.setConstant(stiffness);
+  finger.coupling.damping.setConstant(damping);
+  return finger;
+}
+
+engine::WorldOptions benchWorld(bool gravity, bool sleep) {
+  engine::WorldOptions options;
+  if (!gravity) options.gravity_W.setZero();
+  options.sleep = sleep;
+  return options;
+}
+
+BenchGrasp::BenchGrasp(engine::WorldBuilder builder, const std::vector<engine::BodyStart>& bodies, std::vector<grasp::FingerModel> fingers,
+                       const std::vector<Vec3>& devices)
+    : inputs(fingers.size()),
+      model(grasp::buildGrasp(std::move(builder), std::move(fingers))),
+      state(grasp::makeState(model, bodies, devices)),
+      scratch(model) {
+  for (std::size_t i = 0; i < inputs.size(); ++i) inputs[i].p_WF = devices[i];
+}
+
+void BenchGrasp::leadFinger(int finger, const Vec3& p_WF) {
+  grasp::FingerInput& input = inputs[static_cast<std::size_t>(finger)];
+  input.v_WF = (p_WF - input.p_WF) / kGraspTick;
+  input.p_WF = p_WF;
+}
+
+void BenchGrasp::leadAll(const std::vector<Vec3>& p_WF, int ticks) {
+  std::vector<Vec3> from;
+  for (const grasp::FingerInput& input : inputs) from.push_back(input.p_WF);
+  for (int k = 1; k <= ticks; ++k) {
+    for (std::size_t i = 0; i < inputs.size(); ++i) leadFinger(static_cast<int>(i), from[i] + (p_WF[i] - from[i]) * k / ticks);
+    tick();
+  }
+}
+
+engine::StepReport BenchGrasp::tick() {
+  const engine::StepReport report = grasp::step(model, state, scratch, inputs);
+  flagged_ += report.status != engine::kStepOk;
+  watch();
+  return report;
+}
+
+void BenchGrasp::watch() {
+  std::vector<Vec3> on_bodies(model.world.bodies.size(), Vec3::Zero());
+  for (const engine::Contact& c : scratch.world.contacts) {
+    if (!c.active()) continue;
+    const double limit = c.mu * c.r[engine::kNormalRow], torsion = engine::rowsOf(c.material) > 3 ? c.r[engine::kTorsionRow] : 0;
+    if (limit > 0) cone_excess_ = std::max(cone_excess_, std::hypot(c.r.head<2>().norm(), torsion) / limit - 1);
+    if (c.a.kind == engine::SideKind::kBody) on_bodies[static_cast<std::size_t>(c.a.index)] += c.impulse_W;
+    on_bodies[static_cast<std::size_t>(c.b.index)] -= c.impulse_W;
+  }
+  bool same = true;
+  for (std::size_t i = 0; i < on_bodies.size(); ++i) same = same && on_bodies[i] == scratch.world.bodies[i].impulse_W;
+  reaction_errors_ += !same;
+}
+
+}  // namespace pincer::tasks

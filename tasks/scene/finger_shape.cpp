@@ -1,0 +1,47 @@
+// Fingertips in scene files.
+#include <fmt/format.h>
+
+#include "contact/shape/polytope.h"
+#include "tasks/scene/scene_keys.h"
+#include "tasks/scene/scene_parts.h"
+
+namespace pincer::tasks {
+namespace {
+
+contact::FingerShape readPadTip(const JsonValue& json, const std::string& file) {
+  json.allowOnly(keys::kPadTip);
+  const JsonValue* rounding = json.find("rounding");
+  try {
+    return contact::PadTip{contact::Polytope::hullOf(readPoints(json, file), "pad"), rounding ? rounding->number(kLength) : 5e-4};
+  } catch (const InputError& error) {
+    json.reject(fmt::format("can't be used: {}", error.what()));
+  }
+}
+
+contact::FingerShape readTip(const JsonValue& json, const std::string& file) {
+  switch (json.at("type", "sphere, capsule, ellipsoid or pad.").oneOf(keys::kFingerShapeTypes)) {
+    case 0:
+      json.allowOnly(keys::kSphereTip);
+      return contact::Sphere{json.at("radius", "In metres.").number(kLength)};
+    case 1:
+      json.allowOnly(keys::kCapsuleTip);
+      return contact::CapsuleTip{json.at("radius", "In metres.").number(kLength),
+                                 json.at("half", "From the middle to one end of its axis, in the finger's frame [m].").vector(kCoordinate)};
+    case 2:
+      json.allowOnly(keys::kEllipsoidTip);
+      return contact::EllipsoidTip{json.at("semi_axes", "Along the finger's axes [m].").vector(kLength)};
+    default:
+      return readPadTip(json, file);
+  }
+}
+
+}  // namespace
+
+contact::FingerShape readFingerShape(const JsonValue& json, const std::string& file) {
+  contact::FingerShape shape = readTip(json, file);
+  const std::string problem = contact::problemWith(shape);
+  if (!problem.empty()) json.reject("can't be used: " + problem);
+  return shape;
+}
+
+}  // namespace pincer::tasks

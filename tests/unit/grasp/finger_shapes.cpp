@@ -1,0 +1,253 @@
+// Fingertips of any convex shape: their support functions, and where they touch, against brute force.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+
+#include "contact/mesh/generated_meshes.h"
+#include "contact/shape/closed_forms.h"
+#include "contact/shape/finger_query.h"
+#include "contact/shape/polytope.h"
+#include "contact/surface/smooth_mesh.h"
+#include "tests/support/constants.h"
+#include "tests/support/error_of.h"
+#include "tests/support/random_poses.h"
+#include "tests/support/worlds.h"
+
+namespace pincer::contact {
+namespace {
+
+using tests::RandomNumbers;
+
+// A pad like a fingertip's underside: a flattened cap of 60 points.
+PadTip padTip() {
+  RandomNumbers random(11);
+  std::vector<Vec3> points;
+  for (int i = 0; i < 60; ++i) {
+    const Vec3 d = tests::direction(random);
+    points.push_back(Vec3(9e-3 * d.x(), 7e-3 * d.y(), 4e-3 * d.z()));
+  }
+  return {Polytope::hullOf(points, "pad"), 1e-3};
+}
+
+std::vector<FingerShape> allTips() {
+  return {Sphere{8e-3}, CapsuleTip{5e-3, Vec3(8e-3, 0, 2e-3)}, EllipsoidTip{Vec3(10e-3, 7e-3, 6e-3)}, padTip()};
+}
+
+std::vector<Shape> smoothBodies() {
+  return {Sphere{0.02}, HalfSpace{}, Capsule{0.015, 0.02}, Cylinder{0.02, 0.03}, Box{Vec3(0.02, 0.03, 0.025)}};
+}
+
+double bodyDistance(const Shape& shape, const Vec3& p_B) {
+  SurfaceTracker tracker;
+  PatchCache cache(8);
+  const double r = 1e-3;
+  return querySphere(shape, p_B, r, 0, tracker, cache).main().phi + r;
+}
+
+// Least distance of the core to the body by brute force: everywhere on the core's skin, then closer and closer around the best places.
+double leastGapByBruteForce(const Shape& shape, const FingerShape& finger, const Pose& X_BF, RandomNumbers& random) {
+  struct Place {
+    double d;
+    Vec3 direction;
+  };
+  const auto at = [&](const Vec3& direction) { return Place{bodyDistance(shape, X_BF * coreSupportOf(finger, direction)), direction}; };
+  std::vector<Place> best;
+  for (int i = 0; i < 2000; ++i) best.push_back(at(tests::direction(random)));
+  std::sort(best.begin(), best.end(), [](const Place& a, const Place& b) { return a.d < b.d; });
+  best.resize(5);
+  for (Place& place : best) {
+    for (double reach = 0.3; reach > 1e-7; reach *= 0.8) {
+      for (int i = 0; i < 12; ++i) {
+        const Place next = at((place.direction + reach * tests::direction(random)).normalized());
+        if (next.d < place.d) place = next;
+      }
+    }
+  }
+  double least = kInfinity;
+  for (const Place& place : best) least = std::min(least, place.d);
+  // Between the support points of a core with edges: everywhere on the segments from the best to the others.
+  for (const Place& a : best) {
+    for (const Vec3& b : {coreSupportOf(finger, -a.direction), coreSupportOf(finger, (a.direction + Vec3(1, 0, 0)).normalized())}) {
+      const Vec3 from = coreSupportOf(finger, a.direction);
+      for (int i = 0; i <= 400; ++i) least = std::min(least, bodyDistance(shape, X_BF * (from + i / 400.0 * (b - from))));
+    }
+  }
+  return least - roundingOf(finger);
+}
+
+TEST(FingerShape, SupportPointsAreTheFurthestOnes) {
+  RandomNumbers random(3);
+  for (const FingerShape& finger : allTips()) {
+    std::vector<Vec3> skin;
+    for (int i = 0; i < 500; ++i) skin.push_back(supportOf(finger, tests::direction(random)));
+    for (int i = 0; i < 50; ++i) {
+      const Vec3 d = tests::direction(random), s = supportOf(finger, d);
+      for (const Vec3& p : skin) EXPECT_GE(s.dot(d), p.dot(d) - 1e-15);
+      EXPECT_LE(s.norm(), boundingRadiusOf(finger) * (1 + 1e-12));
+    }
+  }
+}
+
+TEST(FingerShape, EllipsoidIsItsCoreAndABall) {
+  RandomNumbers random(4);
+  const Vec3 a(10e-3, 7e-3, 6e-3);
+  for (int i = 0; i < 100; ++i) {
+    const Vec3 s = supportOf(EllipsoidTip{a}, tests::direction(random));
+    EXPECT_NEAR(s.cwiseQuotient(a).squaredNorm(), 1, 1e-14);
+    // nearest point of the core to a place outside: no sampled core point is nearer
+    const Vec3 p = 0.03 * tests::direction(random), c = nearestOnCore(EllipsoidTip{a}, p, p.normalized());
+    for (int k = 0; k < 100; ++k) {
+      EXPECT_GE((coreSupportOf(EllipsoidTip{a}, tests::direction(random)) - p).norm(), (c - p).norm() - 1e-15);
+    }
+  }
+}
+
+TEST(FingerShape, TouchesWhereBruteForceFindsIt) {
+  RandomNumbers random(5);
+  int queries = 0, count = 0;
+  for (const FingerShape& finger : allTips()) {
+    for (const Shape& shape : smoothBodies()) {
+      for (int i = 0; i < 4; ++i) {
+        const bool plane = std::holds_alternative<HalfSpace>(shape);
+        const Vec3 d = plane ? Vec3::UnitZ() : tests::direction(random);
+        Pose X_BF{tests::rotation(random), (plane ? 0.012 : 0.045) * d};
+        FingerTracker tracker;
+        PatchCache cache(8);
+        FingerContacts found = queryFinger(shape, finger, X_BF, 1e-3, tracker, cache);
+        X_BF.p += (random.uniform(-1e-3, 2e-3) - found.main().phi) * found.main().n_B;  // from a little inside to a little outside
+        tracker = {};
+        found = queryFinger(shape, finger, X_BF, 1e-3, tracker, cache);
+        queries += found.queries;
+        ++count;
+        const double brute = leastGapByBruteForce(shape, finger, X_BF, random);
+        EXPECT_LT(found.main().phi, brute + 1e-9) << finger.index() << " " << shape.index();
+        if (const auto* pad =
+                std::get_if<PadTip>(&finger)) {  // of faces and edges the sampling knows only corners; it is a point of the core
+          const Vec3 c_F = X_BF.inverse() * found.p_BT[0] + pad->rounding * (X_BF.q.conjugate() * found.main().n_B);
+          EXPECT_LT(nearestPoint(Convex{pad->hull}, c_F).distance, 1e-12);
+        } else {
+          EXPECT_GT(found.main().phi, brute - 2e-6) << finger.index() << " " << shape.index();  // the search's grid
+        }
+        // what is solved: the finger's support point over S
+        const Vec3 N_F = X_BF.q.conjugate() * found.main().n_B, p_F = X_BF.inverse() * found.p_BT[0];
+        EXPECT_LT(N_F.dot(p_F - supportOf(finger, -N_F)), 1e-9);
+      }
+    }
+  }
+  EXPECT_LT(queries, 12 * count);
+}
+
+TEST(FingerShape, WarmQueriesTakeFewBalls) {
+  RandomNumbers random(6);
+  const Shape body = Sphere{0.02};
+  for (const FingerShape& finger : allTips()) {
+    FingerTracker tracker;
+    PatchCache cache(8);
+    int queries = 0;
+    for (int i = 0; i < 200; ++i) {  // 100 mm/s around the ball, turning at 2 rad/s
+      const double a = 1e-4 / 0.03 * i;
+      const Pose X_BF{tests::about(Vec3(1, 2, 3), 2e-3 * i), 0.027 * Vec3(std::cos(a), std::sin(a), 0.1)};
+      queries += queryFinger(body, finger, X_BF, 1e-3, tracker, cache).queries;
+    }
+    EXPECT_LT(queries, 200 * 6) << finger.index();
+  }
+}
+
+TEST(FingerShape, SphereIsTheSphereQueryToTheBit) {
+  const Shape body = Cylinder{0.02, 0.03};
+  FingerTracker tracker;
+  SurfaceTracker plain;
+  PatchCache cache(8);
+  const Pose X_BF{tests::about(Vec3(1, 0, 0), 0.3), Vec3(0.02, 0.015, 0.01)};
+  const FingerContacts found = queryFinger(body, Sphere{8e-3}, X_BF, 1e-3, tracker, cache);
+  const SurfaceContact s = querySphere(body, X_BF.p, 8e-3, 1e-3, plain, cache).main();
+  EXPECT_EQ(found.main().p_BS, s.p_BS);
+  EXPECT_EQ(found.main().n_B, s.n_B);
+  EXPECT_EQ(found.main().phi, s.phi);
+  EXPECT_EQ(found.queries, 1);
+}
+
+TEST(FingerShape, CapsuleThatLiesFlatTouchesWithBothEnds) {
+  FingerTracker tracker;
+  PatchCache cache(8);
+  const FingerContacts found =
+      queryFinger(HalfSpace{}, CapsuleTip{5e-3, Vec3(8e-3, 0, 0)}, {Quat::Identity(), Vec3(0, 0, 4.5e-3)}, 1e-3, tracker, cache);
+  ASSERT_EQ(found.count, 3);
+  for (int i = 0; i < 3; ++i) EXPECT_NEAR(found.points[static_cast<std::size_t>(i)].phi, -0.5e-3, 1e-15);
+  EXPECT_NEAR(found.p_BT[1].x(), -8e-3, 1e-15);
+  EXPECT_NEAR(found.p_BT[2].x(), 8e-3, 1e-15);
+}
+
+// The smooth surface of a mesh of 40 mm: as on the sphere that it stands for, but for the mesh's own 3 um (docs/benchmarks.md).
+TEST(FingerShape, FeelsTheSmoothSurfaceOfAMesh) {
+  RandomNumbers random(8);
+  const Shape mesh = Mesh{SmoothMesh::build(icosphere(0.04, 3))}, ball = Sphere{0.04};
+  for (const FingerShape& finger : allTips()) {
+    FingerTracker on_mesh, on_ball;
+    PatchCache cache(1024);
+    for (int i = 0; i < 100; ++i) {
+      const double a = 2e-3 * i;
+      const Pose X_BF{tests::about(Vec3(1, 2, 3), 1e-3 * i), 0.045 * Vec3(std::cos(a), std::sin(a), 0.2).normalized()};
+      const FingerContacts found = queryFinger(mesh, finger, X_BF, 1e-3, on_mesh, cache);
+      const FingerContacts exact = queryFinger(ball, finger, X_BF, 1e-3, on_ball, cache);
+      EXPECT_NEAR(found.main().phi, exact.main().phi, 10e-6) << finger.index();
+      EXPECT_LT(angleBetween(found.main().n_B, exact.main().n_B), 0.02) << finger.index();
+    }
+  }
+}
+
+TEST(FingerShape, ArcOverTheSkin) {
+  const Vec3 down(0, 0, -1), slant = Vec3(std::sin(0.7), 0, -std::cos(0.7));
+  EXPECT_DOUBLE_EQ(arcOverSkin(Sphere{8e-3}, down, slant, 8e-3 * slant), 8e-3 * 0.7);
+  // an ellipse's arc in the x-z plane, integrated finely
+  const EllipsoidTip tip{Vec3(10e-3, 7e-3, 6e-3)};
+  double arc = 0;
+  Vec3 last = supportOf(tip, down);
+  for (int i = 1; i <= 20000; ++i) {
+    const double a = 0.7 * i / 20000;
+    const Vec3 next = supportOf(tip, Vec3(std::sin(a), 0, -std::cos(a)));
+    arc += (next - last).norm();
+    last = next;
+  }
+  EXPECT_NEAR(arcOverSkin(tip, down, slant, supportOf(tip, slant)), arc, 1e-4 * arc);
+  // a capsule: the flat way to the end, then round it
+  const CapsuleTip capsule{5e-3, Vec3(8e-3, 0, 0)};
+  EXPECT_NEAR(arcOverSkin(capsule, Vec3(1e-9, 0, -1).normalized(), slant, Vec3(8e-3, 0, 0) + 5e-3 * slant), 5e-3 * 0.7, 1e-6);
+}
+
+TEST(FingerShape, ProblemsAreNamed) {
+  EXPECT_NE(problemWith(Sphere{0}).find("radius = 0 is out of range"), std::string::npos);
+  EXPECT_NE(problemWith(EllipsoidTip{Vec3(0.1, 0.001, 0.01)}).find("ten times"), std::string::npos);
+  EXPECT_EQ(problemWith(padTip()), "");
+}
+
+}  // namespace
+}  // namespace pincer::contact
+
+namespace pincer::grasp {
+namespace {
+
+// Two ellipsoids hold a ball: no creep, and each contact's place is where its pad looks.
+TEST(FingerShape, EllipsoidsHoldABall) {
+  engine::WorldBuilder builder{engine::WorldOptions{}};
+  builder.addBody({"ball", contact::Sphere{0.02}, true, 0.05, {0.6, 0.6, 0, 3e-3}});
+  std::vector<FingerModel> fingers = {tests::softFinger("left"), tests::softFinger("right")};
+  for (FingerModel& f : fingers) f.shape = contact::EllipsoidTip{Vec3(10e-3, 8e-3, 7e-3)};
+  const GraspModel model = buildGrasp(builder, fingers);
+  GraspState state = makeState(model, {tests::startAt(Vec3(0, 0, 0.1))}, {Vec3(-0.03, 0, 0.1), Vec3(0.03, 0, 0.1)});
+  GraspScratch scratch(model);
+  std::vector<FingerInput> inputs(2);
+  for (int i = 0; i < 2; ++i) inputs[i].p_WF = Vec3(i == 0 ? -0.028 : 0.028, 0, 0.1);
+  for (int i = 0; i < 500; ++i) step(model, state, scratch, inputs);
+  const double z = state.world.bodies[0].X_WI.p.z();
+  for (int i = 0; i < 500; ++i) step(model, state, scratch, inputs);
+  EXPECT_LT(std::abs(state.world.bodies[0].X_WI.p.z() - z), 1e-9);
+  EXPECT_TRUE(scratch.fingers[0].touching);
+  EXPECT_NEAR(scratch.fingers[0].n_W.x(), -1, 0.01);
+  // The pad looks down (-z of F); the touch is a quarter of the way round, on the side towards +x: distal.
+  EXPECT_GT(scratch.fingers[0].place_L.x(), 0.008);
+}
+
+}  // namespace
+}  // namespace pincer::grasp
