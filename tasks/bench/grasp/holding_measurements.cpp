@@ -72,6 +72,32 @@ std::vector<Record> coneAndReaction(MeasureContext& context) {
   return records;
 }
 
+// One finger in a groove of a block that is free to move: two contacts on one body, each counted once.
+std::vector<Record> twoContactsOnOneBody(MeasureContext&) {
+  constexpr double kMass = 0.1;
+  engine::WorldBuilder builder(benchWorld(false));
+  builder.addBody({"block",
+                   contact::Mesh{contact::SmoothMesh::build(contact::grooveBlock(M_PI / 4, 0.015, 0.03, 0.03))},
+                   true,
+                   kMass,
+                   {0.5, 0.5, 0, 0}});
+  BenchGrasp grasp(std::move(builder), {engine::BodyStart{}}, {benchFinger("finger")}, {Vec3(0, 0, 0.03)});
+  double momentum = 0;
+  int both = 0;
+  for (int k = 0; k < 600; ++k) {
+    grasp.leadFinger(0, Vec3(1e-3 * std::sin(0.05 * k), 0, 0.03 - 1e-4 * k));
+    const Vec3 before = grasp.state.world.bodies[0].v_W;
+    grasp.tick();
+    both += std::count_if(grasp.scratch.world.contacts.begin(), grasp.scratch.world.contacts.end(),
+                          [](const auto& c) { return c.active(); }) > 1;
+    const Vec3 change = kMass * (grasp.state.world.bodies[0].v_W - before) / kGraspTick;
+    momentum = std::max(momentum, (change + grasp.felt(0).f_contact_W).norm());
+  }
+  return {atLeast("ticks with two contacts or more", both, "-", 10),
+          atMost("change of momentum less the finger's force", momentum, "N", 1e-9),
+          exactly("ticks in which action isn't reaction", grasp.reactionErrors(), "-", 0)};
+}
+
 // The tangential force at which a finger pressed with 2 N begins to slip, found by bisection, over mu f_n.
 double slipOnset(const contact::Shape& shape, const Vec3& from_W) {
   constexpr double kMu = 0.5;
@@ -173,11 +199,9 @@ std::vector<Record> handsOver(MeasureContext& context) {
 }  // namespace
 
 std::vector<Measurement> holdingMeasurements() {
-  return {{"hold/cone", coneAndReaction},
-          {"hold/slip-onset", slipOnsets},
-          {"hold/drift", holdsStill},
-          {"hold/noise", holdsInNoise},
-          {"hold/handover", handsOver}};
+  return {{"hold/cone", coneAndReaction},  {"hold/two-contacts", twoContactsOnOneBody},
+          {"hold/slip-onset", slipOnsets}, {"hold/drift", holdsStill},
+          {"hold/noise", holdsInNoise},    {"hold/handover", handsOver}};
 }
 
 }  // namespace pincer::tasks
