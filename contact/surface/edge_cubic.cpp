@@ -7,15 +7,6 @@ namespace {
 constexpr double kParallel = 0.05;  // |nA x nB| below which the sides' cross product has no reliable direction: 3 degrees
 constexpr double kSteepest = 0.3;   // T.g of a handle that still leads along the edge
 
-EdgeHandles smoothHandles(const Vec3& p0, const Vec3& p1, const Vec3& n0, const Vec3& n1) {
-  const double d = (p1 - p0).norm();
-  const Vec3 g = (p1 - p0) / d;
-  const double a = n0.dot(n1), a0 = n0.dot(g), a1 = n1.dot(g);
-  const double rho = 6 * (2 * a0 + a * a1) / (4 - a * a);
-  const double sigma = 6 * (2 * a1 + a * a0) / (4 - a * a);
-  return {p0 + d / 18 * (6 * g - 2 * rho * n0 + sigma * n1), p1 - d / 18 * (6 * g + rho * n0 - 2 * sigma * n1)};
-}
-
 // Unit tangent of a crease at one of its ends, along `g`.
 Vec3 creaseTangent(const EdgeEnd& end, const Vec3& g) {
   const Vec3 cross = end.left.cross(end.right);
@@ -48,7 +39,8 @@ Vec3 middleNormal(const Vec3& p0, const Vec3& p1, const Vec3& n0, const Vec3& n1
   constexpr double kCancelled = 1e-3;
   const Vec3 d = p1 - p0, sum = n0 + n1;
   const Vec3 mirrored = sum - 2 * d.dot(sum) / d.squaredNorm() * d;
-  if (mirrored.norm() > kCancelled) return mirrored.normalized();
+  const double length = mirrored.norm();
+  if (length > kCancelled) return mirrored / length;
   return sum.norm() > kCancelled ? sum.normalized() : n0;  // both ends' normals along the edge, or opposite: the fold check reports it
 }
 

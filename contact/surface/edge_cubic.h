@@ -28,6 +28,16 @@ struct EdgeHandles {
 
 EdgeHandles edgeHandles(const EdgeEnd& from, const EdgeEnd& to);
 
+// Of a smooth edge.
+inline EdgeHandles smoothHandles(const Vec3& p0, const Vec3& p1, const Vec3& n0, const Vec3& n1) {
+  const double d = (p1 - p0).norm();
+  const Vec3 g = (p1 - p0) / d;
+  const double a = n0.dot(n1), a0 = n0.dot(g), a1 = n1.dot(g);
+  const double rho = 6 * (2 * a0 + a * a1) / (4 - a * a);
+  const double sigma = 6 * (2 * a1 + a * a0) / (4 - a * a);
+  return {p0 + d / 18 * (6 * g - 2 * rho * n0 + sigma * n1), p1 - d / 18 * (6 * g + rho * n0 - 2 * sigma * n1)};
+}
+
 // The quadratic normal's middle control point on an edge from `p0` to `p1`: the mean of the end normals, mirrored in the plane across the
 // edge's middle. Source: T. van Overveld, B. Wyvill, 1997; Vlachos et al., eq. 5. Changing the ends' roles gives the same bits.
 Vec3 middleNormal(const Vec3& p0, const Vec3& p1, const Vec3& n0, const Vec3& n1);

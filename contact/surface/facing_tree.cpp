@@ -21,7 +21,7 @@ NormalCone FacingTree::split(std::size_t node, std::int32_t begin, std::int32_t 
     return boxes[static_cast<std::size_t>(order_[static_cast<std::size_t>(place)])];
   };
   const auto twice_centre = [](const FacingBox& b, std::size_t k) { return b.low[k] + b.high[k]; };
-  Node bounds{box(begin).low, box(begin).high, 0, {}, -1 - begin, end - begin};
+  Node bounds{box(begin).low, box(begin).high, 0, {}, -1 - (8 * begin + std::min(end - begin, kLeafSize))};
   std::array<float, 3> first, last;
   for (std::size_t k = 0; k < 3; ++k) first[k] = last[k] = twice_centre(box(begin), k);
   for (std::int32_t i = begin; i < end; ++i) {

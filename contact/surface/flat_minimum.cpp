@@ -23,8 +23,24 @@ bool isMinimumAtVertex(const SurfaceNet& net, const CellCorner& at, const Vec3& 
   const bool is_border = net.visitCorners(at, [&](const CellCorner& c) {
     for (const int other : {(c.corner + 1) % 3, (c.corner + 2) % 3}) is_least = is_least && R.dot(net.vertex(c.triangle, other) - p) <= 0;
     outward += net.normal(c.triangle, c.corner);
+    return is_least;
   });
   return is_least && (is_border || R.dot(outward) > 0);
+}
+
+// As far as it is less than `most`.
+double wayToMinimumAtVertex(const SurfaceNet& net, const CellCorner& at, const Vec3& p, double most) {
+  const Vec3& from = net.vertex(at.triangle, at.corner);
+  const Vec3 R = p - from;
+  double way = 0;
+  net.visitCorners(at, [&](const CellCorner& c) {
+    for (const int end : {(c.corner + 1) % 3, (c.corner + 2) % 3}) {
+      const Vec3 edge = net.vertex(c.triangle, end) - from;
+      if (const double passed = R.dot(edge); passed > 0) way = std::max(way, passed / edge.norm());
+    }
+    return way < most;
+  });
+  return way;
 }
 
 }  // namespace
@@ -54,6 +70,26 @@ FlatPoint closestOnTriangle(const Vec3& a, const Vec3& b, const Vec3& c, const V
 
 FlatPoint closestOnFacet(const SurfaceNet& net, std::int32_t triangle, const Vec3& p) {
   return closestOnTriangle(net.vertex(triangle, 0), net.vertex(triangle, 1), net.vertex(triangle, 2), p);
+}
+
+double wayToFlatMinimum(const SurfaceNet& net, std::int32_t t, const Vec3& p) {
+  const Vec3 n = facetNormal(net, t);
+  double inside = 0, least = kInfinity;
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 &from = net.vertex(t, i), &to = net.vertex(t, (i + 1) % 3);
+    const Vec3 edge = to - from, R = p - from, out = edge.cross(n);
+    const double length = edge.norm(), across = R.dot(out) / out.norm(), passed = R.dot(edge) / length;
+    inside = std::max(inside, across);
+    double over_edge = std::max({-across, -passed, passed - length, 0.0});
+    if (const Neighbour other = net.neighbour(t, i); other.triangle >= 0 && over_edge < least) {
+      const Vec3 beyond = edge.cross(facetNormal(net, other.triangle));
+      over_edge = std::max(over_edge, R.dot(beyond) / beyond.norm());
+    }
+    least = std::min(least, over_edge);
+  }
+  least = std::min(least, inside);
+  for (int i = 0; i < 3 && least > 0; ++i) least = std::min(least, wayToMinimumAtVertex(net, {t, i}, p, least));
+  return least;
 }
 
 bool isFlatMinimum(const SurfaceNet& net, std::int32_t triangle, const FlatPoint& flat, const Vec3& p) {

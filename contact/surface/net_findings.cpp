@@ -41,14 +41,16 @@ bool folds(const Patch& patch) {
 
 }  // namespace
 
+double concaveCurvature(const Patch& patch, int edge) {
+  const auto p = edgeCurve(patch, edge);
+  const auto n = edgeNormals(patch, edge);
+  const Vec3 d = p[3] - p[0];
+  return -(n[2] - n[0]).dot(d) / d.squaredNorm();
+}
+
 void NetInspector::see(std::int32_t triangle, const Patch& patch) {
   if (folds(patch)) folded_.push_back(triangle);
-  for (int i = 0; i < 3; ++i) {
-    const auto p = edgeCurve(patch, i);
-    const auto n = edgeNormals(patch, i);
-    const Vec3 d = p[3] - p[0];
-    sharpest_ = std::max(sharpest_, -(n[2] - n[0]).dot(d) / d.squaredNorm());
-  }
+  for (int i = 0; i < 3; ++i) sharpest_ = std::max(sharpest_, concaveCurvature(patch, i));
   for (const Vec3& p : controlPoints(patch)) radius2_ = std::max(radius2_, p.squaredNorm());
 }
 

@@ -75,6 +75,19 @@ struct FacingTest {
     const double across = std::sqrt(std::max(0.0, distance2 - along * along));
     return cosine * along + sine * across > 0 && cosine * across - sine * along <= R;
   }
+  // By how much the ball has to grow at least for that [m]: by as much as C has to move.
+  double approach(double along, double distance2, double R) const {
+    if (distance2 <= R * R || isFull()) return 0;
+    const double across = std::sqrt(std::max(0.0, distance2 - along * along)), distance = std::sqrt(distance2);
+    const double outside = cosine * along + sine * across > 0 ? std::min(distance, cosine * across - sine * along) : distance;
+    return std::max(0.0, outside - R);
+  }
+  // Whether all of it is within the angle of the cosine and sine given, which is no less than its own, of the vector `n`, which is unit or zero.
+  bool isAround(const Vec3& n, double cosine_to, double sine_to) const {
+    const double along = axis[0] * n[0] + axis[1] * n[1] + axis[2] * n[2];
+    return along >=
+           cosine_to * cosine + sine_to * sine;  // cos(a - b) with a the angle given, b the cone's: the axis is no further off than a - b
+  }
 };
 
 }  // namespace pincer::contact

@@ -5,6 +5,8 @@
 
 namespace pincer::contact {
 
-PatchCache::PatchCache(int cells) : places_(std::bit_ceil(static_cast<std::size_t>(std::max(cells, 1)))) {}
+PatchCache::PatchCache(int cells) : places_(std::bit_ceil(static_cast<std::size_t>(std::max(cells, 1)))) {
+  for (NearParts& near : parts_) near.parts.reserve(kMostParts);
+}
 
 }  // namespace pincer::contact

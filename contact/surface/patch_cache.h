@@ -1,11 +1,14 @@
-// patch_cache: working memory for the patches that a query touches, built when first needed.
+// patch_cache: working memory for the patches that a query touches, and for those that a finger may come to touch, built when first needed.
 //
-// Direct-mapped: a triangle has one place, and takes it from whoever was there. A cell is a pure function of its mesh, so no result depends
-// on what a cache holds; several meshes may share one. Belongs to a scratch: one thread at a time.
+// Direct-mapped: a triangle has one place, and takes it from whoever was there. A cell is a pure function of its mesh, and near parts of
+// mesh and look, so no result depends on what a cache holds; several meshes may share one. Belongs to a scratch: one thread at a time.
 #pragma once
+#include <array>
+#include <bit>
 #include <cstdint>
 #include <vector>
 
+#include "contact/surface/near_parts.h"
 #include "contact/surface/surface_cell.h"
 
 namespace pincer::contact {
@@ -24,8 +27,15 @@ class PatchCache {
     return places_[(static_cast<std::uint64_t>(triangle) ^ net) & (places_.size() - 1)];
   }
 
+  // The place for what is near the look of a finger of this mesh.
+  NearParts& partsAround(std::uint64_t net, const SurfaceLook& look) {
+    const std::uint64_t mixed = (std::bit_cast<std::uint64_t>(look.p_BC.sum()) ^ net) * 0x9e3779b97f4a7c15ull;
+    return parts_[mixed >> 61];
+  }
+
  private:
   std::vector<Place> places_;
+  std::array<NearParts, 8> parts_;
 };
 
 }  // namespace pincer::contact

@@ -89,17 +89,24 @@ Vec2 saddleFreeStep(const PatchPoint& x, const Residual& r) {
   return J.moves.solve(divideByEigenvalueSizes(J.p, J.q, J.s, {r.T.dot(J.e1), r.T.dot(J.e2)}));
 }
 
-// Newton's step; `usable` tells whether it may be taken.
-Vec2 newtonStep(const PatchPoint& x, const Residual& r, bool& usable) {
+// Newton's step, as du.T and dv.T.
+struct NewtonStep {
+  Vec3 du, dv;
+  Vec2 d;
+  bool is_usable;
+};
+
+NewtonStep newtonStep(const PatchPoint& x, const Residual& r) {
   const Vec3 A = x.Su + r.hN * x.Nu, B = x.Sv + r.hN * x.Nv;
-  const Vec3 X = B.cross(x.N);
-  const double det = A.dot(X), flat = x.Su.dot(x.Sv.cross(x.N));
-  const Vec2 d = Vec2(r.T.dot(X), r.T.dot(x.N.cross(A))) / det;
-  const Vec3 dS = x.Su * d.x() + x.Sv * d.y();
+  const Vec3 X = B.cross(x.N), Y = x.N.cross(A);
+  const double det = A.dot(X), flat = x.Su.dot(x.Sv.cross(x.N)), inverse = 1 / det;
+  NewtonStep step{X * inverse, Y * inverse, {}, false};
+  step.d = {r.T.dot(step.du), r.T.dot(step.dv)};
+  const Vec3 dS = x.Su * step.d.x() + x.Sv * step.d.y();
   const double along = r.T.dot(dS);
-  usable = flat > 0 && det > kLeastDeterminant * flat && along > 0 &&
-           along * along >= kLeastCosine * kLeastCosine * r.T.squaredNorm() * dS.squaredNorm();
-  return d;
+  step.is_usable = flat > 0 && det > kLeastDeterminant * flat && along > 0 &&
+                   along * along >= kLeastCosine * kLeastCosine * r.T.squaredNorm() * dS.squaredNorm();
+  return step;
 }
 
 }  // namespace
@@ -111,15 +118,13 @@ bool isStable(const PatchPoint& x, const Vec3& C) {
 
 FaceStep faceStep(const PatchPoint& x, const Vec3& C, StepKind kind) {
   const Residual r = residualOf(x, C);
-  bool is_newton = false;
-  Vec2 d = Vec2::Zero();
   if (kind == StepKind::newton) {
-    d = newtonStep(x, r, is_newton);
-    if (!is_newton) d = saddleFreeStep(x, r);
-  } else {
-    d = stepAlongResidual(x, r);
+    const NewtonStep step = newtonStep(x, r);
+    const Vec2 d = step.is_usable ? step.d : saddleFreeStep(x, r);
+    return {r.n, r.h, r.T.norm(), {-d.x() - d.y(), d.x(), d.y()}, step.is_usable, step.du, step.dv};
   }
-  return {r.n, r.h, r.T.norm(), {-d.x() - d.y(), d.x(), d.y()}, is_newton};
+  const Vec2 d = stepAlongResidual(x, r);
+  return {r.n, r.h, r.T.norm(), {-d.x() - d.y(), d.x(), d.y()}, false, {}, {}};
 }
 
 }  // namespace pincer::contact

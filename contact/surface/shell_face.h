@@ -23,6 +23,7 @@ struct FaceStep {
   double residual;           // |T| [m]
   std::array<double, 3> db;  // change of the barycentric coordinates 0, 1, 2; their sum is 0
   bool is_newton;            // the residual should fall: neither safeguarded nor along the residual
+  Vec3 du, dv;               // of Newton's step: coordinates 1 and 2 change by du.T, dv.T [1/m]; else unset
 };
 
 FaceStep faceStep(const PatchPoint& x, const Vec3& C, StepKind kind);

@@ -1,5 +1,7 @@
 #include "contact/surface/shell_solver.h"
 
+#include <algorithm>
+
 #include "contact/surface/shell_edge.h"
 #include "contact/surface/shell_face.h"
 
@@ -12,6 +14,20 @@ constexpr double kNear = 4e-5;         // of it: a residual from which Newton's 
 constexpr int kMaxSteps = 20;          // within faces
 constexpr int kMaxCrossings = 200;     // of edges, at most one per step of a walk over fine triangles
 constexpr int kMaxFeatureVisits = 12;  // of edges and of vertices, each
+
+// The last step, if it stays within the face: its end is so near that the patch is as good as linear.
+bool finish(const PatchPoint& x, const FaceStep& step, const Vec3& C, ShellContact& contact) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (contact.foot.b[i] + step.db[i] < 0) return false;
+  }
+  for (std::size_t i = 0; i < 3; ++i) contact.foot.b[i] += step.db[i];
+  const double du = step.db[1], dv = step.db[2];
+  contact.n = (x.N + du * x.Nu + dv * x.Nv).normalized();
+  contact.h = (C - x.S - du * x.Su - dv * x.Sv).dot(contact.n);
+  contact.converged = true;
+  contact.motion = {step.du, step.dv};
+  return true;
+}
 
 class ShellWalk {
  public:
@@ -35,7 +51,7 @@ class ShellWalk {
 
   const SurfaceCell& cell() const { return net_.cell(foot_.triangle, cache_); }
   void stepOnFace();
-  bool polish(const PatchPoint& x, const std::array<double, 3>& db);
+  bool polish(const PatchPoint& x, const FaceStep& step);
   bool halveLastMove(double residual);
   void move(const std::array<double, 3>& db);
   void meetEdge(int edge, double s);
@@ -70,8 +86,12 @@ class ShellWalk {
 void ShellWalk::stepOnFace() {
   const PatchPoint x = evaluate(cell().patch, foot_.b[1], foot_.b[2]);
   const FaceStep step = faceStep(x, C_, next_kind_);
-  if (step.residual < done_ || (near_ && step.residual < nearly_)) return accept(step.n, step.h);
-  if (step.residual < nearly_ && step.is_newton && polish(x, step.db)) return;
+  if (step.residual < done_ || (near_ && step.residual < nearly_)) {
+    accept(step.n, step.h);
+    if (step.is_newton) result_.motion = {step.du, step.dv};
+    return;
+  }
+  if (step.residual < nearly_ && step.is_newton && polish(x, step)) return;
   if (steps_ >= kMaxSteps || crossings_ >= kMaxCrossings) return giveUp();
   near_ = step.residual < nearly_;
   if (!near_ && halveLastMove(step.residual)) return;
@@ -83,14 +103,12 @@ void ShellWalk::stepOnFace() {
   move(step.db);
 }
 
-// The last step, if it stays within the face: its end is so near that the patch is as good as linear.
-bool ShellWalk::polish(const PatchPoint& x, const std::array<double, 3>& db) {
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (foot_.b[i] + db[i] < 0) return false;
-  }
-  for (std::size_t i = 0; i < 3; ++i) foot_.b[i] += db[i];
-  const Vec3 n = (x.N + db[1] * x.Nu + db[2] * x.Nv).normalized();
-  accept(n, (C_ - x.S - db[1] * x.Su - db[2] * x.Sv).dot(n));
+bool ShellWalk::polish(const PatchPoint& x, const FaceStep& step) {
+  ShellContact contact;
+  contact.foot = foot_;
+  if (!finish(x, step, C_, contact)) return false;
+  result_ = contact;
+  state_ = State::ended;
   return true;
 }
 
@@ -236,6 +254,20 @@ void ShellWalk::accept(const Vec3& n, double h) {
 
 ShellContact solveShell(const SurfaceNet& net, PatchCache& cache, const Vec3& C, const Foot& start) {
   return ShellWalk(net, cache, C, start).run();
+}
+
+ShellContact solveShellBeside(const SurfaceNet& net, PatchCache& cache, const Vec3& C, const Foot& start, const FootMotion& motion,
+                              const Vec3& dC) {
+  ShellContact contact;
+  const double du = motion.du.dot(dC), dv = motion.dv.dot(dC);
+  contact.foot = {start.triangle, {start.b[0] - du - dv, start.b[1] + du, start.b[2] + dv}};
+  if (*std::min_element(contact.foot.b.begin(), contact.foot.b.end()) < 0) return contact;
+  const PatchPoint x = evaluate(net.cell(start.triangle, cache).patch, contact.foot.b[1], contact.foot.b[2]);
+  const FaceStep step = faceStep(x, C, StepKind::newton);
+  if (!step.is_newton || !(step.residual < kNear * net.length())) return contact;
+  contact.cost.steps = 1;
+  finish(x, step, C, contact);
+  return contact;
 }
 
 ShellContact tangentContact(const SurfaceNet& net, PatchCache& cache, const Vec3& C, const Foot& foot) {

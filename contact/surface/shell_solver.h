@@ -33,16 +33,27 @@ struct WalkCost {
   int crossings = 0;  // of edges
 };
 
+// How the foot moves with the centre: coordinates 1 and 2 change by du.dC, dv.dC [1/m]. Zero where it isn't known.
+struct FootMotion {
+  Vec3 du = Vec3::Zero(), dv = Vec3::Zero();
+};
+
 struct ShellContact {
   Foot foot;
   Vec3 n = Vec3::UnitZ();  // unit; C - h n is the contact point to within 1e-9 m
   double h = 0;            // [m], negative when the centre lies under the surface
   bool converged = false;  // false: no solution within the budget of 20 steps, and `foot` is where the walk began
   WalkCost cost;
+  FootMotion motion = {};
 };
 
 // Walks from `start` to a solution for centre `C`. Allocates nothing, throws nothing.
 ShellContact solveShell(const SurfaceNet& net, PatchCache& cache, const Vec3& C, const Foot& start);
+
+// The solution beside the place to which `start` moves with a centre that has moved by `dC` [m], if one Newton step leads there; else not
+// converged. What most ticks need: one look at one patch.
+ShellContact solveShellBeside(const SurfaceNet& net, PatchCache& cache, const Vec3& C, const Foot& start, const FootMotion& motion,
+                              const Vec3& dC);
 
 // The contact with the tangent plane at `foot`, whatever its residual: what is held where there is no solution.
 ShellContact tangentContact(const SurfaceNet& net, PatchCache& cache, const Vec3& C, const Foot& foot);

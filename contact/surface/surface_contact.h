@@ -52,6 +52,17 @@ struct SurfaceSlot {
   double u = 0, v = 0;         // barycentric coordinates of corners 1 and 2 of the triangle [-]
   double ease = 0;             // by which the gap is answered larger than it is [m], >= 0
   Vec3 p_BS = Vec3::Zero(), n_B = Vec3::UnitZ();
+  Vec3 du = Vec3::Zero(), dv = Vec3::Zero();  // how u and v move with the centre [1/m]; zero where it isn't known
+};
+
+// The last look around for further places, from which the next queries live (near_parts.h).
+struct SurfaceLook {
+  Vec3 p_BC = Vec3::Zero();  // where the centre was
+  double reach = 0;          // further contacts were wanted no further than this from it [m]
+  double horizon = 0;        // the centre's way for which what it found is all that may be met [m]; 0: look again
+  double vouched = 0;        // the centre's way for which none of it is met but what is known [m]
+  // The normals of the contacts that were followed, by slot, zero without one: while they have hardly turned, what faces along them is theirs.
+  std::array<Vec3, kMaxSurfaceContacts> n = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
 };
 
 // Where the last query of one finger on one mesh ended; the next begins there. Closed forms don't use it. A plain value: part of the
@@ -61,10 +72,7 @@ struct SurfaceTracker {
   Vec3 p_BC = Vec3::Zero();       // where the fingertip's centre was, or would have been had it not been pressed under the surface [m]
   Vec3 p_BC_last = Vec3::Zero();  // where it was
   bool has_centre = false;        // whether it has been outside
-  // The last look for further places: while the centre is nearer to p_BC_searched than `vouched`, and further contacts are wanted no
-  // further than `reach` from it, it finds no others [m].
-  Vec3 p_BC_searched = Vec3::Zero();
-  double vouched = 0, reach = 0;
+  SurfaceLook look;
   std::uint32_t status = 0;  // bits of QueryStatus of the last query
 };
 

@@ -22,15 +22,26 @@ std::array<EdgeEnd, 2> edgeEnds(const SurfaceNet& net, std::int32_t t, int i) {
   return {EdgeEnd{p0, left0, right0}, EdgeEnd{p1, left1, right1}};
 }
 
+void setSmoothEdge(int i, bool is_first, Patch& p) {
+  const std::array<const Vec3*, 3> corners = {&p.b300, &p.b030, &p.b003}, normals = {&p.n200, &p.n020, &p.n002};
+  const auto here = static_cast<std::size_t>(i), next = static_cast<std::size_t>((i + 1) % 3);
+  const auto [from, to] = is_first ? std::pair(here, next) : std::pair(next, here);
+  const auto [first, second] = smoothHandles(*corners[from], *corners[to], *normals[from], *normals[to]);
+  firstHandle(p, i) = is_first ? first : second;
+  secondHandle(p, i) = is_first ? second : first;
+}
+
 // Each edge is computed as its first triangle sees it: the two sides share it to the last bit.
 void setEdge(const SurfaceNet& net, std::int32_t triangle, int i, SurfaceCell& cell) {
   const Neighbour other = cell.neighbours[static_cast<std::size_t>(i)];
   const bool is_first = other.triangle < 0 || triangle < other.triangle;
+  bool& is_sharp = cell.sharp[static_cast<std::size_t>(i)];
+  is_sharp = net.isSharp(triangle, i);
+  if (!is_sharp) return setSmoothEdge(i, is_first, cell.patch);
   const auto [from, to] = is_first ? edgeEnds(net, triangle, i) : edgeEnds(net, other.triangle, other.edge);
   const auto [first, second] = edgeHandles(from, to);
   firstHandle(cell.patch, i) = is_first ? first : second;
   secondHandle(cell.patch, i) = is_first ? second : first;
-  cell.sharp[static_cast<std::size_t>(i)] = net.isSharp(triangle, i);
 }
 
 // A handle lies in its end's tangent plane, whatever the other side of the edge has there.
@@ -64,7 +75,7 @@ Vec3 placeOnMedian(const Patch& p, int i) {
   const auto normals = edgeNormals(p, (i + 1) % 3);
   const Vec3 P = edgeCurve(p, i)[0], n = edgeNormals(p, i)[0];
   const Vec3 M = (side[0] + 3 * side[1] + 3 * side[2] + side[3]) / 8, n_M = (normals[0] + 2 * normals[1] + normals[2]).normalized();
-  const auto [first, second] = edgeHandles({P, n, n}, {M, n_M, n_M});
+  const auto [first, second] = smoothHandles(P, M, n, n_M);
   return (P + 6 * first + 12 * second + 8 * M) / 27;
 }
 
@@ -198,8 +209,12 @@ Vec3 SurfaceNet::facetNormal(std::int32_t triangle) const {
 bool SurfaceNet::isSharp(std::int32_t triangle, int edge) const {
   const Neighbour other = neighbour(triangle, edge);
   if (other.triangle < 0) return true;
-  return normal(triangle, edge) != normal(other.triangle, (other.edge + 1) % 3) ||
-         normal(triangle, (edge + 1) % 3) != normal(other.triangle, other.edge);
+  const int next = (edge + 1) % 3, other_next = (other.edge + 1) % 3;
+  if (is_flat_)
+    return normal(triangle, edge) != normal(other.triangle, other_next) || normal(triangle, next) != normal(other.triangle, other.edge);
+  const auto &numbers = corner_normals_[at(triangle)],
+             &others = corner_normals_[at(other.triangle)];  // equal normals of a vertex share theirs
+  return numbers[at(edge)] != others[at(other_next)] || numbers[at(next)] != others[at(other.edge)];
 }
 
 SurfaceCell SurfaceNet::build(std::int32_t triangle) const {

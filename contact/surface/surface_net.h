@@ -10,6 +10,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <type_traits>
 #include <vector>
 
 #include "contact/mesh/connectivity.h"
@@ -34,6 +35,7 @@ class SurfaceNet {
   const TriangleMesh& mesh() const { return mesh_; }
   double length() const { return length_; }  // half the diagonal of the box around the vertices [m]: what small and large are measured by
   std::size_t memoryBytes() const;
+  std::uint64_t fingerprint() const { return fingerprint_; }
 
   // Valid until the next call with the same cache: copy what is to be kept.
   const SurfaceCell& cell(std::int32_t triangle, PatchCache& cache) const {
@@ -56,7 +58,7 @@ class SurfaceNet {
   bool isSharp(std::int32_t triangle, int edge) const;
 
   // Calls visit(CellCorner) on all triangles around the vertex at `start`, once each, from `start` on clockwise (at a border then on its
-  // other side). Returns whether the vertex is on a border.
+  // other side), until visit returns false if it returns bool. Returns whether the vertex is on a border (as far as it came).
   template <class Visit>
   bool visitCorners(const CellCorner& start, Visit&& visit) const;
 
@@ -75,9 +77,14 @@ class SurfaceNet {
 
 template <class Visit>
 bool SurfaceNet::visitCorners(const CellCorner& start, Visit&& visit) const {
+  const auto goesOn = [&](const CellCorner& c) {
+    if constexpr (std::is_same_v<decltype(visit(c)), bool>) return visit(c);
+    visit(c);
+    return true;
+  };
   CellCorner at_corner = start;
   do {
-    visit(at_corner);
+    if (!goesOn(at_corner)) return false;
     const Neighbour other = neighbour(at_corner.triangle, (at_corner.corner + 2) % 3);
     at_corner = {other.triangle, other.edge};
   } while (at_corner.triangle >= 0 && at_corner.triangle != start.triangle);
@@ -86,16 +93,19 @@ bool SurfaceNet::visitCorners(const CellCorner& start, Visit&& visit) const {
     const Neighbour other = neighbour(at_corner.triangle, at_corner.corner);
     if (other.triangle < 0) return true;
     at_corner = {other.triangle, (other.edge + 1) % 3};
-    visit(at_corner);
+    if (!goesOn(at_corner)) return true;
   }
 }
+
+// Curvature along an edge of a patch [1/m], positive where concave:
+//   kappa = -(n1 - n0) . (p1 - p0) / |p1 - p0|^2
+double concaveCurvature(const Patch& patch, int edge);
 
 // What one look at every patch tells of a surface.
 struct NetFindings {
   std::vector<std::int32_t>
       folded;  // triangles with (Su x Sv) . N <= 0 somewhere on a grid of 28 points: contact there may be held or jump
   // Smallest radius of concave curvature along an edge [m], infinity for a convex surface: a finger of a larger radius doesn't fit there.
-  //   kappa = (n1 - n0) . (p1 - p0) / |p1 - p0|^2,  concave where negative
   double concave_radius;
   double bounding_radius;  // of a sphere about B's origin that holds the surface [m]
 };

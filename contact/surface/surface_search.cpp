@@ -72,6 +72,18 @@ FacingBox boxAround(const Patch& patch, const NormalCone& cone) {
   return {{below(low[0]), below(low[1]), below(low[2])}, {above(high[0]), above(high[1]), above(high[2])}, cone};
 }
 
+double hollowOf(const SurfaceNet& net, std::int32_t t, const SurfaceCell& cell) {
+  double hollow = 0;
+  const Vec3 facet = (cell.patch.b030 - cell.patch.b300).cross(cell.patch.b003 - cell.patch.b300);
+  for (int i = 0; i < 3; ++i) {
+    const Neighbour other = cell.neighbours[static_cast<std::size_t>(i)];
+    const bool is_crease = cell.sharp[static_cast<std::size_t>(i)] && other.triangle >= 0;
+    if (is_crease && facet.dot(net.vertex(other.triangle, (other.edge + 2) % 3) - net.vertex(t, i)) > 0) return kInfinity;
+    hollow = std::max(hollow, concaveCurvature(cell.patch, i));
+  }
+  return hollow;
+}
+
 // The patch lies in the hull of its control points, and distance from a convex set is a convex function.
 double bulgeOf(const Patch& patch) {
   double bulge2 = 0;
@@ -97,11 +109,12 @@ SurfaceSearch::SurfaceSearch(const SurfaceNet& net, NetInspector& inspector, con
     const NormalCone cone = cones.find(t, cell);
     boxes.push_back(boxAround(cell.patch, cone));
     const Vec3 centre = (cell.patch.b300 + cell.patch.b030 + cell.patch.b003) / 3;
-    Leaf leaf{{static_cast<float>(centre[0]), static_cast<float>(centre[1]), static_cast<float>(centre[2])}, 0, 0, FacingTest(cone)};
+    Leaf leaf{{static_cast<float>(centre[0]), static_cast<float>(centre[1]), static_cast<float>(centre[2])}, 0, 0, 0, FacingTest(cone)};
     double radius2 = 0;
     for (const Vec3& p : controlPoints(cell.patch)) radius2 = std::max(radius2, (p - leaf.middle()).squaredNorm());
     leaf.radius = above(std::sqrt(radius2));
     leaf.bulge = above(bulgeOf(cell.patch));
+    leaf.hollow = above(hollowOf(net, t, cell));
     unordered.push_back(leaf);
     if (progress && t % kReported == 0) progress(kPatches * t / net.size());
   }
@@ -115,9 +128,9 @@ SurfaceSeed SurfaceSearch::nearest(const SurfaceNet& net, PatchCache& cache, con
   SurfaceSeed seed{{}, bound, false};
   double bound2 = bound * bound;
   int visits = 0;
-  tree_.visitFacing(p, bound2, 0, facing, [&](std::int32_t place_in_order) {
-    const Leaf& at = leaf(place_in_order);
-    if (!at.mayHold(p, seed.distance, 0, facing)) return true;
+  tree_.visitFacing(p, bound2, facing, [&](std::int32_t place_in_order) {
+    const Leaf& at = part(place_in_order);
+    if (!at.mayHold(p, seed.distance, facing)) return true;
     const std::int32_t triangle = triangleAt(place_in_order);
     const FlatPoint flat = closestOnFacet(net, triangle, p);
     const double reach = seed.distance + at.bulge;
@@ -130,6 +143,21 @@ SurfaceSeed SurfaceSearch::nearest(const SurfaceNet& net, PatchCache& cache, con
     return ++visits < kMaxVisits;
   });
   return seed;
+}
+
+std::optional<Foot> SurfaceSearch::minimumOn(const SurfaceNet& net, std::int32_t place, const Vec3& p, double reach) const {
+  const std::int32_t triangle = triangleAt(place);
+  const FlatPoint flat = closestOnFacet(net, triangle, p);
+  const double outer = reach + part(place).bulge;
+  if (flat.distance2 >= outer * outer || !isFlatMinimum(net, triangle, flat, p)) return std::nullopt;
+  return Foot{triangle, flat.b};
+}
+
+float SurfaceSearch::wayToMinimumOn(const SurfaceNet& net, std::int32_t place, const Vec3& p, double reach) const {
+  constexpr double kRounding = 1e-12;  // of the mesh's size, of the differences between points that are compared
+  const std::int32_t triangle = triangleAt(place);
+  const double too_far = std::sqrt(closestOnFacet(net, triangle, p).distance2) - part(place).bulge - reach;
+  return below(std::max(too_far, wayToFlatMinimum(net, triangle, p)) - kRounding * net.length());
 }
 
 bool SurfaceSearch::isHidden(const SurfaceNet& net, const Vec3& a, const Vec3& b) const {

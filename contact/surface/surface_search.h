@@ -10,6 +10,7 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "contact/surface/facing_tree.h"
@@ -30,11 +31,14 @@ struct PatchBounds {
   std::array<float, 3> centre;
   float radius;  // of a ball that holds the patch [m]
   float bulge;   // no point of the patch is further from the flat triangle [m]
+  float hollow;  // the largest concave curvature along its edges [1/m], 0 where convex; infinity with a concave crease
   FacingTest cone;
 
   Vec3 middle() const { return {centre[0], centre[1], centre[2]}; }
-  // Whether a place of it may be nearer to `p` than `bound` and face it or a point within `around`.
-  bool mayHold(const Vec3& p, double bound, double around, Facing facing) const;
+  // Whether a place of it may be nearer to `p` than `bound` and face it.
+  bool mayHold(const Vec3& p, double bound, Facing facing) const;
+  // How far `p` has to move at least for that, to the front [m].
+  double approach(const Vec3& p, double bound) const;
 };
 
 class SurfaceSearch {
@@ -46,12 +50,20 @@ class SurfaceSearch {
   // bowl, where all places are equally near. Allocates nothing.
   SurfaceSeed nearest(const SurfaceNet& net, PatchCache& cache, const Vec3& p, double bound, Facing facing) const;
 
-  // Calls visit(foot) on the places nearer to `p` than `bound` [m] where the flat triangles' distance from it is least among their
-  // neighbours', with `p` in front; nearer leaves first, until it returns false. Patches with `is_known(triangle, part)` are passed over.
-  // Returns whether there is nothing else: whether each patch that is nearer than bound + around and may face a point within `around` [m]
-  // of `p` is known. Allocates nothing.
-  template <class IsKnown, class Visit>
-  bool visitMinima(const SurfaceNet& net, const Vec3& p, double bound, double around, IsKnown&& is_known, Visit&& visit) const;
+  // Calls visit(place, approach) on the patches that `p` may come to be nearer to than `reach` and to face before it has moved by `horizon` > 0
+  // [m], which may shrink meanwhile, each with how far it has to move for that at least. Branches of the tree and patches for whose cone
+  // isPassed(cone) are left out. Allocates nothing.
+  template <class IsPassed, class Visit>
+  void visitParts(const Vec3& p, double reach, const double& horizon, IsPassed&& isPassed, Visit&& visit) const;
+  const PatchBounds& part(std::int32_t place) const { return leaves_[static_cast<std::size_t>(place)]; }
+  std::int32_t triangleAt(std::int32_t place) const { return tree_.order()[static_cast<std::size_t>(place)]; }
+
+  // The place of that patch's flat triangle that is nearest to `p`, if it is nearer than `reach` (less what the patch bulges), `p` is in
+  // front, and no neighbour leads nearer.
+  std::optional<Foot> minimumOn(const SurfaceNet& net, std::int32_t place, const Vec3& p, double reach) const;
+
+  // How far `p` has to move at least until there is one, rounded down [m].
+  float wayToMinimumOn(const SurfaceNet& net, std::int32_t place, const Vec3& p, double reach) const;
 
   // Whether the flat triangles hide `a` from `b`. Allocates nothing.
   bool isHidden(const SurfaceNet& net, const Vec3& a, const Vec3& b) const;
@@ -60,43 +72,39 @@ class SurfaceSearch {
 
  private:
   using Leaf = PatchBounds;
-  const Leaf& leaf(std::int32_t place) const { return leaves_[static_cast<std::size_t>(place)]; }
-  std::int32_t triangleAt(std::int32_t place) const { return tree_.order()[static_cast<std::size_t>(place)]; }
-
   FacingTree tree_;
   std::vector<Leaf> leaves_;  // in the tree's order
 };
 
-inline bool PatchBounds::mayHold(const Vec3& p, double bound, double around, Facing facing) const {
+inline bool PatchBounds::mayHold(const Vec3& p, double bound, Facing facing) const {
   double centre2 = 0, along = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     const double D = p[static_cast<int>(k)] - centre[k];
     centre2 += D * D;
     along += cone.axis[k] * D;
   }
-  const double reach = bound + radius, R = radius + around;
+  const double reach = bound + radius;
   if (centre2 >= reach * reach) return false;
-  return cone.mayFace(along, centre2, R) || (facing == Facing::both && cone.mayFace(-along, centre2, R));
+  return cone.mayFace(along, centre2, radius) || (facing == Facing::both && cone.mayFace(-along, centre2, radius));
 }
 
-template <class IsKnown, class Visit>
-bool SurfaceSearch::visitMinima(const SurfaceNet& net, const Vec3& p, double bound, double around, IsKnown&& is_known,
-                                Visit&& visit) const {
-  const double outer = bound + around, outer2 = outer * outer;
-  bool is_all = true;
-  tree_.visitFacing(p, outer2, around, Facing::front, [&](std::int32_t place) {
-    const Leaf& at = leaf(place);
-    if (!at.mayHold(p, outer, around, Facing::front)) return true;
-    const std::int32_t triangle = triangleAt(place);
-    if (is_known(triangle, at)) return true;
-    const FlatPoint flat = closestOnFacet(net, triangle, p);
-    const double reach = bound + at.bulge, outer_reach = outer + at.bulge;
-    if (flat.distance2 >= outer_reach * outer_reach) return true;
-    is_all = false;
-    if (flat.distance2 >= reach * reach || !isFlatMinimum(net, triangle, flat, p)) return true;
-    return visit(Foot{triangle, flat.b});
+inline double PatchBounds::approach(const Vec3& p, double bound) const {
+  double centre2 = 0, along = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double D = p[static_cast<int>(k)] - centre[k];
+    centre2 += D * D;
+    along += cone.axis[k] * D;
+  }
+  return std::max(cone.approach(along, centre2, radius), std::sqrt(centre2) - radius - bound);
+}
+
+template <class IsPassed, class Visit>
+void SurfaceSearch::visitParts(const Vec3& p, double reach, const double& horizon, IsPassed&& isPassed, Visit&& visit) const {
+  tree_.visitNear(p, reach, horizon, isPassed, [&](std::int32_t place) {
+    const Leaf& at = part(place);
+    const double approach = at.approach(p, reach);
+    if (approach < horizon && !isPassed(at.cone)) visit(place, approach);
   });
-  return is_all;
 }
 
 }  // namespace pincer::contact

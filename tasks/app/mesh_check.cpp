@@ -1,6 +1,7 @@
 // What `pincer mesh info` and `pincer mesh check` find out, and how findings are shown.
 #include <fmt/format.h>
 
+#include "contact/surface/self_crossings.h"
 #include "contact/surface/smooth_mesh.h"
 #include "tasks/app/mesh_commands.h"
 #include "tasks/app/terminal.h"
@@ -28,6 +29,16 @@ contact::MeshFinding hollowFinding(double hollow, double finger) {
                       1e3 * finger, 1e3 * hollow, 1e3 * kTightest * hollow)};
 }
 
+contact::MeshFinding crossingFinding(const contact::TriangleMesh& mesh, const contact::SelfCrossings& found) {
+  const auto& t = mesh.triangles[static_cast<std::size_t>(found.first)];
+  const Vec3 p = 1e3 * mesh.vertices[static_cast<std::size_t>(t[0])];
+  return {"self-intersection", true, static_cast<int>(found.pairs),
+          fmt::format(
+              "{}{} pair(s) of triangles pass through each other, the first is triangle {} at ({:.4g}, {:.4g}, {:.4g}) mm with triangle "
+              "{}: a finger may get stuck inside, and volume counts twice. Unite such parts in a mesh editor.",
+              found.is_all ? "" : "at least ", found.pairs, found.first + 1, p.x(), p.y(), p.z(), found.other + 1)};
+}
+
 bool hasSmoothSurface(const contact::MeshReport& report) {
   return report.triangles > 0 && report.nonmanifold_edges == 0 && report.nonmanifold_vertices == 0 && report.zero_area_triangles == 0;
 }
@@ -37,6 +48,8 @@ bool hasSmoothSurface(const contact::MeshReport& report) {
 MeshCheck checkMesh(const contact::TriangleMesh& mesh, double metres_per_unit, double finger_radius) {
   MeshCheck check;
   check.report = contact::inspect(mesh, {.metres_per_unit = metres_per_unit});
+  const contact::SelfCrossings crossings = contact::findSelfCrossings(mesh);
+  if (crossings.pairs > 0) check.report.findings.push_back(crossingFinding(mesh, crossings));
   check.has_surface = hasSmoothSurface(check.report);
   if (!check.has_surface) return check;
   const auto surface = contact::SmoothMesh::build(mesh);

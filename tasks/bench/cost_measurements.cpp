@@ -1,11 +1,15 @@
 // What a query costs: warm, with the global guard, over the number of triangles, and beside other engines.
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 
 #include "contact/mesh/generated_meshes.h"
+#include "contact/mesh/mesh_reader.h"
+#include "contact/mesh/mesh_writer.h"
 #include "tasks/bench/contact_bench.h"
 #include "tasks/bench/flat_distance.h"
 #include "tasks/bench/objects.h"
@@ -68,6 +72,23 @@ std::vector<Record> guardCost(MeasureContext& context) {
   return {atMost("81,920 triangles, median", cost.median / 1000, "us", 3), atMost("81,920 triangles, p99.9", cost.p999 / 1000, "us", 10)};
 }
 
+// A name in the system's temporary directory, for as long as this lives.
+class ScratchFile {
+ public:
+  explicit ScratchFile(const char* ending)
+      : path_(std::filesystem::temp_directory_path() / fmt::format("pincer-bench-{}{}", ::getpid(), ending)) {}
+  ~ScratchFile() {
+    std::error_code ignored;
+    std::filesystem::remove(path_, ignored);
+  }
+  ScratchFile(const ScratchFile&) = delete;
+  ScratchFile& operator=(const ScratchFile&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
 struct GrowthStep {
   int n;         // 20 n^2 triangles
   double bound;  // [us]
@@ -87,6 +108,8 @@ std::vector<Record> growth(MeasureContext& context) {
     costs.push_back(costAlong(*mesh, evenStroke(*mesh, kPressed, context)).median);
     records.push_back(atMost(fmt::format("{:.0f} triangles, warm, median", triangles), costs.back() / 1000, "us", bound));
     records.push_back(unbounded(fmt::format("{:.0f} triangles, time to build", triangles), built, "s"));
+    const double bytes = static_cast<double>(mesh->memoryBytes()) / triangles;
+    records.push_back(atMost(fmt::format("{:.0f} triangles, memory per untouched one", triangles), bytes, "B", 160));
     if (context.interrupted()) return records;
   }
   const double allowed = std::log(triangles) / std::log(first_triangles);
@@ -98,6 +121,35 @@ std::vector<Record> fileCost(const BenchObject& object, MeasureContext& context)
   const auto mesh = SmoothMesh::build(object.mesh);
   const CallCost cost = costAlong(*mesh, evenStroke(*mesh, kPressed, context));
   return {atMost("warm query, median", cost.median / 1000, "us", 5), atMost("warm query, p99.9", cost.p999 / 1000, "us", 20)};
+}
+
+struct ReadKind {
+  const char* name;
+  const char* ending;
+  bool ascii;
+};
+constexpr ReadKind kReadKinds[] = {
+    {"STL", ".stl", false}, {"PLY", ".ply", false}, {"PLY as text", ".ply", true}, {"OBJ", ".obj", false}, {"OFF", ".off", false}};
+
+// A file of a million triangles, written before and removed after.
+std::vector<Record> readCost(MeasureContext& context) {
+  constexpr double kMostSeconds = 10, kFewestReports = 10;
+  const TriangleMesh mesh = contact::geodesicSphere(0.04, 224);
+  std::vector<Record> records;
+  for (const auto& [name, ending, ascii] : kReadKinds) {
+    const ScratchFile file(ending);
+    contact::writeMesh(file.path(), mesh, {.ascii = ascii});
+    int reports = 0;
+    const double start = steadySeconds();
+    const TriangleMesh read = contact::readMesh(file.path(), {.progress = [&](double) { ++reports; }});
+    const double seconds = steadySeconds() - start;
+    const double megabytes = 1e-6 * static_cast<double>(std::filesystem::file_size(file.path()));
+    records.push_back(atMost(fmt::format("{}, {} triangles", name, read.triangles.size()), seconds, "s", kMostSeconds));
+    records.push_back(unbounded(fmt::format("{}, {:.0f} MB", name, megabytes), megabytes / seconds, "MB/s"));
+    records.push_back(atLeast(fmt::format("{}, reports of progress", name), reports, "-", kFewestReports));
+    if (context.interrupted()) return records;
+  }
+  return records;
 }
 
 struct PeerFigures {
@@ -163,7 +215,8 @@ std::vector<Record> besidePeers(int n, MeasureContext& context) {
 }  // namespace
 
 std::vector<Measurement> costMeasurements(const ContactBenchOptions& options) {
-  std::vector<Measurement> measurements = {{"cost/warm", warmCost}, {"cost/global-guard", guardCost}, {"cost/growth", growth}};
+  std::vector<Measurement> measurements = {
+      {"cost/warm", warmCost}, {"cost/global-guard", guardCost}, {"cost/growth", growth}, {"cost/read", readCost}};
   if (!options.meshes.empty()) {
     for (const MeshFile& file : meshFilesIn(options.meshes)) {
       const auto run = [file](MeasureContext& context) {

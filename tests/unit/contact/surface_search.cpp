@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <set>
 
 #include "contact/mesh/generated_meshes.h"
@@ -26,25 +27,43 @@ Vec3 randomPoint(RandomNumbers& random, double size) {
   return {random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size)};
 }
 
-bool nothingIsKnown(std::int32_t, const PatchBounds&) { return false; }
+bool nothingIsPassed(const FacingTest&) { return false; }
 
-// A look around a point finds every patch that may face a point nearby: "nothing else" holds there too.
+// Calls visit(foot) on the flat mesh's minima nearer than `reach` whose patches may face the point.
+template <class Visit>
+void visitMinima(const Searched& s, const Vec3& p, double reach, Visit&& visit) {
+  constexpr double kAtOnce = 1e-300;
+  s.search.visitParts(p, reach, kAtOnce, nothingIsPassed, [&](std::int32_t place, double) {
+    if (!s.search.part(place).mayHold(p, reach, Facing::front)) return;
+    if (const auto foot = s.search.minimumOn(s.net, place, p, reach)) visit(*foot);
+  });
+}
+
+// A look around a point finds every patch that may face a point nearby, and how far the point has to go for that: so those that need
+// further may be skipped.
 TEST(SurfaceSearch, VouchesForThePointsAround) {
-  constexpr double kAroundPoint = 0.0005, kBound = 0.009;
+  constexpr double kAroundPoint = 0.0015, kBound = 0.009;
   for (const TriangleMesh& mesh :
        {torus(0.03, 0.012, 24, 12), cylinderWithFlat(0.025, 0.03, 0.018, 20, 6), box({0.02, 0.015, 0.03}), bumpySphere(0.03, 0.1, 6, 10)}) {
     const Searched s(mesh);
     RandomNumbers random(8);
+    int later = 0;
     for (int i = 0; i < 300; ++i) {
-      const Vec3 p = randomPoint(random, 0.05), q = p + 0.57 * randomPoint(random, kAroundPoint);
-      std::set<std::int32_t> around;
-      const auto remember = [&](std::int32_t t, const PatchBounds&) { return around.insert(t).second; };
-      EXPECT_TRUE(s.search.visitMinima(s.net, p, kBound, kAroundPoint, remember, [](const Foot&) { return true; }));
-      s.search.visitMinima(s.net, q, kBound, 0, nothingIsKnown, [&](const Foot& foot) {
-        EXPECT_TRUE(around.contains(foot.triangle)) << mesh.source << ' ' << i;
-        return true;
+      const Vec3 p = randomPoint(random, 0.05);
+      std::map<std::int32_t, double> around;  // triangles, and the way until they matter
+      s.search.visitParts(p, kBound, kAroundPoint, nothingIsPassed, [&](std::int32_t place, double approach) {
+        around[s.search.triangleAt(place)] = std::max<double>(approach, s.search.wayToMinimumOn(s.net, place, p, kBound));
       });
+      for (const auto& [triangle, way] : around) later += way > 0;
+      for (int k = 0; k < 5; ++k) {
+        const Vec3 q = p + 0.57 * randomPoint(random, random.uniform(0, kAroundPoint));
+        visitMinima(s, q, kBound, [&](const Foot& foot) {
+          ASSERT_TRUE(around.contains(foot.triangle)) << mesh.source << ' ' << i;
+          EXPECT_LE(around[foot.triangle], (q - p).norm()) << mesh.source << ' ' << i;
+        });
+      }
     }
+    EXPECT_GT(later, 300) << mesh.source;
   }
 }
 
@@ -58,7 +77,7 @@ TEST(SurfaceSearch, FindsTheFlatMinimaThatALookAtAllTrianglesFinds) {
       const Vec3 p = randomPoint(random, 0.05);
       const double bound = random.uniform(0.005, 0.03);
       std::set<std::int32_t> found;
-      s.search.visitMinima(s.net, p, bound, 0, nothingIsKnown, [&](const Foot& foot) { return found.insert(foot.triangle).second; });
+      visitMinima(s, p, bound, [&](const Foot& foot) { found.insert(foot.triangle); });
       for (std::int32_t t = 0; t < s.net.size(); ++t) {
         const FlatPoint flat = closestOnFacet(s.net, t, p);
         // Away from the bound, and where the point is on the facet's or the sharp edge's normal for certain.
@@ -105,7 +124,7 @@ TEST(SurfaceSearch, LooksAtNoMoreOfAFinerMesh) {
     for (int i = 0; i < 300; ++i) {
       const double z = 1 - (2.0 * i + 1) / 300, a = 2.399963229728653 * i;
       const Vec3 p = 0.0265 * Vec3(std::sqrt(1 - z * z) * std::cos(a), std::sqrt(1 - z * z) * std::sin(a), z);
-      s.search.visitMinima(s.net, p, 0.009, 0, nothingIsKnown, [&](const Foot&) { return ++looked_at > 0; });
+      visitMinima(s, p, 0.009, [&](const Foot&) { ++looked_at; });
     }
     EXPECT_GE(looked_at, 300);
     if (level == 3) coarse = looked_at;

@@ -1,0 +1,137 @@
+// surface_touch: one query of a finger on a surface, from the slots that it finds to those that it leaves (contact_slots.h).
+//
+// contact_slots.cpp follows what the slots hold, eases what comes and goes, and writes the slots back; further_contacts.cpp looks for
+// further places (near_parts.h).
+#pragma once
+#include <algorithm>
+
+#include "contact/short_list.h"
+#include "contact/surface/contact_slots.h"
+#include "contact/surface/surface_variant.h"
+
+namespace pincer::contact {
+
+constexpr int kMaxTries = 16;       // places from which a further contact is looked for, per query
+constexpr double kOnePlace = 1e-3;  // of r: contacts nearer than this are one
+
+// Where a try has led.
+struct TriedPlace {
+  Foot foot;
+  Vec3 S, n;
+};
+
+struct FollowedContact {
+  ShellContact contact;
+  int slot = -1;
+  bool is_new = false;
+  bool fades = false;
+  double ease = 0;  // [m]
+
+  double shown() const { return contact.h + ease; }
+};
+
+class SurfaceTouch {
+ public:
+  SurfaceTouch(const TouchedSurface& surface, const Vec3& C, double r, double margin, SurfaceTracker& tracker, PatchCache& cache)
+      : s_(surface),
+        C_(C),
+        r_(r),
+        reach_(r + margin),
+        moved_((C - tracker.p_BC_last).norm()),
+        eases_(surface.variant == SurfaceVariant::smooth),
+        tracker_(tracker),
+        cache_(cache) {}
+
+  SurfaceContacts run() {
+    followSlots();
+    if (list_.empty() && !lost_.empty()) findLost();
+    if (!(nearestHeight() < reach_) && lost_.empty()) takeNearest();
+    if (eases_) fadeLost();
+    if (nearestHeight() < reach_ && !isVouched()) addFurther();
+    return write();
+  }
+
+ private:
+  void followSlots();
+  bool continues(const SurfaceSlot& kept, const ShellContact& contact) const;
+  void lose(int slot);
+  void fadeLost();
+  void findLost();
+  void hold(int slot);
+  void takeNearest();
+  ShellContact nearestWithin(double bound) const;
+  ShellContact straightTo(const SurfaceSeed& seed) const;
+  void addFurther();
+  void tryPlace(const Foot& foot);
+  bool isNew(const ShellContact& candidate) const;
+  bool stands(const Foot& foot, const Vec3& S, const Vec3& n, std::int32_t triangle, const PatchBounds& part) const;
+  bool isFollowed(std::int32_t triangle, const PatchBounds& part) const;
+  bool wasSeen(std::int32_t triangle, const PatchBounds& part) const;
+  double wayFromLook() const { return (C_ - tracker_.look.p_BC).norm() + std::max(0.0, reach_ - tracker_.look.reach); }
+  bool isLookGood() const;
+  bool isVouched() const;
+  void lookAround();
+  bool turnsSlowly(const ShellContact& contact) const;
+  NearParts& nearParts();
+  void examine(std::int32_t place);
+  void vouch(NearParts& near);
+  void keepDeepestFurther(const ShellContact& candidate);
+  SurfaceContacts write();
+
+  bool touches() const { return nearestHeight() < r_; }
+  double nearestHeight() const {
+    double h = kInfinity;
+    for (const FollowedContact& f : list_) h = f.fades ? h : std::min(h, f.contact.h);
+    return h;
+  }
+  Vec3 placeOf(const ShellContact& c) const { return C_ - c.h * c.n; }
+  ShellContact follow(const Foot& foot) const { return followContact(s_.variant, s_.net, cache_, C_, r_, foot); }
+  ShellContact followSlot(int slot, const Foot& start) const {
+    const SurfaceSlot& kept = keptIn(slot);
+    if (s_.variant != SurfaceVariant::smooth || kept.du.isZero(0)) return follow(start);
+    const ShellContact beside = solveShellBeside(s_.net, cache_, C_, start, {kept.du, kept.dv}, C_ - tracker_.p_BC_last);
+    return beside.converged ? beside : follow(start);
+  }
+  const SurfaceSlot& keptIn(int slot) const { return tracker_.slots[at(slot)]; }
+  Foot footOf(int slot) const {
+    const SurfaceSlot& kept = keptIn(slot);
+    return {kept.triangle, {std::max(0.0, 1 - kept.u - kept.v), kept.u, kept.v}};
+  }
+  bool isUsed(int slot) const { return keptIn(slot).triangle >= 0 && keptIn(slot).triangle < s_.net.size(); }
+  // The contact that a slot stands for, as a plane.
+  ShellContact planeOf(int slot) const {
+    const SurfaceSlot& kept = keptIn(slot);
+    return {footOf(slot), kept.n_B, (C_ - kept.p_BS).dot(kept.n_B), false, {}};
+  }
+  static std::size_t at(int i) { return static_cast<std::size_t>(i); }
+  bool isListed(const ShellContact& contact) const {
+    return std::any_of(list_.begin(), list_.end(), [&](const FollowedContact& other) {
+      return !other.fades && (placeOf(other.contact) - placeOf(contact)).norm() < kOnePlace * r_;
+    });
+  }
+  // What it overlaps by beyond what the finger can have come closer.
+  double easeOfNew(const ShellContact& contact) const { return eases_ && was_used_ ? std::max(0.0, r_ - contact.h - moved_) : 0; }
+  void addNew(const ShellContact& contact) { list_.push_back({contact, freeSlot(), true, false, easeOfNew(contact)}); }
+  int freeSlot() const;
+  bool isTaken(int slot) const {
+    return std::any_of(list_.begin(), list_.end(), [&](const FollowedContact& f) { return f.slot == slot; });
+  }
+
+  const TouchedSurface& s_;
+  const Vec3 C_;
+  const double r_, reach_;
+  const double moved_;  // the centre since the last query [m]
+  const bool eases_;    // the other variants show what they do at edges: jump
+  SurfaceTracker& tracker_;
+  PatchCache& cache_;
+  bool was_used_ = false;  // the last query had contacts
+
+  ShortList<FollowedContact, kMaxSurfaceContacts> list_;
+  ShortList<int, kMaxSurfaceContacts> lost_;  // slots whose contacts have lost their solutions
+  std::uint32_t status_ = kQueryOk;
+  QueryCost cost_;
+
+  ShortList<TriedPlace, kMaxTries> seen_;  // where tries have led
+};
+
+}  // namespace pincer::contact
