@@ -135,22 +135,22 @@ bool BlockLu::order() {
   if (nodes_ > max_nodes_) return false;
   if (nodes_ == 1) {  // one body on many contacts
     slots_[0] = order_[0] = first_later_[0] = first_later_[1] = 0;
-    used_ = 1;
+    used_ = products_ = 1;
     return max_blocks_ > 0;
   }
   std::fill(slots_.begin(), slots_.begin() + nodes_ * nodes_, -1);
   used_ = 0;
   std::array<bool, kMaxNodes> done{};
   first_later_[0] = 0;  // while ordering: how many are listed
-  int products = 0;
+  products_ = nodes_;
   for (int k = 0; k < nodes_; ++k) {
     order_[k] = nextNode(done);
     if (!eliminate(order_[k])) return false;
     done[order_[k]] = true;
     first_later_[k + 1] = first_later_[0];
     const int degree = first_later_[0] - (k == 0 ? 0 : first_later_[k]);
-    products += degree * degree;
-    if (products > kMostProducts) return false;
+    products_ += degree * (degree + 1);
+    if (products_ > kMostProducts) return false;
   }
   first_later_[0] = 0;
   return true;

@@ -24,6 +24,7 @@ class BlockLu {
   void begin(int nodes);
   void connect(int a, int b);
   bool order();
+  int products() const { return products_; }  // of blocks, in a factorisation
 
   // Values: clear, add to the row-major blocks H_ab, factorise, solve as often as wanted. False if a block is singular or not finite.
   void clear();
@@ -40,7 +41,7 @@ class BlockLu {
   bool take(int a, int b);
   const double* block(int a, int b) const { return blocks_.data() + kBlock * kBlock * slots_[a * nodes_ + b]; }
 
-  int max_nodes_, max_blocks_, nodes_ = 0, used_ = 0;
+  int max_nodes_, max_blocks_, nodes_ = 0, used_ = 0, products_ = 0;
   std::vector<int> slots_;  // of block (a, b), -1 for none
   std::vector<double> blocks_;
   std::vector<Set> neighbours_;                   // not yet eliminated, while ordering

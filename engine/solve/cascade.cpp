@@ -7,6 +7,7 @@
 #include "engine/solve/interior_point.h"
 #include "engine/solve/newton.h"
 #include "engine/solve/residual.h"
+#include "engine/solve/small_problem.h"
 
 namespace pincer::engine {
 namespace {
@@ -14,14 +15,15 @@ namespace {
 constexpr double kConeRoundOff =
     1e-14;  // relative: an impulse on the cone isn't projected again, so a warm start that fits stays, to the bit
 constexpr int kPolishSteps = 2;
-constexpr double kNearSolution = 1e-8;   // residual from which Newton's method needs a step or two
-constexpr double kShiftedGap = 1e-6;     // of a problem with frozen shift, itself an approximation
-constexpr int kSweepsPerRound = 15;      // enough to leave the basin in which Newton's method failed
-constexpr int kSweepsPerLook = 5;        // a look at the residual costs as much as a sweep
-constexpr int kAffordableContacts = 20;  // beyond, only one attempt from the interior
-constexpr int kCostlyContacts = 80;      // beyond, an interior point costs milliseconds; the next tick begins where this one gives up
-constexpr int kDenseContacts = 40;       // beyond, a dense matrix costs more than any graph of movers that fits
-constexpr int kBlocksPerMover = 40;      // of the sparse matrix: enough for dense graphs of 40 movers, and for long stacks
+constexpr std::int64_t kPerContactScaled = 300, kPerPairScaled = 40;  // multiplications
+constexpr double kNearSolution = 1e-8;                                // residual from which Newton's method needs a step or two
+constexpr double kShiftedGap = 1e-6;                                  // of a problem with frozen shift, itself an approximation
+constexpr int kSweepsPerRound = 15;                                   // enough to leave the basin in which Newton's method failed
+constexpr int kSweepsPerLook = 5;                                     // a look at the residual costs as much as a sweep
+constexpr int kAffordableContacts = 20;                               // beyond, only one attempt from the interior
+constexpr int kCostlyContacts = 80;  // beyond, an interior point costs milliseconds; the next tick begins where this one gives up
+constexpr int kDenseContacts = 40;   // beyond, a dense matrix costs more than any graph of movers that fits
+constexpr int kBlocksPerMover = 40;  // of the sparse matrix: enough for dense graphs of 40 movers, and for long stacks
 
 // The residual that is enough when the tolerance is out of reach, for a problem of speeds of order `reference_speed` [m/s].
 double contentResidual(const SolverOptions& options, double reference_speed) {
@@ -64,23 +66,28 @@ class Search {
     current_.residual = residual;
     std::fill(best_.r, best_.r + problem_.rowCount(), 0.0);
     best_.residual = std::numeric_limits<double>::infinity();
+    const std::int64_t n = problem.contactCount();
+    spend(n * (kPerContactScaled + (problem_.W ? kPerPairScaled * n : 0)), scratch);
   }
 
   SolveMethod run(const SolverOptions& options) {
     if (form_ == EquationForm::kTooLarge) return sweep(options);
     if (finish(options)) return SolveMethod::kNewton;
+    if (isSpent()) return sweep(options);
     restartFromBest();
     evaluate(problem_, current_);
     iterations_ += iterateProximally(problem_, 0.5 * options.tolerance, options.proximal_rounds, equations_, scratch_, current_, trial_);
     keepBest();
     if (isEnough(options)) return SolveMethod::kProximalNewton;
-    if (problem_.contactCount() > kCostlyContacts) return sweep(options);
-    iterations_ += followCentralPath(problem_, nullptr, kNearSolution, options.interior_point_iterations, equations_, scratch_, current_);
-    if (finish(options)) return SolveMethod::kInteriorPoint;
-    if (problem_.contactCount() > kAffordableContacts) return sweep(options);
-    if (iterateOnShift(options)) return SolveMethod::kInteriorPoint;
+    if (problem_.contactCount() > kCostlyContacts || isSpent()) return sweep(options);
+    if (options.interior_point_iterations > 0) {
+      iterations_ += followCentralPath(problem_, nullptr, kNearSolution, options.interior_point_iterations, equations_, scratch_, current_);
+      if (finish(options)) return SolveMethod::kInteriorPoint;
+    }
+    if (problem_.contactCount() > kAffordableContacts || isSpent()) return sweep(options);
+    if (options.shift_updates > 0 && iterateOnShift(options)) return SolveMethod::kInteriorPoint;
     scaleSides(unscaled_, scratch_);
-    for (int sweeps = 0; sweeps < options.gauss_seidel_sweeps; sweeps += kSweepsPerRound) {
+    for (int sweeps = 0; sweeps < options.gauss_seidel_sweeps && !isSpent(); sweeps += kSweepsPerRound) {
       restartFromBest();
       sweepGaussSeidel(problem_, kSweepsPerRound, scratch_, current_);
       iterations_ += kSweepsPerRound;
@@ -104,11 +111,15 @@ class Search {
     keepBest();
     restartFromBest();
     const double enough = contentResidual(options, problem_.speed);
-    for (int sweeps = 0; sweeps < options.large_sweeps && !(best_.residual <= enough); sweeps += kSweepsPerLook) {
+    const bool is_spent = isSpent();
+    if (is_spent) scratch_.operations_left = kNoLimit;  // the few sweeps that every tick gets: contacts that are new have no impulse yet
+    const int most = is_spent ? kSweepsPerLook : options.large_sweeps;
+    for (int sweeps = 0; sweeps < most && !(best_.residual <= enough); sweeps += kSweepsPerLook) {
       sweepGaussSeidel(problem_, kSweepsPerLook, scratch_, current_);
       iterations_ += kSweepsPerLook;
       keepBest();
     }
+    if (is_spent) scratch_.operations_left = -1;
     return best_.residual <= enough ? SolveMethod::kGaussSeidel : SolveMethod::kNotConverged;
   }
 
@@ -125,6 +136,8 @@ class Search {
   int iterations() const { return iterations_; }
 
  private:
+  bool isSpent() const { return scratch_.operations_left < 0; }
+
   // Newton's method from `current`; true if what it finds will do.
   bool finish(const SolverOptions& options) {
     const double tolerance = 0.5 * options.tolerance;  // leaves room for the round-off of scaling back
@@ -214,6 +227,8 @@ SolverScratch::SolverScratch(int contacts, int movers)
 SolveResult solveContacts(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch, VectorMap r, VectorMap u) {
   if (problem.contactCount() == 0) return {};
   project(problem, r.data());
+  SolveResult small;
+  if (solveSmallProblem(problem, options, r.data(), u.data(), small)) return small;
   weighContacts(problem, scratch);
   const double start = weighedResidual(problem, r.data(), scratch, u.data());
   const bool is_close = start <= options.tolerance;

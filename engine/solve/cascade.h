@@ -11,6 +11,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "engine/solve/block_lu.h"
@@ -30,7 +31,14 @@ struct SolverOptions {
   int shift_updates = 3;               // of the interior-point method with frozen shift
   int gauss_seidel_sweeps = 60;
   int large_sweeps = 10;  // of Gauss-Seidel, where contacts are too many and too entangled for anything else
+  // What the iterations of all solves of a tick may cost [s], 0 or 1e-6 .. 10; 0: no limit. Counted by kOperationsPerSecond, not measured, so
+  // that results don't depend on what else the machine does. Where it runs out the best iterate counts, flagged and energy-safe.
+  double budget = 0;
 };
+
+// Multiplications in a second, of iterations as they are counted (contact_equations.h); measured by `pincer bench engine --only solve`.
+constexpr double kOperationsPerSecond = 1e9;
+constexpr std::int64_t kNoLimit = std::numeric_limits<std::int64_t>::max() / 2;
 
 enum class SolveMethod : std::uint8_t { kNoContact, kWarmStart, kNewton, kProximalNewton, kInteriorPoint, kGaussSeidel, kNotConverged };
 
@@ -57,8 +65,9 @@ struct ContactTerms {
 struct SolverScratch {
   SolverScratch(int max_contacts, int max_movers);
 
-  int max_contacts, dense_contacts;  // dense_contacts: up to so many may be treated as a dense matrix
-  std::vector<ContactSides> sides;   // the scaled problem (scaled_problem.h)
+  std::int64_t operations_left = kNoLimit;  // of the budget; less than 0: spent
+  int max_contacts, dense_contacts;         // dense_contacts: up to so many may be treated as a dense matrix
+  std::vector<ContactSides> sides;          // the scaled problem (scaled_problem.h)
   std::vector<double> W, q, scale, y;
   std::vector<double> weight;  // w_i, mean of W_ii's diagonal [1/kg]
   std::vector<double> shift;   // |u_T| at which interior_point.h freezes it
@@ -70,6 +79,12 @@ struct SolverScratch {
   std::vector<int> node;                                    // of movers in movers_lu
   BlockLu movers_lu;
 };
+
+// False, and nothing more may be spent, if that is more than what is left of the budget.
+inline bool spend(std::int64_t operations, SolverScratch& scratch) {
+  scratch.operations_left -= operations;
+  return scratch.operations_left >= 0;
+}
 
 // The slowest motion that counts as motion; residuals are relative to the speeds of the problem, but never to less [m/s].
 constexpr double kVelocityFloor = 1e-6;

@@ -138,7 +138,17 @@ void ContactEquations::setGeneral(int i, const double* E, const double* P) {
   }
 }
 
-bool ContactEquations::factorise() { return form_ == EquationForm::kContacts ? factoriseContacts() : factoriseMovers(); }
+// Multiplications of a factorisation, a solution and what an iteration does around them.
+std::int64_t ContactEquations::cost() const {
+  constexpr std::int64_t kPerContact = 1000, kPerProduct = BlockLu::kBlock * BlockLu::kBlock * BlockLu::kBlock;
+  const std::int64_t m = problem_.rowCount(), contacts = kPerContact * problem_.contactCount();
+  return contacts + (form_ == EquationForm::kContacts ? m * m * (m + 12) / 3 : kPerProduct * scratch_.movers_lu.products());
+}
+
+bool ContactEquations::factorise() {
+  if (!spend(cost(), scratch_)) return false;
+  return form_ == EquationForm::kContacts ? factoriseContacts() : factoriseMovers();
+}
 
 void ContactEquations::solve(double* x) { form_ == EquationForm::kContacts ? solveContacts(x) : solveMovers(x); }
 

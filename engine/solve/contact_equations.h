@@ -27,13 +27,14 @@ class ContactEquations {
   void identify(int i, double epsilon);
   void setGeneral(int i, const double* E, const double* P);
 
-  // False if the equations are singular.
+  // False if the equations are singular, or cost more than what is left of the budget.
   bool factorise();
   // x: b on entry.
   void solve(double* x);
   EquationForm form() const { return form_; }
 
  private:
+  std::int64_t cost() const;
   int assembleRows(int i, int row);
   bool factoriseContacts();
   bool factoriseMovers();

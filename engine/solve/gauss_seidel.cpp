@@ -82,7 +82,7 @@ void sweepGaussSeidel(const ScaledProblem& problem, int sweeps, SolverScratch& s
   for (int i = 0; i < problem.contactCount(); ++i) {
     addImpulse(problem.sides[static_cast<std::size_t>(i)], problem.rows(i), it.r + problem.firstRow(i), problem.y);
   }
-  for (int sweep = 0; sweep < sweeps; ++sweep) {
+  for (int sweep = 0; sweep < sweeps && spend(kPerContactSwept * problem.contactCount(), scratch); ++sweep) {
     for (int i = 0; i < problem.contactCount(); ++i) relaxContact(problem, scratch.terms[static_cast<std::size_t>(i)], i, it);
   }
   evaluate(problem, it);

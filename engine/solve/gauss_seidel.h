@@ -7,6 +7,8 @@
 
 namespace pincer::engine {
 
+constexpr std::int64_t kPerContactSwept = 250;  // multiplications of a sweep
+
 // `sweeps` passes over all contacts, in order, each at a cost linear in their number. `it` is evaluated on return.
 void sweepGaussSeidel(const ScaledProblem& problem, int sweeps, SolverScratch& scratch, Iterate& it);
 

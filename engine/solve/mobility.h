@@ -15,15 +15,21 @@ namespace pincer::engine {
   return even + odd;
 }
 
+// The same where the last three are 0.
+[[gnu::always_inline]] inline double dot3(const double* a, const double* b) { return (a[0] * b[0] + a[2] * b[2]) + a[1] * b[1]; }
+
 // y += A_i^T r_i
 inline void addImpulse(const ContactSides& sides, int rows, const double* r, double* y) {
   withRows(rows, [&](auto count) {
     for (const ContactSide& side : sides) {
       if (side.mover < 0) continue;
       double* const y_b = y + kMoverFreedoms * side.mover;
+      double sum[kMoverFreedoms];  // the compiler can't know that y isn't A
+      for (int j = 0; j < kMoverFreedoms; ++j) sum[j] = y_b[j];
       for (int k = 0; k < count; ++k) {
-        for (int j = 0; j < kMoverFreedoms; ++j) y_b[j] += side.A[k][j] * r[k];
+        for (int j = 0; j < kMoverFreedoms; ++j) sum[j] += side.A[k][j] * r[k];
       }
+      for (int j = 0; j < kMoverFreedoms; ++j) y_b[j] = sum[j];
     }
   });
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/world/impact.h"
+#include "engine/world/push_out.h"
 #include "engine/world/stick_bias.h"
 
 namespace pincer::engine {
@@ -31,6 +32,8 @@ bool rollsOn(double u_n, double turn) {
   return std::abs(turn) > kClosingSpeed && std::abs(u_n - 2 * turn) < kAlike * std::abs(turn);
 }
 
+double largestCorrection(const WorldModel& model, const Contact& c) { return isPushedOut(model, c) ? kDeepSpeed : kLargestCorrection; }
+
 double normalBias(const WorldModel& model, const WorldState& state, const WorldScratch& scratch, Contact& c) {
   if (scratch.h == 0) return impactBias(model, scratch, c);
   const double h = model.options.h;
@@ -39,12 +42,12 @@ double normalBias(const WorldModel& model, const WorldState& state, const WorldS
   if (memory && memory->active) {
     const double turn = turnOfNormal(scratch, state.h_last, c, *memory);
     // What landed in the last tick still has the speed that it landed with: it is stopped like a new contact.
-    if (!memory->closing || rollsOn(u_n, turn)) return std::max(kNormalCorrection * c.phi / h, -kLargestCorrection) + turn;
+    if (!memory->closing || rollsOn(u_n, turn)) return std::max(kNormalCorrection * c.phi / h, -largestCorrection(model, c)) + turn;
   }
   const double phi_start = c.phi - 0.5 * scratch.h * u_n;
   c.closing = std::abs(u_n) > kClosingSpeed;  // also what hops and comes down within the tick
   if (phi_start > 0) return phi_start / scratch.h;
-  return std::max(kNormalCorrection * phi_start / h, -kLargestCorrection);
+  return std::max(kNormalCorrection * phi_start / h, -largestCorrection(model, c));
 }
 
 void fillContact(const WorldModel& model, const WorldState& state, WorldScratch& scratch, int i) {

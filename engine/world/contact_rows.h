@@ -8,7 +8,8 @@
 //                                                                the start of the tick. d_T is the integral of the slip velocity, not the
 //                                                                distance of two material points: that grows by R (w h)^3 / 24 per tick in
 //                                                                pure rolling, and would brake it
-// A correction pushes apart with at most kLargestCorrection, so that deep overlap doesn't explode.
+// A correction pushes apart with at most kLargestCorrection, so that deep overlap doesn't explode; between bodies without joints with at most
+// kDeepSpeed: deeper overlap is undone by moving them (push_out.h), which leaves no velocity behind.
 // Torsion and rolling stick likewise, by the angles that a has turned past b. What resists rolling shares the cone with friction, so that a ball
 // that rolls against it creeps: v = (R + k) w with R k^2 + (I/m + R^2 - e_r^2) k - R e_r^2 = 0, k ~ (5/7) e_r^2 / R for a solid ball. It slows down
 // by mu g k / sqrt(k^2 + e_r^2) ~ (5/7) mu e_r g / R, and stays on a slope iff tan th <= mu e_r / sqrt(R^2 + e_r^2).

@@ -327,6 +327,17 @@ void holdBackImpacts(const WorldModel& model, const WorldState& state, WorldScra
   });
 }
 
+bool impactsWait(const WorldModel& model, const WorldState& state, const WorldScratch& scratch) {
+  for (const auto* pairs : {&scratch.fast_pairs, &scratch.pushed_pairs}) {
+    for (const ImpactPair& pair : *pairs) {
+      if (!isTouching(state, pair.a, pair.b) && !hasLanded(scratch, pair)) return true;
+    }
+  }
+  return model.bounces && std::any_of(scratch.contacts.begin(), scratch.contacts.end(), [&](const Contact& c) {
+           return c.a.kind == SideKind::kBody && c.b.kind == SideKind::kBody && mayBounce(model, state, scratch, c);
+         });
+}
+
 double timeOfImpact(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
   double first = std::numeric_limits<double>::infinity();
   for (const ImpactPair& pair : scratch.impact_pairs) first = std::min(first, ClosingPair(model, state, scratch, pair).time());

@@ -41,6 +41,9 @@ void notePushedPairs(const WorldModel& model, const WorldState& state, WorldScra
 // Takes the contacts of pairs that may hit each other in this tick out of scratch.contacts, and notes the pairs.
 void holdBackImpacts(const WorldModel& model, const WorldState& state, WorldScratch& scratch);
 
+// Whether there are any such.
+bool impactsWait(const WorldModel& model, const WorldState& state, const WorldScratch& scratch);
+
 // When the first of the noted pairs closes [s] after the start of this part of the tick, on the path that the solved contacts give;
 // infinity if none does. Call gatherImpulses before.
 double timeOfImpact(const WorldModel& model, const WorldState& state, WorldScratch& scratch);

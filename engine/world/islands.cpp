@@ -4,6 +4,7 @@
 #include <cmath>
 #include <span>
 
+#include "engine/solve/gauss_seidel.h"
 #include "engine/world/contact_rows.h"
 #include "engine/world/island_bias.h"
 #include "engine/world/island_threads.h"
@@ -13,7 +14,9 @@
 namespace pincer::engine {
 namespace {
 
-constexpr int kSettlingTicks = 24;  // stick offsets halve per tick: from the tolerance to round-off
+constexpr double kLost = 1e-2;       // residual that is no answer
+constexpr int kStoppingSweeps = 30;  // instead
+constexpr int kSettlingTicks = 24;   // stick offsets halve per tick: from the tolerance to round-off
 
 // The number of what moves there in IslandScratch's arrays per mover; -1 for what doesn't.
 int moverOf(const WorldModel& model, const WorldScratch& scratch, const Side& side) {
@@ -23,7 +26,9 @@ int moverOf(const WorldModel& model, const WorldScratch& scratch, const Side& si
     return body.dynamic ? side.index : -1;
   }
   const PointScratch& point = scratch.points[side.index];
-  return point.inverse_mass.isZero(0) && point.inverse_twist <= 0 ? -1 : static_cast<int>(model.bodies.size()) + side.index;
+  const Vec3& inverse_mass = point.inverse_mass;
+  const bool moves = inverse_mass[0] != 0 || inverse_mass[1] != 0 || inverse_mass[2] != 0 || point.inverse_twist > 0;
+  return moves ? static_cast<int>(model.bodies.size()) + side.index : -1;
 }
 
 int rootOf(std::vector<int>& parent, int mover) {
@@ -99,23 +104,32 @@ Mat3 rootOfInertia(const FreeRotation& rotation, const Quat& q_WI) {
 
 void fillPointSide(const Contact& c, int rows, double sign, const PointScratch& point, ContactSide& out) {
   const Vec3 root = sign * point.inverse_mass.cwiseSqrt();
-  for (int k = 0; k < rows; ++k) {
-    for (int j = 0; j < 3; ++j) {
-      const double along = k >= 3 ? 0 : point.turned ? point.R_WA.col(j).dot(c.R_WC.col(k)) : c.R_WC(j, k);
-      out.A[k][j] = root[j] * along;
-      out.A[k][3 + j] = 0;
-    }
+  std::fill(out.A[0], out.A[0] + kMoverFreedoms * rows, 0.0);
+  for (int k = 0; k < 3; ++k) {
+    for (int j = 0; j < 3; ++j) out.A[k][j] = root[j] * (point.turned ? point.R_WA.col(j).dot(c.R_WC.col(k)) : c.R_WC(j, k));
   }
   if (rows > kTorsionRow) out.A[kTorsionRow][3] = sign * radiusOf(c, kTorsionRow) * std::sqrt(point.inverse_twist);
 }
 
-void fillBodySide(const Contact& c, int rows, double sign, const Vec3& arm_W, double root_mass, const Mat3& F, ContactSide& out) {
+// F  of a sphere a multiple of the identity
+void fillBodySide(const Contact& c, int rows, double sign, const Vec3& arm_W, double root_mass, const Mat3& F, bool is_sphere,
+                  ContactSide& out) {
   const double linear = sign * root_mass;
-  for (int k = 0; k < rows; ++k) {
-    const Vec3 ang = k < 3 ? Vec3(arm_W.cross(c.R_WC.col(k))) : Vec3(radiusOf(c, k) * axisOf(c, k));
+  const Vec3 arm = is_sphere ? Vec3((sign * F(0, 0)) * arm_W) : arm_W;
+  for (int k = 0; k < 3; ++k) {
+    const double x = c.R_WC(0, k), y = c.R_WC(1, k), z = c.R_WC(2, k);
+    const double ang[3] = {arm[1] * z - arm[2] * y, arm[2] * x - arm[0] * z, arm[0] * y - arm[1] * x};
+    double* const A = out.A[k];
+    A[0] = linear * x;
+    A[1] = linear * y;
+    A[2] = linear * z;
+    for (int j = 0; j < 3; ++j) A[3 + j] = is_sphere ? ang[j] : sign * (F(0, j) * ang[0] + F(1, j) * ang[1] + F(2, j) * ang[2]);
+  }
+  for (int k = kTorsionRow; k < rows; ++k) {
+    const Vec3 ang = (sign * radiusOf(c, k)) * axisOf(c, k);
     for (int j = 0; j < 3; ++j) {
-      out.A[k][j] = k < 3 ? linear * c.R_WC(j, k) : 0;
-      out.A[k][3 + j] = sign * (F(0, j) * ang[0] + F(1, j) * ang[1] + F(2, j) * ang[2]);
+      out.A[k][j] = 0;
+      out.A[k][3 + j] = F(0, j) * ang[0] + F(1, j) * ang[1] + F(2, j) * ang[2];
     }
   }
 }
@@ -125,11 +139,15 @@ void fillSide(const WorldModel& model, const WorldScratch& scratch, const Contac
   out.mover = number;
   if (mover < 0) return;
   const Side& side = is_a ? c.a : c.b;
+  out.is_point = side.kind == SideKind::kPoint && rows == kTorsionRow;
   const double sign = is_a ? 1 : -1;
   if (side.kind == SideKind::kPoint) return fillPointSide(c, rows, sign, scratch.points[side.index], out);
   const BodyModel& body = model.bodies[side.index];
   const Vec3& arm_W = is_a ? c.arm_a_W : c.arm_b_W;
-  if (body.joint_group < 0) return fillBodySide(c, rows, sign, arm_W, body.root_inverse_mass, s.root_inertia[mover], out);
+  if (body.joint_group < 0) {
+    const bool is_sphere = body.rotation.kind == FreeRotation::Kind::kSpherical;
+    return fillBodySide(c, rows, sign, arm_W, body.root_inverse_mass, s.root_inertia[mover], is_sphere, out);
+  }
   for (int k = 0; k < rows; ++k) std::fill(out.A[k], out.A[k] + kMoverFreedoms, 0.0);
   addJointedSide(model, scratch, c, rows, sign, side.index, arm_W, out);
 }
@@ -139,6 +157,7 @@ void joinSides(int rows, ContactSides& sides) {
   for (int k = 0; k < rows; ++k) {
     for (int j = 0; j < kMoverFreedoms; ++j) sides[0].A[k][j] += sides[1].A[k][j];
   }
+  sides[0].is_point = false;
   sides[1].mover = -1;
 }
 
@@ -157,24 +176,28 @@ void gather(const WorldModel& model, const WorldScratch& scratch, int k, int row
   Island& island = s.islands[k];
   island.row = row;
   int* const first_row = s.first_row.data() + island.place + k;
+  const int* const order = s.order.data() + island.place;
+  ContactSides* const all_sides = s.sides.data() + island.place;
+  double *const mu = s.mu.data() + island.place, *const q = s.q.data() + row, *const r = s.r.data() + row;
+  int rows_before = 0;
   for (int n = 0; n < island.contacts; ++n) {
-    const int i = s.order[island.place + n], from = scratch.first_row[i], rows = scratch.first_row[i + 1] - from;
+    const int i = order[n], from = scratch.first_row[i], rows = scratch.first_row[i + 1] - from;
     const Contact& c = scratch.contacts[i];
     const ContactEnds ends = s.ends[i];
-    ContactSides& sides = s.sides[island.place + n];
+    ContactSides& sides = all_sides[n];
     fillSide(model, scratch, c, rows, true, ends.a, numberOf(model, scratch, c.a, ends.a, island, s), s, sides[0]);
     fillSide(model, scratch, c, rows, false, ends.b, numberOf(model, scratch, c.b, ends.b, island, s), s, sides[1]);
     if (ends.a >= 0 && ends.a == ends.b) joinSides(rows, sides);
-    first_row[n] = island.rows;
-    s.mu[island.place + n] = scratch.mu[i];
+    first_row[n] = rows_before;
+    mu[n] = scratch.mu[i];
     island.settling = std::max(island.settling, c.settling);
     for (int l = 0; l < rows; ++l) {
-      s.q[row + island.rows + l] = scratch.q[from + l];
-      s.r[row + island.rows + l] = scratch.r[from + l];
+      q[rows_before + l] = scratch.q[from + l];
+      r[rows_before + l] = scratch.r[from + l];
     }
-    island.rows += rows;
+    rows_before += rows;
   }
-  first_row[island.contacts] = island.rows;
+  first_row[island.contacts] = island.rows = rows_before;
 }
 
 // Until when warm starts have to be exact to round-off: from an answer that took iterations until one that is, or until it is clear that none comes.
@@ -218,7 +241,7 @@ IslandScratch::IslandScratch(const WorldModel& model) {
   sides.resize(n);
   root_inertia.resize(movers);
   mu.resize(n);
-  for (std::vector<double>* rows : {&q, &r, &u}) rows->resize(m);
+  for (std::vector<double>* per_row : {&q, &r, &u}) per_row->resize(m);
   for (int t = 0; t < model.options.threads; ++t)
     solvers.push_back(std::make_unique<SolverScratch>(model.options.max_contacts, static_cast<int>(movers)));
   if (model.options.threads > 1) threads = std::make_unique<IslandThreads>(model.options.threads);
@@ -228,6 +251,33 @@ IslandScratch::~IslandScratch() = default;
 IslandScratch::IslandScratch(IslandScratch&&) noexcept = default;
 
 namespace {
+
+// What is kept of the budget for stopOnly: support doesn't depend on it.
+std::int64_t reserveFor(const Island& island) { return kStoppingSweeps * kPerContactSwept * island.contacts; }
+
+// Contacts that contradict each other have no answer: what overlaps in all directions can't be pushed apart. Then they only stop what closes:
+// biases that push are left out, and sweeps from no impulse at all each take energy away. Support is better than falling through the floor.
+void stopOnly(const ContactProblem& problem, const SolverOptions& options, Island& island, SolverScratch& memory, WorldScratch& scratch) {
+  IslandScratch& s = scratch.islands;
+  double *const q = s.q.data() + island.row, *const r = s.r.data() + island.row;
+  for (int n = 0; n < island.contacts; ++n) {
+    const Contact& c = scratch.contacts[s.order[island.place + n]];
+    const int first = problem.firstRow(n);
+    for (int k = 0; k < problem.rows(n); ++k) {
+      if (k != kNormalRow || c.bias_C[k] < 0) q[first + k] -= (k >= kTorsionRow ? radiusOf(c, k) : 1) * c.bias_C[k];
+    }
+  }
+  std::fill(r, r + island.rows, 0.0);
+  SolverOptions sweeps = options;
+  sweeps.newton_iterations = sweeps.proximal_rounds = sweeps.interior_point_iterations = sweeps.shift_updates = 0;
+  sweeps.gauss_seidel_sweeps = sweeps.large_sweeps = kStoppingSweeps;
+  const SolveResult lost = island.result;
+  const std::int64_t left = memory.operations_left;
+  memory.operations_left = kNoLimit;
+  solveContacts(problem, sweeps, memory, VectorMap(r, island.rows), VectorMap(s.u.data() + island.row, island.rows));
+  memory.operations_left = left - reserveFor(island);
+  island.result = lost;
+}
 
 void solveIsland(const WorldModel& model, int k, int thread, WorldScratch& scratch) {
   IslandScratch& s = scratch.islands;
@@ -243,8 +293,15 @@ void solveIsland(const WorldModel& model, int k, int thread, WorldScratch& scrat
     fitIslandBiases(scratch.h, kTangentCorrection / model.options.h, problem, s.r.data() + island.row, s.q.data() + island.row,
                     {s.order.data() + island.place, n}, scratch.contacts, *s.solvers[thread]);
   }
-  island.result = solveContacts(problem, model.options.solver, *s.solvers[thread], VectorMap(s.r.data() + island.row, island.rows),
+  SolverScratch& memory = *s.solvers[thread];
+  const bool is_limited = scratch.operations_left < kNoLimit;
+  const std::int64_t share = is_limited ? std::max<std::int64_t>(scratch.operations_left, 0) * island.rows / s.rows : kNoLimit;
+  const std::int64_t reserve = is_limited ? reserveFor(island) : 0;
+  memory.operations_left = share - reserve;
+  island.result = solveContacts(problem, model.options.solver, memory, VectorMap(s.r.data() + island.row, island.rows),
                                 VectorMap(s.u.data() + island.row, island.rows));
+  if (!island.result.converged && island.result.residual > kLost) stopOnly(problem, model.options.solver, island, memory, scratch);
+  island.operations = is_limited ? share - reserve - memory.operations_left : 0;
 }
 
 }  // namespace
@@ -267,16 +324,20 @@ void solveIslands(const WorldModel& model, WorldScratch& scratch) {
     gather(model, scratch, k, row, s);
     row += s.islands[k].rows;
   }
+  s.rows = row;
   const auto solve = [&](int k, int thread) { solveIsland(model, k, thread, scratch); };
   if (s.threads && count > 1) {
     s.threads->run(count, solve);
   } else {
     for (int k = 0; k < count; ++k) solve(k, 0);
   }
+  std::int64_t operations = 0;
   for (const Island& island : s.islands) {
     scatter(s, island, model.options.solver.tolerance, scratch);
     addResult(island.result, scratch.solve);
+    operations += island.operations;
   }
+  if (scratch.operations_left < kNoLimit) scratch.operations_left -= operations;  // below 0 if one of them ran out
 }
 
 }  // namespace pincer::engine

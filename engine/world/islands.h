@@ -20,7 +20,8 @@ class IslandThreads;
 // Contacts place .. place + contacts - 1 of IslandScratch's arrays.
 struct Island {
   int place = 0, contacts = 0, row = 0, rows = 0, movers = 0;
-  int settling = 0;  // the most of its contacts (state.h)
+  std::int64_t operations = 0;  // that its solution took (solve/cascade.h)
+  int settling = 0;             // the most of its contacts (state.h)
   SolveResult result;
 };
 
@@ -36,6 +37,7 @@ struct IslandScratch {
   IslandScratch(IslandScratch&&) noexcept;
 
   std::vector<Island> islands;
+  int rows = 0;                     // of all islands
   std::vector<int> order;           // which contact is at a place
   std::vector<int> parent, number;  // per mover: union-find; its number within its island
   std::vector<int> island_of;       // per root mover; per contact, while sorting

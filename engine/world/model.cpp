@@ -151,6 +151,8 @@ WorldBuilder::WorldBuilder(const WorldOptions& options) {
   requireRange("max_contacts", options.max_contacts, 4, 16384, "64 suits hand-sized scenes; four to six per body suit heaps.");
   requireRange("threads", options.threads, 1, 16, "1 suits hand-sized scenes; more pay where many heaps lie apart.");
   requireRange("solver.tolerance", options.solver.tolerance, 1e-14, 1e-2, "1e-10 is the usual one.");
+  if (options.solver.budget != 0)
+    requireRange("solver.budget", options.solver.budget, 1e-6, 10, "In seconds; half a tick leaves time for everything else.");
   if (options.position_tolerance != 0)
     requireRange("position_tolerance", options.position_tolerance, 1e-12, 1, "In metres; 1e-6 is a micrometre per tick.");
   requireRange("max_parts", options.max_parts, 2, 1024, "16 suits a tick of a millisecond.");

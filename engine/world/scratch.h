@@ -80,6 +80,7 @@ struct BodyScratch : MoverScratch {
   Mat3 R_WB_mid = Mat3::Identity();             // X_WB_mid.q: a matrix turns many vectors in half the time
   Mat3 inverse_inertia_W = Mat3::Zero();        // at the middle; of bodies in joints, and in impacts
   Vec3 angular_impulse_W = Vec3::Zero();        // about the centre of mass [N m s]
+  Motion push;                                  // out of overlap, over the tick, see push_out.h: a way [m] and a turn [rad]
   Vec3 joint_angular_impulse_W = Vec3::Zero();  // the part of it that joints would give without contact; its linear part is in `free`
 };
 struct PointScratch : MoverScratch {
@@ -138,7 +139,8 @@ struct RestScratch {
 struct WorldScratch {
   explicit WorldScratch(const WorldModel& model);
 
-  double h;  // length of this part of the tick [s]; 0 in an impact, which takes no time
+  std::int64_t operations_left = kNoLimit;  // of the solver's budget for this tick (solve/cascade.h)
+  double h;                                 // length of this part of the tick [s]; 0 in an impact, which takes no time
   std::vector<BodyScratch> bodies;
   std::vector<PointScratch> points;
   std::vector<Contact> contacts;  // capacity options.max_contacts

@@ -32,6 +32,8 @@ enum StepStatus : std::uint32_t {
   kStateNotFinite = 1u << 2,   // a NaN or infinity came out of the tick; the state isn't to be used any more. Restore a snapshot
   kInputNotFinite = 1u << 3,   // a target, motion or force wasn't finite; the point kept its last target, the body its place
   kImpactsCut = 1u << 4,       // more impacts than kMostImpacts in one tick: the rest landed. Shorten the tick
+  kBudgetSpent =
+      1u << 6,  // solver.budget ran out: the tick isn't cut any more, impulses are the best iterate. Raise it, or simplify the scene
   kToleranceNotMet = 1u << 5,  // max_parts were too few for position_tolerance. Raise it, or the tolerance
 };
 

@@ -3,15 +3,17 @@
 #include <cmath>
 
 #include "engine/world/impact.h"
+#include "engine/world/push_out.h"
 #include "engine/world/rest.h"
 #include "engine/world/step.h"
 
 namespace pincer::engine {
 namespace {
 
-constexpr double kFarTurn = 0.5;        // of what touches, in one part of a tick [rad]
-constexpr int kMostTurningParts = 64;   // that a tick is cut into for that
-constexpr double kShortestPart = 1e-9;  // of a tick: a hit sooner than that is a hit at once
+constexpr double kFarTurn = 0.5;                                                // of what touches, in one part of a tick [rad]
+constexpr int kMostTurningParts = 64;                                           // that a tick is cut into for that
+constexpr std::int64_t kPerBody = 300, kPerContact = 1000, kPerSearch = 10000;  // multiplications besides the solver's; the last: for a hit
+constexpr double kShortestPart = 1e-9;                                          // of a tick: a hit sooner than that is a hit at once
 
 bool isFinite(const MotionInput& in) {
   return in.X_WB.p.allFinite() && in.X_WB.q.coeffs().allFinite() && in.motion.v_W.allFinite() && in.motion.w_W.allFinite();
@@ -49,6 +51,8 @@ class Tick {
   StepReport run() {
     if (model_.options.sleep && repeatsItself(state_, scratch_, inputs_) && (!source_ || source_->repeatsItself())) return sleep();
     scratch_.contacts_dropped = false;
+    const double budget = model_.options.solver.budget;
+    scratch_.operations_left = budget > 0 ? static_cast<std::int64_t>(budget * kOperationsPerSecond) : kNoLimit;
     for (std::size_t i = 0; i < state_.points.size(); ++i) scratch_.points[i].v_tick_W = state_.points[i].v_W;
     if (model_.options.position_tolerance > 0) {
       runToTolerance();
@@ -60,6 +64,7 @@ class Tick {
     report_.contacts = static_cast<int>(scratch_.contacts.size());
     report_.solve = scratch_.solve;
     if (scratch_.contacts_dropped) report_.status |= kContactsDropped;
+    if (isSpent()) report_.status |= kBudgetSpent;
     if (!isFinite(state_)) report_.status |= kStateNotFinite;
     if (model_.options.sleep) noteRest(state_, inputs_, report_.status == kStepOk && impacts_ == 0, scratch_);
     return report_;
@@ -85,7 +90,7 @@ class Tick {
     while (parts < model_.options.max_parts && turnsFar(parts)) parts *= 2;
     runInParts(parts);
     for (;;) {
-      if (2 * parts > model_.options.max_parts) {
+      if (2 * parts > model_.options.max_parts || isSpent()) {
         report_.status |= kToleranceNotMet;
         break;
       }
@@ -126,22 +131,41 @@ class Tick {
   // To the end of this part, or as far as what touches doesn't turn too far, or to the next impact and through it.
   void passTime() {
     const double rest = left_ - stop_;
-    double h = rest < 2.001 * part_ ? rest : 2 * part_;  // leaves no crumb of round-off
+    double h = rest < 2.001 * part_ || isSpent() ? rest : 2 * part_;  // leaves no crumb of round-off
     attempt(h);
-    for (; somethingTurnsFar(h) && h > model_.options.h / kMostTurningParts; attempt(h)) h *= 0.5;
+    for (; !isSpent() && somethingTurnsFar(h) && h > model_.options.h / kMostTurningParts; attempt(h)) h *= 0.5;
     part_ = h;
-    if (impacts_ < kMostImpacts) notePushedPairs(model_, state_, scratch_);
+    if (mayHit()) notePushedPairs(model_, state_, scratch_);
     double t = h;
-    if (!scratch_.impact_pairs.empty()) t = timeOfImpact(model_, state_, scratch_);
+    if (!scratch_.impact_pairs.empty()) t = searchHit();
     if (!(t < h)) return finish(h);
     if (t > kShortestPart * model_.options.h) {
-      attempt(t);
+      t = cutAt(t);
       conclude();
       left_ -= t;
     }
     applyImpacts(model_, state_, scratch_, source_);
     note();
     ++impacts_;
+  }
+
+  // Attempts the part up to the hit. What fingers push goes another way there than over the whole part: a hit that comes sooner on that way
+  // cuts it again.
+  double cutAt(double t) {
+    constexpr int kMostCuts = 4;
+    constexpr double kSooner = 0.999;
+    attempt(t);
+    for (int n = 0; n < kMostCuts && somethingPushesImpacts(); ++n) {
+      const double sooner = searchHit();
+      if (!(sooner < kSooner * t && sooner > kShortestPart * model_.options.h)) break;
+      attempt(t = sooner);
+    }
+    return t;
+  }
+
+  bool somethingPushesImpacts() const {
+    return std::any_of(scratch_.impact_pairs.begin(), scratch_.impact_pairs.end(),
+                       [&](const ImpactPair& p) { return scratch_.bodies[p.a].touched || scratch_.bodies[p.b].touched; });
   }
 
   void finish(double h) {
@@ -164,6 +188,7 @@ class Tick {
   void conclude() {
     note();
     advance(model_, state_, scratch_);
+    pushOut(model_, state_, scratch_);
     ++report_.parts;
     mark(scratch_, Stage::kAdvance);
   }
@@ -176,16 +201,29 @@ class Tick {
     collideBodies(model_, scratch_);
     mark(scratch_, Stage::kCollideBodies);
     if (source_) source_->addContacts(scratch_);
-    if (impacts_ < kMostImpacts) {
+    if (mayHit()) {
       holdBackImpacts(model_, state_, scratch_);
     } else {
       scratch_.impact_pairs.clear();
-      report_.status |= kImpactsCut;
+      if (impactsWait(model_, state_, scratch_)) report_.status |= kImpactsCut;
     }
     solveContacts(model_, state_, scratch_);
     gatherImpulses(model_, scratch_);
     mark(scratch_, Stage::kSolve);
+    charge(kPerBody * std::ssize(scratch_.bodies) + kPerContact * std::ssize(scratch_.contacts));
   }
+
+  double searchHit() {
+    charge(kPerSearch * std::ssize(scratch_.impact_pairs));
+    return timeOfImpact(model_, state_, scratch_);
+  }
+
+  void charge(std::int64_t operations) {
+    if (scratch_.operations_left < kNoLimit) scratch_.operations_left -= operations;
+  }
+
+  bool isSpent() const { return scratch_.operations_left < 0; }
+  bool mayHit() const { return impacts_ < kMostImpacts && !isSpent(); }
 
   void note() {
     if (!scratch_.solve.converged) report_.status |= kSolverNotConverged;

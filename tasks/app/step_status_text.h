@@ -15,7 +15,7 @@ struct StatusKind {
   const char* sentence;  // what happened, and what to change
 };
 
-constexpr std::array<StatusKind, 6> kStatusKinds = {{
+constexpr std::array<StatusKind, 7> kStatusKinds = {{
     {engine::kSolverNotConverged, "solver_not_converged",
      "the contact solver stopped before its tolerance; its impulses are safe, but not exact. Loosen solver.tolerance, or look for contacts "
      "that "
@@ -26,6 +26,8 @@ constexpr std::array<StatusKind, 6> kStatusKinds = {{
      "a number overflowed; the run was ended. Look for extreme masses, velocities or stiffnesses."},
     {engine::kInputNotFinite, "input_not_finite", "a finger's target wasn't a number; the finger stayed at its last one."},
     {engine::kImpactsCut, "impacts_cut", "bodies hit each other more often than a tick can be cut; some hits landed. Shorten the tick."},
+    {engine::kBudgetSpent, "budget_spent",
+     "the solver's budget ran out: the best iterate counts. Raise solver.budget, or simplify the scene."},
     {engine::kToleranceNotMet, "tolerance_not_met",
      "solver.max_parts were too few for solver.position_tolerance. Raise max_parts, or the tolerance."},
 }};

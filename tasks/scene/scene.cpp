@@ -17,6 +17,7 @@ constexpr NumberRule kTick = {.min = 1e-5, .max = 1e-2, .remedy = "In seconds; a
 constexpr NumberRule kDuration = {.min = 0, .max = 1e6, .min_open = true, .remedy = "In seconds."};
 constexpr NumberRule kTolerance = {.min = 1e-14, .max = 1e-2, .remedy = "Of the solver's relative residual; usual: 1e-10."};
 
+constexpr NumberRule kBudget = {.min = 1e-6, .max = 10, .remedy = "In seconds; half a tick leaves time for everything else."};
 constexpr NumberRule kPositionTolerance = {.min = 1e-12, .max = 1, .remedy = "Position error per tick in metres; 1e-6 is a micrometre."};
 
 void checkVersion(const JsonValue& json) {
@@ -30,6 +31,7 @@ void readSolver(const JsonValue& json, engine::WorldOptions& options) {
   if (const JsonValue* v = json.find("max_contacts")) options.max_contacts = v->integer(4, 256, "A whole number of contacts.");
   if (const JsonValue* v = json.find("position_tolerance")) options.position_tolerance = v->number(kPositionTolerance);
   if (const JsonValue* v = json.find("max_parts")) options.max_parts = v->integer(2, 1024, "How many parts a tick may be cut into.");
+  if (const JsonValue* v = json.find("budget")) options.solver.budget = v->number(kBudget);
   if (const JsonValue* v = json.find("sleep")) options.sleep = v->boolean();
   if (const JsonValue* v = json.find("contact_margin")) options.contact_margin = v->number(kLength);
 }

@@ -1,0 +1,219 @@
+#include "engine/solve/small_problem.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/solve/cone.h"
+#include "engine/solve/mobility.h"
+#include "engine/solve/residual.h"
+
+namespace pincer::engine {
+namespace {
+
+constexpr double kSmallEpsilon = 1e-11;  // of w_i: far above round-off, far below what one contact gives
+constexpr int kSmallSteps = 4;           // more are a sign that full steps don't do
+constexpr int kSmallPolishSteps = 2;
+
+// b becomes the solution of A x = b, by elimination with row pivots. False if a pivot is 0 or not finite.
+template <int m>
+bool eliminateRows(double (&A)[m][m], double (&b)[m]) {
+  double inverse[m];
+  for (int k = 0; k < m; ++k) {
+    int pivot = k;
+    for (int i = k + 1; i < m; ++i) {
+      if (std::abs(A[i][k]) > std::abs(A[pivot][k])) pivot = i;
+    }
+    if (pivot != k) {
+      std::swap(A[pivot], A[k]);
+      std::swap(b[pivot], b[k]);
+    }
+    if (!(std::abs(A[k][k]) > 0) || !std::isfinite(A[k][k])) return false;
+    inverse[k] = 1 / A[k][k];
+    for (int i = k + 1; i < m; ++i) {
+      const double factor = A[i][k] * inverse[k];
+      if (factor == 0) continue;
+      for (int j = k + 1; j < m; ++j) A[i][j] -= factor * A[k][j];
+      b[i] -= factor * b[k];
+    }
+  }
+  for (int k = m - 1; k >= 0; --k) {
+    for (int j = k + 1; j < m; ++j) b[k] -= A[k][j] * b[j];
+    b[k] *= inverse[k];
+  }
+  return true;
+}
+
+// `count` contacts of `rows` rows each.
+template <int count, int rows>
+class SmallProblem {
+ public:
+  static constexpr int m = count * rows;
+
+  explicit SmallProblem(const ContactProblem& problem) : mu_(problem.mu.data()), speed_(referenceSpeed(problem)) {
+    const double* const q = problem.q.data();
+    std::copy(q, q + m, q_);
+    for (int i = 0; i < count; ++i) {
+      fillOwn(problem.sides[static_cast<std::size_t>(i)], rows * i);
+      double trace = 0;
+      for (int k = rows * i; k < rows * (i + 1); ++k) trace += W_[k][k];
+      w_[i] = trace / rows;
+    }
+    if (count == 2) fillCoupling(problem.sides[0], problem.sides[1]);
+  }
+
+  bool solve(const SolverOptions& options, bool strict, double* r_out, double* u_out, SolveResult& result) {
+    std::copy(r_out, r_out + m, r_);
+    const double start = evaluate();
+    const bool is_close = start <= options.tolerance;
+    result = {SolveMethod::kWarmStart, 0, start, start, true};
+    if (is_close && !(strict && start > kStrictness * options.tolerance)) {
+      std::copy(u_, u_ + m, u_out);
+      return true;
+    }
+    const double enough = is_close ? kStrictness * options.tolerance : options.tolerance;
+    double best = is_close ? start : options.tolerance;  // a residual above is no answer
+    bool found = false;
+    if (is_close) keep(r_out, u_out);
+    const int steps = std::min(is_close ? kSmallPolishSteps : kSmallSteps, options.newton_iterations);
+    for (int n = 0; n < steps; ++n) {
+      if (!step()) break;
+      ++result.iterations;
+      const double residual = evaluate();
+      if (!std::isfinite(residual)) break;
+      if (residual > best) continue;
+      found = true;
+      best = result.residual = residual;
+      keep(r_out, u_out);
+      if (residual <= enough) break;
+    }
+    result.method = SolveMethod::kNewton;
+    return found || is_close;
+  }
+
+ private:
+  void keep(double* r_out, double* u_out) const {
+    std::copy(r_, r_ + m, r_out);
+    std::copy(u_, u_ + m, u_out);
+  }
+
+  void fillOwn(const ContactSides& sides, int first) {
+    for (int k = 0; k < rows; ++k) {
+      for (int l = 0; l <= k; ++l) {
+        double sum = 0;
+        for (const ContactSide& side : sides) {
+          if (side.mover >= 0) sum += side.is_point ? dot3(side.A[k], side.A[l]) : dot6(side.A[k], side.A[l]);
+        }
+        W_[first + k][first + l] = W_[first + l][first + k] = sum;
+      }
+    }
+  }
+
+  void fillCoupling(const ContactSides& a, const ContactSides& b) {
+    for (int k = 0; k < rows; ++k) std::fill(W_[k] + rows, W_[k] + m, 0.0);
+    for (const ContactSide& x : a) {
+      for (const ContactSide& y : b) {
+        if (x.mover < 0 || x.mover != y.mover) continue;
+        for (int k = 0; k < rows; ++k) {
+          for (int l = 0; l < rows; ++l) W_[k][rows + l] += dot6(x.A[k], y.A[l]);
+        }
+      }
+    }
+    for (int k = 0; k < rows; ++k) {
+      for (int l = rows; l < m; ++l) W_[l][k] = W_[k][l];
+    }
+  }
+
+  // u, and the residual.
+  double evaluate() {
+    for (int k = 0; k < m; ++k) u_[k] = q_[k];
+    for (int l = 0; l < m; ++l) {
+      for (int k = 0; k < m; ++k) u_[k] += W_[l][k] * r_[l];
+    }
+    WorstResidual worst;
+    for (int i = 0; i < count; ++i) {
+      const int first = rows * i;
+      worst.add(naturalMap2(r_ + first, u_ + first, rows, mu_[i], w_[i]), u_[first + kNormalRow], w_[i] * r_[first + kNormalRow]);
+    }
+    return worst.relativeTo(speed_);
+  }
+
+  // A full step of Newton's method.
+  bool step() {
+    for (int i = 0; i < count; ++i) linearise(i);
+    if (!eliminateRows(J_, b_)) return false;
+    for (int i = 0; i < count; ++i) {
+      double* const r_i = r_ + rows * i;
+      for (int k = 0; k < rows; ++k) r_i[k] += b_[rows * i + k];
+      projectOntoCone(r_i, rows, mu_[i], r_i);
+    }
+    return true;
+  }
+
+  void linearise(int i) {
+    const int first = rows * i;
+    const double w = w_[i];
+    double y[rows];
+    for (int k = 0; k < rows; ++k) y[k] = w * r_[first + k] - u_[first + k];
+    const ContactMode mode = contactMode(y, rows, mu_[i]);
+    if (mode == ContactMode::kOpen) {
+      for (int k = first; k < first + rows; ++k) {
+        std::fill(J_[k], J_[k] + m, 0.0);
+        J_[k][k] = w;
+        b_[k] = -w * r_[k];
+      }
+      return;
+    }
+    for (int k = first; k < first + rows; ++k) {
+      std::copy(W_[k], W_[k] + m, J_[k]);
+      b_[k] = -u_[k];
+    }
+    if (mode == ContactMode::kSlide) slide(i, y);
+    for (int k = first; k < first + rows; ++k) J_[k][k] += kSmallEpsilon * w;
+  }
+
+  // The tangential rows: D W + w (I - D), row k: s W_k + (mu W_n - s t.W_T) t_k, and w ((1 - s) e_k + s t_k t - mu t_k e_n).
+  void slide(int i, const double* y) {
+    const int first = rows * i;
+    const double w = w_[i];
+    const SlideDerivative d = slideDerivative(y, rows, mu_[i]);
+    double along[m];
+    for (int j = 0; j < m; ++j) along[j] = d.mu * W_[first + kNormalRow][j];
+    for (int k = 0; k < rows; ++k) {
+      if (k == kNormalRow) continue;
+      for (int j = 0; j < m; ++j) along[j] -= d.s * d.t[k] * W_[first + k][j];
+    }
+    for (int k = 0; k < rows; ++k) {
+      if (k == kNormalRow) continue;
+      double* const row = J_[first + k];
+      for (int j = 0; j < m; ++j) row[j] = d.s * row[j] + d.t[k] * along[j];
+      for (int l = 0; l < rows; ++l) row[first + l] += w * d.t[k] * (l == kNormalRow ? -d.mu : d.s * d.t[l]);
+      row[first + k] += w * (1 - d.s);
+      b_[first + k] = d.s * y[k] - w * r_[first + k];
+    }
+  }
+
+  const double* mu_;
+  const double speed_;
+  double w_[count];
+  alignas(16) double W_[m][m];  // [1/kg]
+  alignas(16) double J_[m][m];
+  alignas(16) double q_[m], r_[m], u_[m], b_[m];
+};
+
+template <int count, int rows>
+bool solveAs(const ContactProblem& problem, const SolverOptions& options, double* r, double* u, SolveResult& result) {
+  return SmallProblem<count, rows>(problem).solve(options, problem.strict, r, u, result);
+}
+
+}  // namespace
+
+bool solveSmallProblem(const ContactProblem& problem, const SolverOptions& options, double* r, double* u, SolveResult& result) {
+  const int n = problem.contactCount();
+  if (n > 2) return false;
+  const int rows = problem.rows(0);
+  if (rows > 4 || problem.rowCount() != n * rows) return false;
+  if (rows == 3) return n == 1 ? solveAs<1, 3>(problem, options, r, u, result) : solveAs<2, 3>(problem, options, r, u, result);
+  return n == 1 ? solveAs<1, 4>(problem, options, r, u, result) : solveAs<2, 4>(problem, options, r, u, result);
+}
+
+}  // namespace pincer::engine

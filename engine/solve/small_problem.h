@@ -1,0 +1,20 @@
+// small_problem: Newton's method (newton.h) for one or two contacts of three or four rows, the usual grasp, with all sizes known to the compiler.
+//
+//   u = W r + q,   y_i = w_i r_i - u_i,   w_i the mean of W_ii's diagonal
+//   open   (y_n <= 0)              dr_i = -r_i
+//   stick  (|y_T| <= mu y_n)       (W dr)_i = -u_i
+//   slide                          w_i (I - D) dr_i + D (W dr)_i = -(w_i r_T - s y_T, u_n),   D as in cone.h's SlideDerivative
+//
+// W is stored whole, in velocities per impulse: nothing is scaled, and the warm start's residual costs no more than by the factors of W.
+// Full steps only; what they don't solve is left to the cascade, from the same warm start.
+// Source: as newton.h.
+#pragma once
+#include "engine/solve/cascade.h"
+
+namespace pincer::engine {
+
+// True if that solved `problem`: then r, u and `result` are what solveContacts returns. Else r is as before; u isn't meant to be read.
+//   r  warm start, in the cones
+bool solveSmallProblem(const ContactProblem& problem, const SolverOptions& options, double* r, double* u, SolveResult& result);
+
+}  // namespace pincer::engine

@@ -1,0 +1,87 @@
+#include "engine/world/push_out.h"
+
+#include <algorithm>
+
+#include "engine/world/contact_rows.h"
+
+namespace pincer::engine {
+namespace {
+
+constexpr int kPushSweeps = 10;
+
+bool isFree(const WorldModel& model, const Side& side) {
+  const BodyModel& body = model.bodies[side.index];
+  return body.dynamic && body.joint_group < 0;
+}
+
+double deepGap(const WorldModel& model) { return -kDeepSpeed * model.options.h / kNormalCorrection; }
+
+bool isDeep(const WorldModel& model, const Contact& c) { return isPushedOut(model, c) && c.phi < deepGap(model); }
+
+// The contact's normal row on one of its bodies, and that body's mobility.
+struct PushSide {
+  Motion* push = nullptr;  // null for what doesn't move
+  double inverse_mass = 0;
+  Vec3 n_W, turn_W;  // what a unit impulse does to the angular velocity
+  Vec3 arm_x_n_W;
+
+  PushSide(const WorldModel& model, WorldScratch& scratch, const Side& side, const Vec3& arm_W, const Vec3& normal_W) : n_W(normal_W) {
+    if (side.kind != SideKind::kBody || !isFree(model, side)) return;
+    BodyScratch& body = scratch.bodies[side.index];
+    push = &body.push;
+    inverse_mass = model.bodies[side.index].inverse_mass;
+    arm_x_n_W = arm_W.cross(n_W);
+    turn_W = body.inverse_inertia_W * arm_x_n_W;
+  }
+  double mobility() const { return push ? inverse_mass + arm_x_n_W.dot(turn_W) : 0; }
+  double way() const { return push ? n_W.dot(push->v_W) + arm_x_n_W.dot(push->w_W) : 0; }
+  void add(double lambda) const {
+    if (!push) return;
+    push->v_W += lambda * inverse_mass * n_W;
+    push->w_W += lambda * turn_W;
+  }
+};
+
+// lambda is kept in c.bias_C, which nothing needs any more.
+void relax(const WorldModel& model, WorldScratch& scratch, Contact& c) {
+  const PushSide a(model, scratch, c.a, c.arm_a_W, c.n_W()), b(model, scratch, c.b, c.arm_b_W, -c.n_W());
+  const double mobility = a.mobility() + b.mobility();
+  if (!(mobility > 0)) return;
+  const double deep = std::min(-kNormalCorrection * c.phi, kLargestCorrection * model.options.h);
+  const double want = isDeep(model, c) ? deep : -std::max(c.phi - deepGap(model), 0.0);
+  double& lambda = c.bias_C[kNormalRow];
+  const double before = lambda;
+  lambda = std::max(0.0, lambda + (want - a.way() - b.way()) / mobility);
+  a.add(lambda - before);
+  b.add(lambda - before);
+}
+
+}  // namespace
+
+bool isPushedOut(const WorldModel& model, const Contact& c) {
+  if (c.a.kind != SideKind::kBody || c.b.kind != SideKind::kBody) return false;
+  return model.bodies[c.a.index].joint_group < 0 && model.bodies[c.b.index].joint_group < 0;
+}
+
+void pushOut(const WorldModel& model, WorldState& state, WorldScratch& scratch) {
+  if (scratch.h == 0 || std::none_of(scratch.contacts.begin(), scratch.contacts.end(), [&](const Contact& c) { return isDeep(model, c); }))
+    return;
+  for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+    scratch.bodies[i].push = {Vec3::Zero(), Vec3::Zero()};
+    if (model.bodies[i].dynamic)
+      scratch.bodies[i].inverse_inertia_W = inverseInertia(model.bodies[i].rotation, scratch.bodies[i].X_WI_mid.q);
+  }
+  for (Contact& c : scratch.contacts) c.bias_C[kNormalRow] = 0;
+  for (int sweep = 0; sweep < kPushSweeps; ++sweep) {
+    for (Contact& c : scratch.contacts) relax(model, scratch, c);
+  }
+  const double share = scratch.h / model.options.h;  // of the tick
+  for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+    const Motion& push = scratch.bodies[i].push;
+    if (!model.bodies[i].dynamic || (push.v_W.isZero(0) && push.w_W.isZero(0))) continue;
+    state.bodies[i].X_WI.p += share * push.v_W;
+    state.bodies[i].X_WI.q = (quatFromRotationVector(share * push.w_W) * state.bodies[i].X_WI.q).normalized();
+  }
+}
+
+}  // namespace pincer::engine

@@ -1,0 +1,70 @@
+// The budget: what a tick may cost, counted.
+#include <gtest/gtest.h>
+
+#include "contact/error.h"
+#include "engine/world/step.h"
+#include "tests/support/worlds.h"
+
+namespace pincer::engine {
+namespace {
+
+using tests::startAt;
+
+struct HeapRun {
+  WorldState state;
+  int flagged = 0, spent = 0;
+  std::int64_t least_left = kNoLimit;
+};
+
+// Boxes dropped on each other, 300 ticks.
+HeapRun dropBoxes(double budget) {
+  WorldOptions options;
+  options.solver.budget = budget;
+  WorldBuilder builder{options};
+  std::vector<BodyStart> starts{startAt(Vec3::Zero())};
+  builder.addBody({"floor", contact::HalfSpace{}, false, 0, {}});
+  for (int i = 0; i < 6; ++i) {
+    builder.addBody({"box", contact::Box{Vec3(0.02, 0.015, 0.01)}, true, 0.1, {}});
+    const Pose X{quatFromRotationVector(Vec3(0.4 * i, 0.3, 0.2 * i)), Vec3(0.004 * (i % 2), 0.003 * (i % 3), 0.03 + 0.045 * i)};
+    starts.push_back({X, Vec3::Zero(), Vec3::Zero()});
+  }
+  const WorldModel model = builder.build();
+  HeapRun run{makeState(model, starts, {})};
+  WorldScratch scratch(model);
+  const double energy = kineticEnergy(model, run.state) + potentialEnergy(model, run.state);
+  for (int i = 0; i < 300; ++i) {
+    const StepReport report = step(model, run.state, scratch);
+    run.flagged += report.status != kStepOk;
+    run.spent += (report.status & kBudgetSpent) != 0;
+    run.least_left = std::min(run.least_left, scratch.operations_left);
+    EXPECT_LE(kineticEnergy(model, run.state) + potentialEnergy(model, run.state), energy * (1 + 1e-5));  // as `pincer stress` asks
+    for (int b = 1; b <= 6; ++b) EXPECT_GT(run.state.bodies[b].X_WI.p.z(), 0) << "tick " << i;
+  }
+  return run;
+}
+
+TEST(Budget, ThatIsNotUsedChangesNoBit) {
+  const HeapRun without = dropBoxes(0), with = dropBoxes(1);
+  EXPECT_EQ(with.spent, 0);
+  EXPECT_EQ(hashOf(without.state), hashOf(with.state));
+}
+
+TEST(Budget, RunsOutFlaggedAndAddsNoEnergy) {
+  const double budget = 5e-5;
+  const HeapRun run = dropBoxes(budget);
+  EXPECT_GT(run.spent, 0);
+  EXPECT_GE(run.flagged, run.spent);
+  // What is spent beyond it: the step that was refused, and the sweeps that every tick gets.
+  EXPECT_GT(run.least_left, -static_cast<std::int64_t>(1e-3 * kOperationsPerSecond));
+}
+
+TEST(Budget, IsDeterministic) { EXPECT_EQ(hashOf(dropBoxes(5e-5).state), hashOf(dropBoxes(5e-5).state)); }
+
+TEST(Budget, OutOfRangeIsRefused) {
+  WorldOptions options;
+  options.solver.budget = 100;
+  EXPECT_THROW(WorldBuilder{options}, InputError);
+}
+
+}  // namespace
+}  // namespace pincer::engine

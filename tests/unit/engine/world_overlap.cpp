@@ -1,0 +1,108 @@
+// Deep overlap: it is left without velocity, and what can't be left doesn't fall through the floor. And a hit that fingers bring forward.
+#include <gtest/gtest.h>
+
+#include "engine/world/contact_rows.h"
+#include "engine/world/push_out.h"
+#include "engine/world/step.h"
+#include "tests/support/worlds.h"
+
+namespace pincer::engine {
+namespace {
+
+using tests::startAt;
+
+TEST(Overlap, IsLeftWithoutVelocity) {
+  WorldBuilder builder{WorldOptions{}};
+  const Material material{0.5, 0.5, 0, 0};
+  builder.addBody({"floor", contact::HalfSpace{}, false, 0, material});
+  builder.addBody({"ball", contact::Sphere{0.02}, true, 0.1, material});
+  const WorldModel model = builder.build();
+  WorldState state = makeState(model, {startAt(Vec3::Zero()), startAt(Vec3(0, 0, 0.012))}, {});
+  WorldScratch scratch(model);
+  double fastest = 0, highest = 0;
+  for (int i = 0; i < 400; ++i) {
+    step(model, state, scratch);
+    fastest = std::max(fastest, state.bodies[1].v_W.norm());
+    highest = std::max(highest, state.bodies[1].X_WI.p.z());
+  }
+  EXPECT_LE(fastest, kDeepSpeed * (1 + 1e-9));  // it once left 8 mm of overlap at 50 mm/s
+  EXPECT_NEAR(state.bodies[1].X_WI.p.z(), 0.02, 1e-7);
+  EXPECT_LT(highest, 0.02 + 1e-7);  // kDeepSpeed lifts by v^2 / (2 g) = 5e-8 m
+}
+
+TEST(Overlap, IsLeftAtTheLargestCorrectionAtMost) {
+  WorldBuilder builder{WorldOptions{}};
+  builder.addBody({"floor", contact::HalfSpace{}, false, 0, {}});
+  builder.addBody({"box", contact::Box{Vec3(0.02, 0.02, 0.02)}, true, 0.1, {}});
+  const WorldModel model = builder.build();
+  WorldState state = makeState(model, {startAt(Vec3::Zero()), startAt(Vec3(0, 0, 0.015))}, {});
+  WorldScratch scratch(model);
+  for (int i = 0; i < 50; ++i) step(model, state, scratch);
+  EXPECT_LE(state.bodies[1].X_WI.p.z(), 0.015 + 50 * (kLargestCorrection + kDeepSpeed) * 1e-3);
+  EXPECT_GT(state.bodies[1].X_WI.p.z(), 0.015 + 25 * kLargestCorrection * 1e-3);
+}
+
+// `pincer stress --only '*overlap'`, seeds 111, 409, 973, 1000: a light box within heavy ones and the floor at once. Contacts that contradict each
+// other left no impulse that adds no energy but none at all, and the box fell.
+TEST(Overlap, WhatOverlapsInAllDirectionsDoesNotFallThroughTheFloor) {
+  WorldBuilder builder{WorldOptions{}};
+  const Material material{4.5, 4.5, 0, 0};
+  builder.addBody({"floor", contact::HalfSpace{}, false, 0, material});
+  builder.addBody({"heavy", contact::Box{Vec3(0.012, 0.01, 0.007)}, true, 64, material});
+  builder.addBody({"light", contact::Box{Vec3(0.005, 0.004, 0.004)}, true, 0.007, material});
+  builder.addBody({"other", contact::Box{Vec3(0.008, 0.01, 0.007)}, true, 0.3, material});
+  const WorldModel model = builder.build();
+  const auto at = [](const Vec3& p, const Vec3& a) { return BodyStart{{quatFromRotationVector(a), p}, Vec3::Zero(), Vec3::Zero()}; };
+  WorldState state = makeState(model,
+                               {startAt(Vec3::Zero()), at(Vec3(0.002, 0.003, 0.0069), Vec3(0.3, 0.8, 0.1)),
+                                at(Vec3(0.001, 0.002, 0.0005), Vec3(1.1, -0.4, 0.7)), at(Vec3(0.004, 0.001, 0.0055), Vec3(-0.6, 0.2, 1.5))},
+                               {});
+  WorldScratch scratch(model);
+  for (int i = 0; i < 300; ++i) {
+    step(model, state, scratch);
+    for (int b = 1; b < 4; ++b) ASSERT_GT(state.bodies[b].X_WI.p.z(), -1e-5) << "body " << b << ", tick " << i;
+  }
+}
+
+// `pincer stress --only '*teleport' --seed 7`: the part of the tick up to the hit was solved again, shorter, in which what pushes pushed harder, so that
+// the ball was through the floor when it was asked to bounce off it.
+class JumpingPush final : public ContactSource {
+ public:
+  void addContacts(WorldScratch& scratch) override {
+    const Vec3 centre = scratch.bodies[1].X_WI_mid.p, tip = scratch.points[0].p_mid_W;
+    const double phi = tip.z() - centre.z() - 0.018;
+    if (phi > 0.05) return;
+    Contact* const c = addContact(scratch, phi);
+    c->id = contactId(1, 0, 1, 0);
+    c->a = {SideKind::kPoint, 0};
+    c->b = {SideKind::kBody, 1};
+    c->R_WC.col(2) = Vec3::UnitZ();
+    c->p_W = centre + Vec3(0, 0, 0.01 + 0.5 * phi);
+    c->material = {0, 0, 0, 0};
+  }
+};
+
+TEST(Overlap, BallThatAJumpingFingerPushesStaysOnTheFloor) {
+  WorldBuilder builder{WorldOptions{}};
+  const Material material{0, 0, 0, 0};
+  builder.addBody({"floor", contact::HalfSpace{}, false, 0, material});
+  builder.addBody({"ball", contact::Sphere{0.01}, true, 0.0015, material});
+  DrivenPointModel finger{"finger"};
+  finger.damping = Vec3::Constant(6);
+  builder.addPoint(finger);
+  const WorldModel model = builder.build();
+  for (int k = 0; k < 20; ++k) {  // places of the jump
+    const double height = 0.013 + 1e-3 * k;
+    WorldState state = makeState(model, {startAt(Vec3::Zero()), startAt(Vec3(0, 0, height))}, {Vec3(0, 0, height + 0.0185)});
+    WorldScratch scratch(model);
+    JumpingPush push;
+    for (int i = 0; i < 20; ++i) {
+      const PointInput down{Vec3(0, 0, i < 2 ? height + 0.0185 : height - 0.03), Vec3::Zero(), Vec3::Zero()};
+      step(model, state, scratch, {std::span<const PointInput>(&down, 1), {}}, &push);
+      ASSERT_GT(state.bodies[1].X_WI.p.z(), 0.01 - 1e-4) << "start " << height << ", tick " << i;  // 1e-3 of the way to the hit
+    }
+  }
+}
+
+}  // namespace
+}  // namespace pincer::engine
