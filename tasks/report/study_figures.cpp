@@ -14,7 +14,7 @@ namespace pincer::tasks {
 namespace {
 
 constexpr double kDotsLeft = -0.16, kDotsWidth = 0.2;  // the participants' dots stand left of their mean, side by side
-constexpr double kPublishedRight = 0.22;               // and the published figure right of it
+constexpr double kPublishedAside = 0.22;               // and the published figure right of it
 
 std::string conditionTics(const StudySummary& s) {
   std::string tics;
@@ -62,7 +62,7 @@ Figure headlineFigure(const StudySummary& s) {
                       "plot 'headline_people.csv' skip 1 using 3:4 with points pt 7 ps 1.4 lc rgb '#90{}' title 'participant', "
                       "data skip 1 using 2:3:4:5 with yerrorbars pt 7 ps 2.4 lw 2 lc rgb '{}' title 'mean of pincer''s participants', "
                       "data skip 1 using ($2+{}):6 with points pt 13 ps 3 lc rgb '{}' title 'published'\n",
-                      palette::kBlue + 1, palette::kBlue, kPublishedRight, palette::kVermillion);
+                      palette::kBlue + 1, palette::kBlue, kPublishedAside, palette::kVermillion);
   return figure;
 }
 

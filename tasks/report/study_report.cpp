@@ -14,7 +14,10 @@ std::vector<Picture> studyPictures(const StudySummary& s, const std::vector<Resp
   const auto add = [&](Figure figure) { pictures.push_back({std::move(figure), "", ""}); };
   add(headlineFigure(s));
   const bool has_staircases = std::any_of(s.conditions.begin(), s.conditions.end(), [](const StudyCondition& c) { return c.averaged > 0; });
-  if (has_staircases) add(staircaseFigure(s, responses));
+  if (has_staircases) {
+    add(staircaseFigure(s, responses));
+    add(psychometricFigure(s, responses));
+  }
   if (s.info.task == "repeated-localisation") add(placesFigure(responses));
   if (s.info.task == "shape-identification") add(confusionFigure(responses));
   add(speedFigure(s));

@@ -2,6 +2,7 @@
 //
 //   headline    each participant and the mean with its interval, beside the published figure
 //   staircases  the level from trial to trial, one panel per condition
+//   psychometric  all answers by level, with the function of most likelihood
 //   confusions  shapes shown against shapes named; places: places shown against places named
 //   speeds      of finger and tactor, beside the published ranges; times of the stimuli
 #pragma once
@@ -14,6 +15,7 @@ ReportFiles writeStudyReport(const SessionReader& session, const std::string& ht
 
 Figure headlineFigure(const StudySummary& summary);
 Figure staircaseFigure(const StudySummary& summary, const std::vector<ResponseRecord>& responses);
+Figure psychometricFigure(const StudySummary& summary, const std::vector<ResponseRecord>& responses);
 Figure placesFigure(const std::vector<ResponseRecord>& responses);
 Figure confusionFigure(const std::vector<ResponseRecord>& responses);
 Figure speedFigure(const StudySummary& summary);

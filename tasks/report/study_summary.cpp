@@ -151,16 +151,11 @@ void estimateJson(JsonWriter& json, const char* key, const Estimate& e) {
 }
 
 // Characters, not bytes: units and dashes aren't ASCII.
-std::size_t widthOf(const std::string& text) {
+std::size_t characters(const std::string& text) {
   return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
 }
 
 }  // namespace
-
-std::string Quantity::text(double si) const {
-  if (!std::isfinite(si)) return "–";
-  return fmt::format("{:.3g}{}{}", scale * si, unit == "°" ? "" : " ", unit);
-}
 
 bool isStudy(const std::string& task) { return kindOf(task) != nullptr; }
 
@@ -228,11 +223,11 @@ std::string formatStudyTable(const StudySummary& s) {
   for (const StudyCondition& c : s.conditions) rows.push_back(studyTableRow(s, c));
   std::vector<std::size_t> widths(rows[0].size());
   for (const auto& row : rows)
-    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], widthOf(row[i]));
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], characters(row[i]));
   std::string text = fmt::format("{}, seed {}: {} participants, {} trials\n\n", s.info.task, s.info.seed, s.participants, s.trials);
   for (const auto& row : rows) {
     for (std::size_t i = 0; i < row.size(); ++i) {
-      const std::string gap(widths[i] - widthOf(row[i]), ' ');
+      const std::string gap(widths[i] - characters(row[i]), ' ');
       text += i == 0 ? row[i] + gap : "  " + gap + row[i];
     }
     text += '\n';

@@ -16,10 +16,9 @@
 namespace pincer::tasks {
 
 // What a figure is called and how a person reads it: shown value = scale x SI value.
-struct Quantity {
+struct HeadlineQuantity {
   std::string name, unit;
   double scale = 1;
-  std::string text(double si) const;  // "0.46 mm", "–" for NaN
 };
 
 struct StudyPerson {
@@ -46,7 +45,7 @@ struct StudySummary {
   std::string state, started_utc, warning;
   std::string fingerprint;  // of the participants' parameters
   std::int64_t participants = 0, trials = 0;
-  Quantity headline;
+  HeadlineQuantity headline;
   std::vector<StudyCondition> conditions;  // in the protocol's order
 };
 

@@ -13,7 +13,7 @@
 namespace pincer::tasks {
 namespace {
 
-// A tactor that follows the finger's pull `lag` milliseconds late, on a fingertip of 20 mm, and no force.
+// A tactor that follows the finger's pull `lag` milliseconds late, on a fingertip of 20 mm, and the push that the participant wants.
 class LateTactor {
  public:
   explicit LateTactor(int lag) : past_(static_cast<std::size_t>(lag) + 1, 0.0) {}
@@ -22,6 +22,7 @@ class LateTactor {
     FingerPercept percept;
     percept.arm.valid = percept.tactile.valid = true;
     percept.arm.p_DF = p_D;
+    percept.f_D = Vec3(0, 0, StrokeLimits{}.press);
     percept.tactile.place_L = Vec2(past_[past_.size() - past_lag_], 0);
     return percept;
   }
