@@ -34,6 +34,11 @@ class Touch {
   // Reads the direction of the push on a finger that has felt one for the reflex time, and again every reading time. Returns a finger whose
   // push seems to come from below rather than against its pad.
   std::optional<int> pushedFromBelow(Random& random);
+  // A deliberate reading of the direction of the push on a finger that feels one: unit, W.
+  std::optional<Vec3> readPush(int finger, Random& random) const;
+  // A deliberate reading of where on its pad a finger is touched: direction from the fingertip's centre to the contact, unit, W. Absent
+  // unless its tactor has moved since the trial began.
+  std::optional<Vec3> readContact(int finger, Random& random) const;
   // Where the body believes a fingertip's centre is [m].
   Vec3 feltTip_W(int finger) const;
 
@@ -43,6 +48,7 @@ class Touch {
 
  private:
   Vec3 padAxis_W(int finger, const Vec3& axis_F) const;
+  std::optional<Vec2> readPad(int finger, Random& random) const;  // felt place on the pad [m]
   std::optional<Vec3> readPlace(int finger, Random& random) const;
 
   SensingLimits limits_;
