@@ -6,7 +6,7 @@
 
 #include "contact/error.h"
 #include "tasks/app/json_writer.h"
-#include "tasks/experiments/study_file.h"
+#include "tasks/experiments/manipulation_file.h"
 #include "tasks/session/session_store.h"
 
 namespace pincer::tasks {

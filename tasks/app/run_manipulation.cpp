@@ -12,8 +12,8 @@
 #include "tasks/app/run_options.h"
 #include "tasks/app/run_tasks.h"
 #include "tasks/app/servo_text.h"
+#include "tasks/experiments/manipulation_file.h"
 #include "tasks/experiments/pickup_object.h"
-#include "tasks/experiments/study_file.h"
 #include "tasks/report/report.h"
 #include "tasks/session/atomic_file.h"
 

@@ -119,8 +119,14 @@ std::vector<ManipulationTrial> manipulationTrials(const ManipulationStudy& study
 
 std::unique_ptr<HandTrial> makeTrial(const ManipulationStudy& study, const PickupObject& object, const ManipulationTrial& trial,
                                      RecordSink& sink) {
-  if (trial.task == HandTask::kPickup) return std::make_unique<PickupTrial>(study.pickup, object, trial.pickup, sink);
-  return std::make_unique<CylinderTrial>(study.alignment, trial.alignment, sink);
+  std::unique_ptr<HandTrial> made;
+  if (trial.task == HandTask::kPickup) {
+    made = std::make_unique<PickupTrial>(study.pickup, object, trial.pickup, sink);
+  } else {
+    made = std::make_unique<CylinderTrial>(study.alignment, trial.alignment, sink);
+  }
+  if (study.frozen_tactor) made->parkTactors();
+  return made;
 }
 
 std::unique_ptr<Participant> makeParticipant(const ManipulationStudy& study, const ManipulationTrial& trial) {

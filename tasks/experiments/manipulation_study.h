@@ -28,6 +28,7 @@ struct ManipulationStudy {
   SpherePickupOptions pickup;                         // its participants, conditions and seed don't count here
   CylinderAlignmentOptions alignment;                 // likewise
   ParticipantModel people;
+  bool frozen_tactor = false;  // the tactors stay parked in every condition (a control)
 };
 
 // Throws InputError naming the first value out of range, its range and the remedy.

@@ -45,7 +45,7 @@ double FlatBelief::logLikelihood(const Hypothesis& h, const std::array<FlatPerce
     const FlatPercept& p = pinch[i];
     const Vec2 c = p.p_felt + h.a + (i == 0 ? -0.5 : 0.5) * h.b;
     const CutCircle at = cutCircle(model_, h.theta, c);
-    sum += squareOver(at.distance - model_.tip_radius, model_.span_sd);
+    sum += squareOver(at.distance - model_.tip_radius + p.pressed, model_.span_sd);
     if (p.push) sum += squareOver(wrapped(*p.push - at.normal), model_.push_sd);
     if (p.place) sum += squareOver(wrapped(*p.place - p.pad) - model_.place_gain * wrapped(at.normal - p.pad), model_.place_sd);
   }

@@ -2,7 +2,7 @@
 //
 //   hypothesis    theta, direction of the flat; a, b: what both fingertips, and one against the other, are beside where they feel
 //   fingertip i   c_i = f_i + a -+ b/2,  f_i felt, c_i true, from the axis [m, horizontal]
-//   likelihood    N(dist(c_i; theta) - r; span_sd) N(felt push - normal(c_i; theta); push_sd) N(felt place - normal; place_sd), i = 1, 2
+//   likelihood    N(dist(c_i; theta) - r + pressed; span_sd) N(felt push - normal(c_i; theta); push_sd) N(felt place - normal; place_sd), i = 1, 2
 //
 // dist and normal: of the circle of radius R whose part beyond d is cut off, from outside. A bootstrap particle filter: N. J. Gordon,
 // D. J. Salmond, A. F. M. Smith, "Novel approach to nonlinear/non-Gaussian Bayesian state estimation", IEE Proc. F 140(2), 1993, 107-113;
@@ -29,6 +29,7 @@ struct FlatModel {
 // What one finger told in a pinch. Directions about W's z axis [rad], of the surface's outward normal.
 struct FlatPercept {
   Vec2 p_felt = Vec2::Zero();   // fingertip's centre from where the axis is told to be [m]
+  double pressed = 0;           // how deep the fingertip is in the surface, which gives way [m]
   double pad = 0;               // from the fingertip's middle against its pad: the normal that a touch in the pad's middle means [rad]
   std::optional<double> push;   // of the felt push
   std::optional<double> place;  // of the felt contact place

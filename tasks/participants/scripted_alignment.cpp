@@ -13,10 +13,10 @@ constexpr int kFirstProbes = 3;      // from one end of the hand's reach to the 
 constexpr int kSimpleTurns = 2;      // of the simple strategy
 constexpr double kSimpleSd = 0.3;    // what the simple strategy holds its direction to be known to [rad]
 constexpr double kLongestReach = 2;  // a reach of the pinch ends there at the latest, its sizes being small [s]
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNothingFelt = std::numeric_limits<double>::quiet_NaN();
 
 double wrapToPi(double angle) { return std::remainder(angle, 2 * std::numbers::pi); }
-double angleOf(const Vec3& v_W) { return std::atan2(v_W.y(), v_W.x()); }
+double aboutZ(const Vec3& v_W) { return std::atan2(v_W.y(), v_W.x()); }
 
 FlatModel flatModelOf(const TrialCues& cues, const SensingLimits& limits) {
   FlatModel model;
@@ -139,16 +139,17 @@ void ScriptedAlignment::read() {
 
 void ScriptedAlignment::observe() {
   std::array<FlatPercept, 2> pinch;
-  std::array<double, 2> push{kNaN, kNaN}, place{kNaN, kNaN};
+  std::array<double, 2> push{kNothingFelt, kNothingFelt}, place{kNothingFelt, kNothingFelt};
   for (int i = 0; i < kHandFingers; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const Vec3 noise = limits_.span_sd * random_.normal3();
     const Vec3 tip_W = touch_.feltTip_W(i) + noise - cues_.place_W;
     pinch[k].p_felt = tip_W.head<2>();
-    pinch[k].pad = i == 0 ? angleOf(-axis_W_) : angleOf(axis_W_);
-    if (const auto felt = touch_.readPush(i, random_)) pinch[k].push = push[k] = angleOf(*felt);
-    if (const auto felt = touch_.readContact(i, random_)) pinch[k].place = place[k] = angleOf(-*felt);
-    const double direction = pinch[k].place.value_or(angleOf(tip_W));
+    pinch[k].pressed = touch_.push(i) / cues_.surface_stiffness;
+    pinch[k].pad = i == 0 ? aboutZ(-axis_W_) : aboutZ(axis_W_);
+    if (const auto felt = touch_.readPush(i, random_)) pinch[k].push = push[k] = aboutZ(*felt);
+    if (const auto felt = touch_.readContact(i, random_)) pinch[k].place = place[k] = aboutZ(-*felt);
+    const double direction = pinch[k].place.value_or(aboutZ(tip_W));
     if (pinch[k].p_felt.norm() >= simple_best_) continue;
     simple_best_ = pinch[k].p_felt.norm();
     simple_direction_ = direction;

@@ -8,7 +8,7 @@ namespace pincer::tasks {
 namespace {
 
 constexpr double kNotHeard = -1;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNothingRead = std::numeric_limits<double>::quiet_NaN();
 
 PlaceModel placeModelOf(const TrialCues& cues, const SensingLimits& limits, double gravity) {
   constexpr double kBothFingers = 0.7071;  // the mean of two independent readings
@@ -127,7 +127,7 @@ void ScriptedPickup::read() {
 }
 
 void ScriptedPickup::readSimply(const std::optional<Vec3>& offset_W) {
-  const Vec3 percept_W = offset_W.value_or(Vec3::Constant(kNaN));
+  const Vec3 percept_W = offset_W.value_or(Vec3::Constant(kNothingRead));
   const bool shift = offset_W && offset_W->norm() > options_.shift_threshold && shifts_ < options_.max_shifts;
   say("place", percept_W, offset_W ? Vec3(options_.shift_gain * percept_W) : Vec3::Zero(), shift ? "shift" : "squeeze");
   if (shift) shiftBy(options_.shift_gain * *offset_W);
@@ -140,7 +140,7 @@ void ScriptedPickup::readRationally(const std::optional<Vec3>& offset_W) {
   if (first_W && second_W) belief_.pushRead(0.5 * (across(*first_W) + across(*second_W)), random_);
   const Vec2 shift = belief_.bestShift(wanted_grip_, options_.farthest_shift, random_);
   const bool shifts = shifts_ < options_.max_shifts && pays(shift);
-  say("place", offset_W.value_or(Vec3::Constant(kNaN)), along(belief_.offset()), shifts ? "shift" : "squeeze");
+  say("place", offset_W.value_or(Vec3::Constant(kNothingRead)), along(belief_.offset()), shifts ? "shift" : "squeeze");
   if (!shifts) return;
   belief_.moved(shift);
   shiftBy(along(shift));

@@ -26,8 +26,9 @@ class Touch {
 
   bool feels(int finger) const { return force(finger) > limits_.force_floor; }
   bool feelsBoth() const { return feels(0) && feels(1); }
-  double force(int finger) const { return force_[static_cast<std::size_t>(finger)]; }  // [N]
-  double grip() const { return 0.5 * (force_[0] + force_[1]); }                        // [N]
+  double force(int finger) const { return force_[static_cast<std::size_t>(finger)]; }         // [N]
+  double grip() const { return 0.5 * (force_[0] + force_[1]); }                               // [N]
+  double push(int finger) const { return push_W_[static_cast<std::size_t>(finger)].norm(); }  // whatever its direction [N]
   // How long at least one finger has felt nothing [s].
   double lossTime() const { return loss_time_; }
 

@@ -1,4 +1,4 @@
-#include "tasks/experiments/study_file.h"
+#include "tasks/experiments/manipulation_file.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -17,8 +17,8 @@ constexpr double kLargestSeed = 9007199254740992;  // 2^53: larger ones are no e
 constexpr std::array<std::string_view, 2> kConditionNames = {"force", "cld+force"};
 constexpr std::array<std::string_view, 2> kTaskNames = {"sphere-pickup", "cylinder-alignment"};
 constexpr std::array<std::string_view, 2> kStrategyNames = {"rational", "simple"};
-constexpr std::array<std::string_view, 9> kStudyKeys = {"version",       "participants",       "seed",  "conditions", "tasks", "training",
-                                                        "sphere_pickup", "cylinder_alignment", "people"};
+constexpr std::array<std::string_view, 10> kManipulationKeys = {
+    "version", "participants", "seed", "conditions", "tasks", "training", "sphere_pickup", "cylinder_alignment", "people"};
 
 // visit(key, value, what it means): numbers, whole numbers and truths. Ranges are checked by validate().
 template <class Options, class Visit>
@@ -59,7 +59,7 @@ void forEachAlignmentKey(Options& o, Visit&& visit) {
   visit("repetitions", o.repetitions, "per condition");
 }
 
-class Writer {
+class ManipulationWriter {
  public:
   template <class Value>
   void operator()(std::string_view key, const Value& value, std::string_view meaning) {
@@ -100,23 +100,23 @@ class Writer {
   bool pending_ = false;
 };
 
-std::string quoted(std::string_view text) {
+std::string jsonText(std::string_view text) {
   std::string json = "\"";
   for (const char c : text) json += c == '"' || c == '\\' ? std::string{'\\', c} : std::string{c};
   return json + "\"";
 }
 
-void writeObjectFile(const ObjectFile& file, Writer& out) {
+void writeObjectFile(const ObjectFile& file, ManipulationWriter& out) {
   out.begin("object");
-  out.line("path", quoted(file.path), "a closed mesh in place of the sphere");
-  file.size ? out("size", *file.size, "of its largest dimension [m]") : out.line("units", quoted(file.units), "");
-  out.line("shading", quoted(contact::kSurfaceVariantNames[static_cast<std::size_t>(file.shading)]), "");
+  out.line("path", jsonText(file.path), "a closed mesh in place of the sphere");
+  file.size ? out("size", *file.size, "of its largest dimension [m]") : out.line("units", jsonText(file.units), "");
+  out.line("shading", jsonText(contact::kSurfaceVariantNames[static_cast<std::size_t>(file.shading)]), "");
   out.close();
 }
 
-class Reader {
+class ManipulationReader {
  public:
-  explicit Reader(const JsonValue& object) : object_(object) {}
+  explicit ManipulationReader(const JsonValue& object) : object_(object) {}
   void operator()(std::string_view key, double& value, std::string_view) {
     keys_.push_back(key);
     if (const JsonValue* found = object_.find(key)) value = found->number();
@@ -141,7 +141,7 @@ class Reader {
 };
 
 ObjectFile readObjectFile(const JsonValue& json) {
-  Reader in(json);
+  ManipulationReader in(json);
   ObjectFile file;
   if (const JsonValue* path = in.find("path")) file.path = path->text();
   if (const JsonValue* units = in.find("units")) file.units = units->text();
@@ -154,7 +154,7 @@ ObjectFile readObjectFile(const JsonValue& json) {
 }
 
 void readPickup(const JsonValue& json, SpherePickupOptions& options) {
-  Reader in(json);
+  ManipulationReader in(json);
   forEachPickupKey(options, in);
   if (const JsonValue* frictions = in.find("frictions")) {
     options.frictions.clear();
@@ -165,13 +165,13 @@ void readPickup(const JsonValue& json, SpherePickupOptions& options) {
 }
 
 void readAlignment(const JsonValue& json, CylinderAlignmentOptions& options) {
-  Reader in(json);
+  ManipulationReader in(json);
   forEachAlignmentKey(options, in);
   in.finish();
 }
 
 void readPeople(const JsonValue& json, ParticipantModel& people) {
-  Reader in(json);
+  ManipulationReader in(json);
   if (const JsonValue* strategy = in.find("strategy")) people.strategy = static_cast<Strategy>(strategy->oneOf(kStrategyNames));
   in("feels_tactor", people.feels_tactor, "");
   forEachParameter(people, [&](const char* name, double& value, double, double, const char*) { in(name, value, ""); });
@@ -179,7 +179,7 @@ void readPeople(const JsonValue& json, ParticipantModel& people) {
 }
 
 void readTraining(const JsonValue& json, ManipulationStudy& study) {
-  Reader in(json);
+  ManipulationReader in(json);
   in("pickups", study.training_pickups, "");
   in("alignments", study.training_alignments, "");
   in.finish();
@@ -192,9 +192,9 @@ void readTasks(const JsonValue& json, ManipulationStudy& study) {
 
 std::string listOf(const std::vector<std::string>& words) { return fmt::format("[{}]", fmt::join(words, ", ")); }
 
-void writePeople(const ParticipantModel& people, Writer& out) {
+void writePeople(const ParticipantModel& people, ManipulationWriter& out) {
   out.begin("people");
-  out.line("strategy", quoted(nameOf(people.strategy)), "of simulated participants: rational or simple");
+  out.line("strategy", jsonText(nameOf(people.strategy)), "of simulated participants: rational or simple");
   out("feels_tactor", people.feels_tactor, "false: what the tactors do says nothing");
   forEachParameter(people, [&](const char* name, double value, double, double, const char* unit) {
     out(name, value, *unit ? fmt::format("[{}]", unit) : "");
@@ -205,17 +205,18 @@ void writePeople(const ParticipantModel& people, Writer& out) {
 }  // namespace
 
 std::string studyFile(const ManipulationStudy& study) {
-  Writer out;
+  ManipulationWriter out;
   out("version", 1, "");
   out("participants", study.participants, "the published study had 12");
   out("seed", study.seed, "of all that varies");
   std::vector<std::string> words;
-  for (const PickupCondition condition : study.conditions) words.push_back(quoted(nameOf(condition)));
+  for (const PickupCondition condition : study.conditions) words.push_back(jsonText(nameOf(condition)));
   out.line("conditions", listOf(words), "every other participant begins with the last");
   words.clear();
-  if (study.pickup_task) words.push_back(quoted(kTaskNames[0]));
-  if (study.alignment_task) words.push_back(quoted(kTaskNames[1]));
+  if (study.pickup_task) words.push_back(jsonText(kTaskNames[0]));
+  if (study.alignment_task) words.push_back(jsonText(kTaskNames[1]));
   out.line("tasks", listOf(words), "in this order, in one condition, then in the other");
+  out("frozen_tactor", study.frozen_tactor, "true: the tactors stay parked in every condition (a control)");
   out.begin("training");
   out("pickups", study.training_pickups, "per condition, before the counted ones");
   out("alignments", study.training_alignments, "likewise");
@@ -234,7 +235,7 @@ std::string studyFile(const ManipulationStudy& study) {
 
 ManipulationStudy parseStudyFile(std::string_view text, const std::string& name) {
   const JsonValue json = parseJson(text, name);
-  json.allowOnly(kStudyKeys);
+  json.allowOnly(kManipulationKeys);
   if (json.at("version", "Write \"version\": 1.").number() != 1) json.at("version").reject("is unknown. This pincer reads version 1.");
   ManipulationStudy study;
   if (const JsonValue* v = json.find("participants")) study.participants = v->integer(1, 1000, "The published study had 12.");
@@ -247,6 +248,7 @@ ManipulationStudy parseStudyFile(std::string_view text, const std::string& name)
     study.conditions.clear();
     for (const JsonValue& c : v->array()) study.conditions.push_back(static_cast<PickupCondition>(c.oneOf(kConditionNames)));
   }
+  if (const JsonValue* v = json.find("frozen_tactor")) study.frozen_tactor = v->boolean();
   if (const JsonValue* v = json.find("tasks")) readTasks(*v, study);
   if (const JsonValue* v = json.find("training")) readTraining(*v, study);
   if (const JsonValue* v = json.find("sphere_pickup")) readPickup(*v, study.pickup);
