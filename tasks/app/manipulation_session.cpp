@@ -76,14 +76,14 @@ void validate(const ManipulationSessionOptions& options) {
 }
 
 ManipulationSessionResult runManipulationSession(const ManipulationSessionOptions& options, const std::string& path,
-                                                 const std::atomic<bool>& interrupted, const StudyProgressLine& progress) {
+                                                 const std::atomic<bool>& interrupted, const TrialProgressLine& progress) {
   validate(options);
   SessionWriter writer = SessionWriter::create(path, sessionInfo(options), storeOptions(options.servo));
   return runInto(writer, options, {{}, progress, {}}, interrupted);
 }
 
 ManipulationSessionResult resumeManipulationSession(const ServoOptions& servo, int sample_rate, const std::string& path,
-                                                    const std::atomic<bool>& interrupted, const StudyProgressLine& progress) {
+                                                    const std::atomic<bool>& interrupted, const TrialProgressLine& progress) {
   ManipulationSessionOptions options;
   StudyHooks hooks{{}, progress, {}};
   {

@@ -23,15 +23,15 @@ struct ManipulationSessionResult {
   ServoReport servo;         // of all trials of this run
 };
 
-using StudyProgressLine = std::function<void(const StudyProgress&)>;
+using TrialProgressLine = std::function<void(const TrialProgress&)>;
 
 // Runs the study and writes it to the new file `path`. Throws InputError for bad options, a bad object, or a file that can't be written.
 ManipulationSessionResult runManipulationSession(const ManipulationSessionOptions& options, const std::string& path,
-                                                 const std::atomic<bool>& interrupted, const StudyProgressLine& progress);
+                                                 const std::atomic<bool>& interrupted, const TrialProgressLine& progress);
 
 // Goes on with a session that was interrupted or killed: the study is the one in the file, finished trials stay, what is left of an
 // unfinished one is removed. Throws InputError; also when the session is complete.
 ManipulationSessionResult resumeManipulationSession(const ServoOptions& servo, int sample_rate, const std::string& path,
-                                                    const std::atomic<bool>& interrupted, const StudyProgressLine& progress);
+                                                    const std::atomic<bool>& interrupted, const TrialProgressLine& progress);
 
 }  // namespace pincer::tasks

@@ -111,7 +111,7 @@ int show(const ManipulationArguments& arguments, const std::string& directory, c
 int runManipulation(const ManipulationArguments& arguments) {
   const std::atomic<bool>& interrupted = interruptFlag();
   std::unique_ptr<Progress> line;
-  const auto progress = [&](const StudyProgress& at) {
+  const auto progress = [&](const TrialProgress& at) {
     if (!line) line = std::make_unique<Progress>("trials", static_cast<std::int64_t>(at.total));
     line->update(static_cast<std::int64_t>(at.done));
   };

@@ -55,13 +55,13 @@ std::unique_ptr<HandTrial> makeTrial(const ManipulationStudy& study, const Picku
                                      RecordSink& sink);
 std::unique_ptr<Participant> makeParticipant(const ManipulationStudy& study, const ManipulationTrial& trial);
 
-struct StudyProgress {
+struct TrialProgress {
   std::size_t done = 0, total = 0;  // trials
 };
 
 struct StudyHooks {
   std::set<std::int64_t> finished;                     // trials that needn't be done again
-  std::function<void(const StudyProgress&)> progress;  // before the first and after every trial
+  std::function<void(const TrialProgress&)> progress;  // before the first and after every trial
   std::function<void(const ServoReport&)> served;      // what the servo says of each, the interrupted one included
 };
 

@@ -41,17 +41,6 @@ std::string pairTable(const SessionSummary& s) {
          "Time-outs are censored: counts and times are per success.</p>\n";
 }
 
-std::string figureHtml(const Picture& p, const std::string& figures_name) {
-  std::string links = fmt::format("<a href=\"{0}/{1}.png\">picture</a>", escaped(figures_name), p.figure.name);
-  for (const auto& [name, content] : p.figure.data) links += fmt::format(", <a href=\"{}/{}\">{}</a>", escaped(figures_name), name, name);
-  if (!p.anchor_trial.empty()) links += fmt::format("; <a href=\"#trial-{0}\">trial {0} in the list</a>", p.anchor_trial);
-  return fmt::format(
-      "<h2>{}</h2>\n<figure id=\"figure-{}\">\n<img alt=\"{}\" width=\"{}\" height=\"{}\" src=\"data:image/png;base64,{}\">\n"
-      "<figcaption>{} <span class=\"note\">({})</span></figcaption>\n</figure>\n",
-      escaped(p.figure.title), p.figure.name, escaped(p.figure.title), p.figure.width / 2, p.figure.height / 2, base64Of(p.png),
-      escaped(p.figure.caption), links);
-}
-
 std::string number(double value, double scale, int digits) {
   return std::isfinite(value) ? fmt::format("{:.{}f}", scale * value, digits) : "–";
 }

@@ -94,7 +94,7 @@ TEST(PickupSession, RefusesASampleRateThatDoesNotDivideTheTickRate) {
 TEST(PickupSession, KeepsFinishedTrialsWhenInterrupted) {
   const tests::TemporaryDirectory directory;
   std::atomic<bool> interrupted{false};
-  const auto after_two = [&](const StudyProgress& progress) { interrupted = progress.done == 2; };
+  const auto after_two = [&](const TrialProgress& progress) { interrupted = progress.done == 2; };
   const ManipulationSessionResult result = runManipulationSession(shortStudy(4), directory / "s.db", interrupted, after_two);
   EXPECT_TRUE(result.interrupted);
   EXPECT_EQ(result.trials, 2u);
@@ -106,7 +106,7 @@ TEST(PickupSession, KeepsFinishedTrialsWhenInterrupted) {
 TEST(PickupSession, IsCompleteWhenTheInterruptComesAfterTheLastTrial) {
   const tests::TemporaryDirectory directory;
   std::atomic<bool> interrupted{false};
-  const auto at_the_end = [&](const StudyProgress& progress) { interrupted = progress.done == progress.total; };
+  const auto at_the_end = [&](const TrialProgress& progress) { interrupted = progress.done == progress.total; };
   EXPECT_FALSE(runManipulationSession(shortStudy(), directory / "s.db", interrupted, at_the_end).interrupted);
   EXPECT_TRUE(SessionReader(directory / "s.db").complete());
 }

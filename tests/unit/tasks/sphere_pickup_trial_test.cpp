@@ -152,7 +152,7 @@ TEST(ManipulationStudy, RunsBothTasksInOneConditionThenInTheOtherAndReportsProgr
   tests::MemorySink sink;
   std::vector<std::size_t> done;
   const std::atomic<bool> interrupted{false};
-  const auto progress = [&](const StudyProgress& at) { done.push_back(at.done); };
+  const auto progress = [&](const TrialProgress& at) { done.push_back(at.done); };
   EXPECT_EQ(runManipulationStudy(shortStudyOfBoth(), {}, sink, interrupted, {{}, progress, {}}), 4u);
   EXPECT_EQ(done, (std::vector<std::size_t>{0, 1, 2, 3, 4}));
   ASSERT_EQ(sink.trials.size(), 4u);
