@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "contact/error.h"
-#include "tasks/app/pickup_session.h"
+#include "tasks/app/manipulation_session.h"
 #include "tasks/app/servo_text.h"
 #include "tasks/session/session_store.h"
 #include "tests/support/session_samples.h"
@@ -21,18 +21,21 @@ using tests::samplesOf;
 
 const std::atomic<bool> kNever{false};
 
-PickupSessionOptions shortStudy(int repetitions = 1) {
-  PickupSessionOptions options;
-  options.study.frictions = {0.9};
+ManipulationSessionOptions shortStudy(int repetitions = 1) {
+  ManipulationSessionOptions options;
+  options.study.participants = 1;
+  options.study.alignment_task = false;
+  options.study.training_pickups = 0;
   options.study.conditions = {PickupCondition::kCldForce};
-  options.study.repetitions = repetitions;
-  options.study.timeout = 3;
+  options.study.pickup.frictions = {0.9};
+  options.study.pickup.repetitions = repetitions;
+  options.study.pickup.timeout = 3;
   return options;
 }
 
 TEST(PickupSession, KeepsEveryFifthTickByDefault) {
   const tests::TemporaryDirectory directory;
-  const PickupSessionResult result = runPickupSession(shortStudy(), directory / "thin.db", kNever, {});
+  const ManipulationSessionResult result = runManipulationSession(shortStudy(), directory / "thin.db", kNever, {});
   EXPECT_EQ(result.trials, 1u);
   const SessionReader session(directory / "thin.db");
   const std::vector<SampleRecord> samples = samplesOf(session);
@@ -47,10 +50,10 @@ TEST(PickupSession, KeepsEveryFifthTickByDefault) {
 // The kept ticks are those of the full session, and everything else is the same.
 TEST(PickupSession, IsThinnedWithoutChangingWhatHappens) {
   const tests::TemporaryDirectory directory;
-  PickupSessionOptions options = shortStudy();
-  runPickupSession(options, directory / "thin.db", kNever, {});
+  ManipulationSessionOptions options = shortStudy();
+  runManipulationSession(options, directory / "thin.db", kNever, {});
   options.sample_rate = 1000;
-  const PickupSessionResult result = runPickupSession(options, directory / "full.db", kNever, {});
+  const ManipulationSessionResult result = runManipulationSession(options, directory / "full.db", kNever, {});
   const SessionReader thin(directory / "thin.db"), full(directory / "full.db");
   const std::vector<SampleRecord> few = samplesOf(thin), all = samplesOf(full);
   ASSERT_EQ(static_cast<std::int64_t>(all.size()), result.servo.ticks);
@@ -69,10 +72,10 @@ TEST(PickupSession, IsThinnedWithoutChangingWhatHappens) {
 TEST(PickupSession, RefusesASampleRateThatDoesNotDivideTheTickRate) {
   const tests::TemporaryDirectory directory;
   for (const int rate : {0, -200, 3, 300, 1001, 2000}) {
-    PickupSessionOptions options = shortStudy();
+    ManipulationSessionOptions options = shortStudy();
     options.sample_rate = rate;
     try {
-      runPickupSession(options, directory / "bad.db", kNever, {});
+      runManipulationSession(options, directory / "bad.db", kNever, {});
       FAIL() << rate;
     } catch (const InputError& e) {
       const std::string said = e.what();
@@ -82,7 +85,7 @@ TEST(PickupSession, RefusesASampleRateThatDoesNotDivideTheTickRate) {
     EXPECT_FALSE(std::filesystem::exists(directory / "bad.db"));
   }
   for (const int rate : {1, 8, 125, 1000}) {
-    PickupSessionOptions options = shortStudy();
+    ManipulationSessionOptions options = shortStudy();
     options.sample_rate = rate;
     EXPECT_NO_THROW(validate(options)) << rate;
   }
@@ -91,8 +94,8 @@ TEST(PickupSession, RefusesASampleRateThatDoesNotDivideTheTickRate) {
 TEST(PickupSession, KeepsFinishedTrialsWhenInterrupted) {
   const tests::TemporaryDirectory directory;
   std::atomic<bool> interrupted{false};
-  const auto after_two = [&](const PickupProgress& progress) { interrupted = progress.done == 2; };
-  const PickupSessionResult result = runPickupSession(shortStudy(4), directory / "s.db", interrupted, after_two);
+  const auto after_two = [&](const TrialProgress& progress) { interrupted = progress.done == 2; };
+  const ManipulationSessionResult result = runManipulationSession(shortStudy(4), directory / "s.db", interrupted, after_two);
   EXPECT_TRUE(result.interrupted);
   EXPECT_EQ(result.trials, 2u);
   const SessionReader session(directory / "s.db");
@@ -103,14 +106,14 @@ TEST(PickupSession, KeepsFinishedTrialsWhenInterrupted) {
 TEST(PickupSession, IsCompleteWhenTheInterruptComesAfterTheLastTrial) {
   const tests::TemporaryDirectory directory;
   std::atomic<bool> interrupted{false};
-  const auto at_the_end = [&](const PickupProgress& progress) { interrupted = progress.done == progress.total; };
-  EXPECT_FALSE(runPickupSession(shortStudy(), directory / "s.db", interrupted, at_the_end).interrupted);
+  const auto at_the_end = [&](const TrialProgress& progress) { interrupted = progress.done == progress.total; };
+  EXPECT_FALSE(runManipulationSession(shortStudy(), directory / "s.db", interrupted, at_the_end).interrupted);
   EXPECT_TRUE(SessionReader(directory / "s.db").complete());
 }
 
 TEST(PickupSession, AccountsForTheTicksOfAnInterruptedTrialInRealTime) {
   const tests::TemporaryDirectory directory;
-  PickupSessionOptions options = shortStudy();
+  ManipulationSessionOptions options = shortStudy();
   options.servo.real_time = true;
   options.servo.watchdog = 10;
   std::atomic<bool> interrupted{false};
@@ -118,7 +121,7 @@ TEST(PickupSession, AccountsForTheTicksOfAnInterruptedTrialInRealTime) {
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
     interrupted = true;
   });
-  const PickupSessionResult result = runPickupSession(options, directory / "s.db", interrupted, {});
+  const ManipulationSessionResult result = runManipulationSession(options, directory / "s.db", interrupted, {});
   operator_thread.join();
   EXPECT_TRUE(result.interrupted);
   EXPECT_GT(result.servo.ticks, 0);
