@@ -26,4 +26,11 @@ RolledBall rolledBetweenPlates(double radius, const Vec3& way1, const Vec3& way2
   return {0.5 * (way1 + way2), Vec3::UnitZ().cross(way2 - way1) / (2 * radius)};
 }
 
+double RollingResistance::creep() const {
+  const double e2 = rolling_radius * rolling_radius, b = 1.4 * radius * radius - e2, c = radius * e2;
+  return 2 * c / (b + std::sqrt(b * b + 4 * radius * c));
+}
+
+double RollingResistance::deceleration() const { return mu * g * creep() / std::hypot(creep(), rolling_radius); }
+
 }  // namespace pincer::exact

@@ -68,4 +68,19 @@ struct SpinDown {
   double time() const { return w0 / deceleration(); }                                          // [s]
 };
 
+// --- Sphere that rolls against rolling resistance -------------------------------------------------------------------------------------------
+// Friction f and the moment against rolling share a cone, |(f, moment / e)| = mu m g, opposite to the creep v - R w and to e w. With v = (R + k) w
+// for ever: f / (moment / e) = k / e, so f = mu m g k / s, moment = mu m g e^2 / s, s = sqrt(k^2 + e^2), and m v' = -f, (2/5) m R^2 w' = f R - moment give
+//   R k^2 + (7/5 R^2 - e^2) k - R e^2 = 0,   v' = -mu g k / s.
+// Source: derived here; the cone is that of engine/solve/contact_problem.h, decision 15.
+struct RollingResistance {
+  double v0, radius, mu, rolling_radius, g;
+
+  double creep() const;                                                       // k [m]
+  double deceleration() const;                                                // [m/s^2]
+  double spin() const { return v0 / (radius + creep()); }                     // at the start [rad/s]
+  double time() const { return v0 / deceleration(); }                         // until it stops [s]
+  double way(double t) const { return (v0 - 0.5 * deceleration() * t) * t; }  // [m], t <= time()
+};
+
 }  // namespace pincer::exact

@@ -53,6 +53,22 @@ std::vector<Record> spinDown(MeasureContext& context) {
           atMost("time until it stops, error", 1e3 * std::abs(stopped - exact.time()), "ms", 1)};
 }
 
+std::vector<Record> resistance(MeasureContext& context) {
+  Simulation sim(readBuiltinScene("rolling_resistance"));
+  const exact::RollingResistance exact{0.1, 0.02, 0.5, 2e-3, kVerifyG};
+  double speed_error = 0, way_error = 0;
+  const RunCount run = runThrough(sim, context, [&] {
+    const double t = sim.time(), v = sim.state().world.bodies[1].v_W.x();
+    if (t > exact.time()) return;
+    speed_error = std::max(speed_error, std::abs(v - (exact.v0 - exact.deceleration() * t)) / exact.v0);
+    way_error = std::max(way_error, std::abs(sim.bodyPose(1).p.x() - exact.way(t)));
+  });
+  // Even forces, so that the scheme is exact but for the solver's tolerance; the tick in which it stops, at v <= a h, is of first order: a h^2.
+  return {atMost("speed, largest error of its start", speed_error, "-", 1e-8), atMost("way, largest error", 1e6 * way_error, "um", 2e-3),
+          atMost("way until it stops, error", 1e6 * std::abs(sim.bodyPose(1).p.x() - exact.way(exact.time())), "um", 0.35),
+          exactly("flagged ticks", static_cast<double>(run.flagged), "-", 0)};
+}
+
 // Angle by which the disk's axis has gone round, against W t; and how far its centre has moved, which should rest.
 std::vector<Record> eulersDisk(MeasureContext& context) {
   Simulation sim(readBuiltinScene("euler_disk"));
@@ -96,11 +112,8 @@ std::vector<Record> betweenPlates(MeasureContext& context) {
 }  // namespace
 
 std::vector<Measurement> verifyRolling() {
-  return {{"roll/slide-to-roll", slideToRoll},
-          {"roll/incline", incline},
-          {"roll/between-plates", betweenPlates},
-          {"roll/spin-down", spinDown},
-          {"roll/eulers-disk", eulersDisk}};
+  return {{"roll/slide-to-roll", slideToRoll}, {"roll/incline", incline},    {"roll/between-plates", betweenPlates},
+          {"roll/resistance", resistance},     {"roll/spin-down", spinDown}, {"roll/eulers-disk", eulersDisk}};
 }
 
 }  // namespace pincer::tasks
