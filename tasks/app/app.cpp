@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "contact/error.h"
+#include "devices/window/surface.h"
 #include "tasks/app/commands.h"
 
 namespace pincer::tasks {
@@ -57,6 +58,9 @@ int runApp(int argc, char** argv) {
   } catch (const InputError& error) {
     fmt::print(stderr, "pincer: {}\n", error.what());
     return kExitBadInput;
+  } catch (const devices::DisplayError& error) {
+    fmt::print(stderr, "pincer: {}\n", error.what());
+    return kExitDevice;
   } catch (const std::system_error& error) {  // fmt::print, when standard output can't be written
     fmt::print(stderr, "pincer: {}\n", error.what());
     return kExitBadInput;
