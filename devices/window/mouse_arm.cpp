@@ -8,8 +8,8 @@
 namespace pincer::devices {
 namespace {
 
-constexpr double kLongestStep = 0.25e-3;  // [s]
-constexpr double kMostForce = 8.5;        // [N]
+constexpr double kLongestMouseStep = 0.25e-3;  // [s]
+constexpr double kMostForce = 8.5;             // [N]
 
 ArmCapabilities mouseCapabilities() {
   ArmCapabilities c;
@@ -47,7 +47,7 @@ void MouseArm::commandForce(const Vec3& f_D) {
 }
 
 void MouseArm::advance(double dt) {
-  const int steps = std::max(1, static_cast<int>(std::ceil(dt / kLongestStep - kTimeRounding)));
+  const int steps = std::max(1, static_cast<int>(std::ceil(dt / kLongestMouseStep - kTimeRounding)));
   const double h = dt / steps, b = 2 * settings_.damping_ratio * std::sqrt(settings_.stiffness * settings_.mass);
   for (int i = 0; i < steps; ++i) {
     p_D_ += 0.5 * h * v_D_;

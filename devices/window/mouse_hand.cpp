@@ -15,7 +15,7 @@ MouseHand::MouseHand(const std::vector<MouseMount>& mounts, const MouseHandSetti
     arm.q_DF = mount.q_DF;
     arms_.emplace_back(arm);
   }
-  middle_H_ = 0.5 * (mounts.front().start_H + mounts.back().start_H);
+  home_H_ = middle_H_ = 0.5 * (mounts.front().start_H + mounts.back().start_H);
   gap_ = open_gap_ = mounts.back().start_H.x() - mounts.front().start_H.x();
   wanted_ = {middle_H_, false, settings.grip};
   publish();
@@ -63,9 +63,9 @@ double MouseHand::wantedGap(double dt, bool squeezes, double grip) const {
 void MouseHand::advance(double dt) {
   wishes_.update();
   const Wish& wish = wishes_.current();
-  const Vec3 way = wish.middle_H - middle_H_;
+  const Vec3 way = (going_home_ ? home_H_ : wish.middle_H) - middle_H_;
   middle_H_ += way * std::min(1.0, settings_.top_speed * dt / std::max(way.norm(), 1e-12));
-  if (arms_.size() == 2) gap_ = wantedGap(dt, wish.squeezes, wish.grip);
+  if (arms_.size() == 2) gap_ = wantedGap(dt, squeezing(), wish.grip);
   for (std::size_t i = 0; i < arms_.size(); ++i) {
     const double side = arms_.size() == 1 ? 0 : (i == 0 ? -0.5 : 0.5);
     const Vec3 hand_H = middle_H_ + Vec3(side * gap_, 0, 0);

@@ -45,6 +45,8 @@ class MouseHand {
 
   // The servo's side.
   void advance(double dt);  // [s], > 0
+  bool squeezing() const { return !going_home_ && wishes_.current().squeezes; }
+  void goHome() { going_home_ = true; }  // opens, goes where it began and stays there, whatever the person does
   int fingers() const { return static_cast<int>(arms_.size()); }
   MouseArm& arm(int finger) { return arms_[static_cast<std::size_t>(finger)]; }
   Vec3 place_H(int finger) const;  // of the fingertip [m]
@@ -65,6 +67,8 @@ class MouseHand {
   std::vector<MouseArm> arms_;
   Wish wanted_;  // the window's
   TripleBuffer<Wish> wishes_;
+  bool going_home_ = false;
+  Vec3 home_H_ = Vec3::Zero();
   Vec3 middle_H_ = Vec3::Zero();  // the servo's, on its way to the wish
   double gap_ = 0, open_gap_ = 0;
 };

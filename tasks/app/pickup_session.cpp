@@ -50,7 +50,7 @@ std::string sceneJson(const SpherePickupOptions& o) {
 
 std::string devicesJson(const PickupSessionOptions& o) {
   JsonWriter json;
-  json.beginObject().key("arms").value("simulated").key("tactile_displays").value("simulated").key("rate").value(o.servo.rate);
+  json.beginObject().key("arms").value(o.devices).key("tactile_displays").value("simulated").key("rate").value(o.servo.rate);
   return json.key("sample_rate").value(o.sample_rate).key("real_time").value(o.servo.real_time).endObject().text();
 }
 
@@ -89,7 +89,7 @@ void validate(const PickupSessionOptions& options) {
 }
 
 PickupSessionResult runPickupSession(const PickupSessionOptions& options, const std::string& path, const std::atomic<bool>& interrupted,
-                                     const std::function<void(const PickupProgress&)>& progress) {
+                                     const std::function<void(const PickupProgress&)>& progress, const TrialHost& host) {
   validate(options);
   SessionOptions store;
   store.block_when_full = !options.servo.real_time;
@@ -97,7 +97,7 @@ PickupSessionResult runPickupSession(const PickupSessionOptions& options, const 
   SessionSink sink(writer, std::lround(options.servo.rate) / options.sample_rate);
   PickupSessionResult result;
   const auto served = [&](const ServoReport& trial) { result.servo.add(trial); };
-  result.trials = runPickupStudy(options.study, options.servo, sink, interrupted, progress, served);
+  result.trials = runPickupStudy(options.study, options.servo, sink, interrupted, progress, served, host);
   result.interrupted = result.servo.interrupted;
   if (result.interrupted) {
     writer.abort("interrupted by the user");

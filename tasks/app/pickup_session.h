@@ -11,6 +11,7 @@ namespace pincer::tasks {
 struct PickupSessionOptions {
   SpherePickupOptions study;
   ServoOptions servo;
+  std::string devices = "simulated";  // who brings the arms, as the session says it
   int sample_rate = 200;  // of the ticks that are kept [Hz], 1 .. 1000; divides the servo's rate. A trial's row always counts every tick.
 };
 
@@ -25,7 +26,7 @@ struct PickupSessionResult {
 
 // Runs the study and writes it to the new file `path`. Throws InputError for bad options, a bad object, or a file that can't be written.
 PickupSessionResult runPickupSession(const PickupSessionOptions& options, const std::string& path, const std::atomic<bool>& interrupted,
-                                     const std::function<void(const PickupProgress&)>& progress);
+                                     const std::function<void(const PickupProgress&)>& progress, const TrialHost& host = {});
 
 // The options as JSON, as the session keeps them.
 std::string protocolJson(const SpherePickupOptions& options);

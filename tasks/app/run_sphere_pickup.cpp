@@ -12,6 +12,7 @@
 #include "tasks/app/run_options.h"
 #include "tasks/app/run_tasks.h"
 #include "tasks/app/servo_text.h"
+#include "tasks/app/trial_view.h"
 #include "tasks/experiments/pickup_object.h"
 #include "tasks/report/report.h"
 #include "tasks/session/atomic_file.h"
@@ -22,12 +23,14 @@ namespace {
 constexpr const char* kSpherePickupExample = R"(
 Index finger and thumb pick up spheres of different friction that lie in a dish, with and without contact location displays.
 
-Example:
-  pincer run sphere-pickup --repetitions 2 --seed 7 --out out/first)";
+Examples:
+  pincer run sphere-pickup --repetitions 2 --seed 7 --out out/first
+  pincer run sphere-pickup --devices mouse --view)";
 
 struct SpherePickupArguments {
   RunOptions run;
-  std::string condition = "both", object, units, shading;
+  ViewOptions view;
+  std::string devices = "sim", condition = "both", object, units, shading;
   std::optional<double> size;
   SpherePickupOptions study;
 };
@@ -46,7 +49,8 @@ ObjectFile objectOf(const SpherePickupArguments& arguments) {
 }
 
 PickupSessionOptions optionsOf(const SpherePickupArguments& arguments) {
-  PickupSessionOptions options{arguments.study, arguments.run.servo, arguments.run.sample_rate};
+  PickupSessionOptions options{arguments.study, arguments.run.servo, arguments.devices == "sim" ? "simulated" : arguments.devices,
+                               arguments.run.sample_rate};
   if (arguments.condition != "both") options.study.conditions = {pickupConditionOf(arguments.condition)};
   if (!arguments.object.empty()) options.study.object = objectOf(arguments);
   if (arguments.object.empty() && arguments.size) {
@@ -58,12 +62,16 @@ PickupSessionOptions optionsOf(const SpherePickupArguments& arguments) {
   return options;
 }
 
-PickupSessionResult runSession(const PickupSessionOptions& options, const std::string& session, const std::atomic<bool>& interrupted) {
+PickupSessionResult runSession(const PickupSessionOptions& options, const std::string& session, const std::atomic<bool>& interrupted,
+                               const TrialHost& host) {
   std::unique_ptr<Progress> line;
-  return runPickupSession(options, session, interrupted, [&](const PickupProgress& progress) {
-    if (!line) line = std::make_unique<Progress>("trials", static_cast<std::int64_t>(progress.total));
-    line->update(static_cast<std::int64_t>(progress.done));
-  });
+  return runPickupSession(
+      options, session, interrupted,
+      [&](const PickupProgress& progress) {
+        if (!line) line = std::make_unique<Progress>("trials", static_cast<std::int64_t>(progress.total));
+        line->update(static_cast<std::int64_t>(progress.done));
+      },
+      host);
 }
 
 std::int64_t faultsIn(const SessionSummary& summary) {
@@ -93,11 +101,15 @@ int show(const SpherePickupArguments& arguments, const std::string& directory, c
 int runSpherePickup(const SpherePickupArguments& arguments) {
   const std::atomic<bool>& interrupted = interruptFlag();
   const std::string directory = outputDirectory(arguments.run, "sphere-pickup");
-  const PickupSessionOptions options = optionsOf(arguments);
+  PickupSessionOptions options = optionsOf(arguments);
+  options.servo.real_time = options.servo.real_time || arguments.view.view;
   validate(options);
   makePickupObject(options.study);  // bad options and objects are named before anything is written
+  ViewOptions view = arguments.view;
+  view.title = "sphere-pickup";
+  const auto stage = hostOf(arguments.devices, view, options.servo, interrupted);
   makeDirectory(directory);
-  return show(arguments, directory, runSession(options, directory + "/session.db", interrupted));
+  return show(arguments, directory, runSession(options, directory + "/session.db", interrupted, stage ? stage->host() : TrialHost{}));
 }
 
 void addStudyOptions(CLI::App& command, SpherePickupArguments& arguments) {
@@ -125,6 +137,7 @@ void addSpherePickupTask(CLI::App& run, int& exit_code) {
   CLI::App* command = run.add_subcommand("sphere-pickup", "Pick up spheres of different friction");
   addStudyOptions(*command, *arguments);
   addRunOptions(*command, arguments->run);
+  addTrialViewOptions(*command, arguments->view, arguments->devices);
   command->footer(kSpherePickupExample);
   command->callback([arguments, &exit_code] { exit_code = runSpherePickup(*arguments); });
 }

@@ -34,9 +34,9 @@ struct SimArguments {
 int watch(Simulation& simulation, const SimArguments& arguments, const std::atomic<bool>& interrupted) {
   ViewOptions view = arguments.view;
   view.title = arguments.scene;
-  const ServoReport report = watchScene(simulation, view, arguments.devices == "mouse", interrupted);
-  fmt::print("{}\n", servoText(report, simulation.scene().options.h));
-  return report.interrupted && interrupted ? kExitInterrupted : kExitOk;
+  const WatchResult result = watchScene(simulation, view, arguments.devices == "mouse", interrupted);
+  fmt::print("{}\nLifted by up to {:.1f} mm.\n", servoText(result.servo, simulation.scene().options.h), 1e3 * result.lift);
+  return interrupted ? kExitInterrupted : kExitOk;
 }
 
 int runSim(const SimArguments& arguments) {

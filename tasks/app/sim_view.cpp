@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "tasks/measure/timing.h"
-#include "tasks/view/painter.h"
+#include "tasks/view/viewer.h"
 
 namespace pincer::tasks {
 namespace {
@@ -12,49 +14,59 @@ void captureSimulation(const Simulation& simulation, const engine::StepReport& r
   captureGrasp(simulation.model(), simulation.state(), simulation.scratch(), report, snapshot);
 }
 
-// The scene's ticks, each published; fingers from the scene or from the hand.
-class SceneCycle final : public ServoCycle {
- public:
-  SceneCycle(Simulation& simulation, SnapshotChannel& channel, devices::MouseHand* hand)
-      : simulation_(simulation), channel_(channel), hand_(hand), inputs_(simulation.scene().fingers.size()) {}
+}  // namespace
 
-  bool tick(double) override {
-    const double start = steadySeconds();
-    const engine::StepReport report = hand_ ? handTick() : simulation_.tick();
-    Snapshot& snapshot = channel_.writable();
-    captureSimulation(simulation_, report, snapshot);
-    snapshot.tick_seconds = steadySeconds() - start;
-    channel_.publish();
-    const bool broke = (report.status & engine::kStateNotFinite) != 0;
-    return !broke && (hand_ || simulation_.ticks() < simulation_.scene().ticks());
+SceneCycle::SceneCycle(Simulation& simulation, SnapshotChannel& channel, devices::MouseHand* hand)
+    : simulation_(simulation), channel_(channel), hand_(hand), inputs_(simulation.scene().fingers.size()) {
+  const auto& bodies = simulation.model().world.bodies;
+  for (std::size_t i = 0; i < bodies.size() && object_ < 0; ++i) {
+    if (bodies[i].dynamic) object_ = static_cast<int>(i);
   }
-  void cutForces() noexcept override {}  // nobody feels any
+}
 
- private:
-  engine::StepReport handTick() {
-    hand_->advance(simulation_.scene().options.h);
-    for (int i = 0; i < hand_->fingers(); ++i) {
-      grasp::FingerInput& input = inputs_[static_cast<std::size_t>(i)];
-      input.p_WF = hand_->place_H(i);
-      input.v_WF = hand_->velocity_H(i);
-    }
-    const engine::StepReport report = simulation_.tick(inputs_);
-    for (int i = 0; i < hand_->fingers(); ++i) {
-      hand_->commandForce_H(i, simulation_.scratch().fingers[static_cast<std::size_t>(i)].f_user_W);
-    }
-    return report;
+bool SceneCycle::tick(double) {
+  const double start = steadySeconds();
+  const engine::StepReport report = hand_ ? handTick() : simulation_.tick();
+  Snapshot& snapshot = channel_.writable();
+  captureSimulation(simulation_, report, snapshot);
+  snapshot.tick_seconds = steadySeconds() - start;
+  channel_.publish();
+  noteLift();
+  const bool broke = (report.status & engine::kStateNotFinite) != 0;
+  return !broke && (hand_ || simulation_.ticks() < simulation_.scene().ticks());
+}
+
+engine::StepReport SceneCycle::handTick() {
+  hand_->advance(simulation_.scene().options.h);
+  for (int i = 0; i < hand_->fingers(); ++i) {
+    grasp::FingerInput& input = inputs_[static_cast<std::size_t>(i)];
+    input.p_WF = hand_->place_H(i);
+    input.v_WF = hand_->velocity_H(i);
   }
+  const engine::StepReport report = simulation_.tick(inputs_);
+  for (int i = 0; i < hand_->fingers(); ++i) {
+    hand_->commandForce_H(i, simulation_.scratch().fingers[static_cast<std::size_t>(i)].f_user_W);
+  }
+  return report;
+}
 
-  Simulation& simulation_;
-  SnapshotChannel& channel_;
-  devices::MouseHand* hand_;
-  std::vector<grasp::FingerInput> inputs_;
-};
+void SceneCycle::noteLift() {
+  if (object_ < 0) return;
+  const double start = simulation_.scene().starts[static_cast<std::size_t>(object_)].X_WB.p.z();
+  lift_ = std::max(lift_, simulation_.bodyPose(object_).p.z() - start);
+}
 
-std::vector<devices::MouseMount> mouseMountsOf(const Scene& scene) {
+Snapshot snapshotOf(const Simulation& simulation) {
+  Snapshot snapshot = Snapshot::sizedFor(simulation.model());
+  captureSimulation(simulation, {}, snapshot);
+  return snapshot;
+}
+
+std::vector<devices::MouseMount> mouseMounts(const Scene& scene) {
   if (scene.fingers.empty() || scene.fingers.size() > 2) {
-    throw InputError(fmt::format("{}: a mouse moves one or two fingers, and this scene has {}. Take a scene with one or two, or watch it without --devices mouse.",
-                                 scene.file, scene.fingers.size()));
+    throw InputError(fmt::format(
+        "{}: a mouse moves one or two fingers, and this scene has {}. Take a scene with one or two, or watch it without --devices mouse.",
+        scene.file, scene.fingers.size()));
   }
   std::vector<devices::MouseMount> mounts;
   for (const SceneFinger& finger : scene.fingers) {
@@ -65,27 +77,28 @@ std::vector<devices::MouseMount> mouseMountsOf(const Scene& scene) {
   return mounts;
 }
 
-}  // namespace
-
 Image pictureOf(const Simulation& simulation) {
   const auto surface = devices::openOffscreen({});
-  Snapshot snapshot = Snapshot::sizedFor(simulation.model());
-  captureSimulation(simulation, {}, snapshot);
-  Painter painter(*surface, simulation.model(), snapshot);
-  painter.draw(snapshot, {});
-  return painter.picture();
+  const Snapshot snapshot = snapshotOf(simulation);
+  SnapshotChannel channel(snapshot);
+  PaceControl pace;
+  Viewer viewer(*surface, simulation.model(), snapshot, channel, pace, nullptr, {});
+  viewer.choice().overlay = false;
+  viewer.update();
+  return viewer.picture();
 }
 
-ServoReport watchScene(Simulation& simulation, const ViewOptions& options, bool mouse, const std::atomic<bool>& interrupted) {
+WatchResult watchScene(Simulation& simulation, const ViewOptions& options, bool mouse, const std::atomic<bool>& interrupted) {
   std::optional<devices::MouseHand> hand;
-  if (mouse) hand.emplace(mouseMountsOf(simulation.scene()));
-  Snapshot start = Snapshot::sizedFor(simulation.model());
-  captureSimulation(simulation, {}, start);
+  if (mouse) hand.emplace(mouseMounts(simulation.scene()));
+  const Snapshot start = snapshotOf(simulation);
   SnapshotChannel channel(start);
   SceneCycle cycle(simulation, channel, hand ? &*hand : nullptr);
   ServoOptions servo;
   servo.rate = 1 / simulation.scene().options.h;
-  return runWatched({cycle, simulation.model(), start, channel, hand ? &*hand : nullptr}, servo, options, interrupted);
+  const ServoReport report =
+      runWatched({cycle, simulation.model(), start, channel, hand ? &*hand : nullptr, true}, servo, options, interrupted);
+  return {report, cycle.lift()};
 }
 
 }  // namespace pincer::tasks

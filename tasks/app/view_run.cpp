@@ -56,17 +56,25 @@ void addViewOptions(CLI::App& command, ViewOptions& options) {
 }
 
 ServoReport runWatched(const WatchedCycle& watched, const ServoOptions& servo, const ViewOptions& options,
-                       const std::atomic<bool>& interrupted) {
-  const auto surface = devices::openWindow({"pincer " + options.title});
+                       const std::atomic<bool>& interrupted, devices::Surface& surface) {
   PaceControl pace;
-  Viewer viewer(*surface, watched.model, watched.start, watched.channel, pace, watched.hand, {options.title, options.keys});
+  Viewer viewer(surface, watched.model, watched.start, watched.channel, pace, watched.hand, {options.title, options.keys});
   ServoOptions real_time = servo;
   real_time.real_time = true;
+  pace.linger = watched.linger;
   ServoThread thread(watched, real_time, pace, interrupted);
-  while (viewer.update() && !interrupted && !thread.done()) {
-  }
+  bool open = true;
+  while (open && !interrupted && !thread.done()) open = viewer.update();
   if (!options.screenshot.empty()) writePng(viewer.picture(), options.screenshot);
-  return thread.finish();
+  ServoReport report = thread.finish();
+  report.interrupted = report.interrupted || !open;
+  return report;
+}
+
+ServoReport runWatched(const WatchedCycle& watched, const ServoOptions& servo, const ViewOptions& options,
+                       const std::atomic<bool>& interrupted) {
+  const auto surface = devices::openWindow({"pincer " + options.title});
+  return runWatched(watched, servo, options, interrupted, *surface);
 }
 
 }  // namespace pincer::tasks

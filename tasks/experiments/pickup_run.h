@@ -4,6 +4,7 @@
 #include <atomic>
 #include <functional>
 
+#include "tasks/experiments/hands_cycle.h"
 #include "tasks/experiments/pickup_trial.h"
 #include "tasks/experiments/simulated_hands.h"
 #include "tasks/servo/servo.h"
@@ -17,8 +18,8 @@ class SimulatedPickup final : public ServoCycle {
   SimulatedPickup(const SpherePickupOptions& options, const PickupObject& object, const PickupTrialSpec& spec, Participant& participant,
                   RecordSink& sink);
 
-  bool tick(double now) override;
-  void cutForces() noexcept override { cut_ = true; }
+  bool tick(double now) override { return cycle_.tick(now); }
+  void cutForces() noexcept override { cycle_.cutForces(); }
   // Hands events and the trial's row to the sink. Once, after the servo has returned.
   void finish() { trial_.finish(); }
 
@@ -28,18 +29,18 @@ class SimulatedPickup final : public ServoCycle {
  private:
   PickupTrial trial_;
   SimulatedHands hands_;
-  std::atomic<bool> cut_{false};
+  HandsCycle cycle_{trial_, hands_};
 };
 
 struct PickupProgress {
   std::size_t done = 0, total = 0;  // trials
 };
 
-// Every trial of the study with the scripted participant. An interrupted trial leaves no row. Returns the number of finished trials.
+// Every trial of the study, with the scripted participant unless `host` brings other hands. An interrupted trial leaves no row. Returns the number of finished trials.
 // `progress` (may be empty) is called before the first and after every trial, `served` (may be empty) with what the servo says of each, the
 // interrupted one included. Throws InputError for bad options or a bad object.
 std::size_t runPickupStudy(const SpherePickupOptions& options, const ServoOptions& servo, RecordSink& sink,
                            const std::atomic<bool>& interrupted, const std::function<void(const PickupProgress&)>& progress = {},
-                           const std::function<void(const ServoReport&)>& served = {});
+                           const std::function<void(const ServoReport&)>& served = {}, const TrialHost& host = {});
 
 }  // namespace pincer::tasks

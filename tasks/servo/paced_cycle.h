@@ -15,6 +15,7 @@ struct PaceControl {
   std::atomic<int> single_ticks{0};  // to do while paused
   std::atomic<double> speed{1};      // of the inner time, 0 .. 1
   std::atomic<bool> stop{false};     // ends the cycle
+  std::atomic<bool> linger{false};   // a cycle that is over goes on without ticks, to be looked at
   std::atomic<double> late{-1};      // told by the servo: how late the last tick began, against the first [s]; negative: none yet
 };
 
@@ -26,7 +27,7 @@ class PacedCycle final : public ServoCycle {
   bool tick(double now) override {
     if (control_.stop) return false;
     noteLateness(now);
-    if (!more_) return true;  // over, but still to be looked at
+    if (!more_) return control_.linger;
     if (control_.paused) {
       owed_ = 0;
       if (control_.single_ticks.load() > 0) {
@@ -56,7 +57,7 @@ class PacedCycle final : public ServoCycle {
   PaceControl& control_;
   double rate_;
   double start_ = 0;  // on the clock [s]
-  double owed_ = 0;  // inner ticks
+  double owed_ = 0;   // inner ticks
   long ticks_ = 0;
   bool more_ = true;
 };

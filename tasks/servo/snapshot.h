@@ -46,9 +46,7 @@ struct TrialSnapshot {
   const char* stage = "";
   const char* condition = "";
   std::int64_t trial = 0, trials = 0;  // from 1; 0: there are no trials
-  std::int64_t squeezes = 0, lifts = 0, drops = 0;
-  double left = -1;    // of the time that the trial may take [s]; negative: no limit
-  bool blind = false;  // the protocol shows nothing of the world
+  bool blind = false;                  // the protocol shows nothing of the world
 };
 
 struct Snapshot {

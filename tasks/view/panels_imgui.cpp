@@ -76,9 +76,7 @@ void drawTrial(const OverlayText& text, int width) {
   std::string line = fmt::format("trial {} of {}", trial.trial, trial.trials);
   if (*trial.condition) line += fmt::format(" · {}", trial.condition);
   if (*trial.stage) line += fmt::format(" · {}", trial.stage);
-  if (trial.left >= 0) line += fmt::format(" · {:.0f} s left", trial.left);
   dimLine(line);
-  dimLine(fmt::format("squeezes {} · lifts {} · drops {}", trial.squeezes, trial.lifts, trial.drops));
 }
 
 void drawHealth(const OverlayText& text, int height) {

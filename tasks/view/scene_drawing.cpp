@@ -12,14 +12,16 @@ namespace pincer::tasks {
 namespace {
 
 const Vec3f kSkin(0.83f, 0.50f, 0.37f), kPad(0.88f, 0.40f, 0.34f), kNail(0.93f, 0.72f, 0.64f);
-const Vec3f kStick(0.02f, 0.50f, 0.20f), kSlip(0.95f, 0.10f, 0.03f), kNormal(0.02f, 0.07f, 0.30f), kPorcelain(0.80f, 0.79f, 0.76f);
-const Vec3f kFloor(0.62f, 0.64f, 0.66f), kDevice(0.10f, 0.30f, 0.85f);
+const Vec3f kStick(0.02f, 0.50f, 0.20f), kSlip(0.95f, 0.10f, 0.03f), kNormal(0.02f, 0.07f, 0.30f), kPorcelain(0.50f, 0.52f, 0.54f);
+const Vec3f kFloor(0.50f, 0.52f, 0.55f), kDevice(0.10f, 0.30f, 0.85f);
 const std::array<Vec3f, 6> kBodyColours = {Vec3f(0.90f, 0.42f, 0.06f), Vec3f(0.06f, 0.36f, 0.62f), Vec3f(0.30f, 0.55f, 0.16f),
                                            Vec3f(0.55f, 0.16f, 0.42f), Vec3f(0.80f, 0.62f, 0.10f), Vec3f(0.10f, 0.50f, 0.52f)};
 constexpr double kFingerBehind = 3.2;       // length of a finger behind its tip's centre, in radii
 constexpr double kPadAngle = 55 * kDegree;  // of the pad about its normal, that the display's tactor reaches
-constexpr double kGroundExtent = 12;      // radius of the drawn floor, in radii of what moves
-constexpr double kLargestThing = 1;       // a larger body that doesn't move needn't be in the picture [m]
+constexpr double kGroundExtent = 12;        // radius of the drawn floor, in radii of what moves
+constexpr double kLargestThing = 1;         // a larger body that doesn't move needn't be in the picture [m]
+constexpr double kLongestArrow = 2.2;       // in sizes of what moves
+constexpr int kMostLabels = 8;              // more contacts than these, and only fingers' forces are written beside them
 constexpr double kLeastForce = 1e-3;        // smaller ones get no arrow [N]
 
 bool isGround(const contact::Shape& shape) {
@@ -79,7 +81,6 @@ SceneDrawing::SceneDrawing(const grasp::GraspModel& model, const Snapshot& start
   }
   for (const grasp::FingerModel& finger : model.fingers) smallest = std::min(smallest, 3 * finger.radius);
   if (smallest < kInfinity) size_ = smallest;
-  metres_per_newton_ = 0.8 * size_;
   for (std::size_t i = 0; i < start.fingers.size(); ++i) plain_q_WF_.push_back(plainOrientation(start, i));
 }
 
@@ -90,14 +91,14 @@ SceneDrawing::BodyLook SceneDrawing::bodyLook(const engine::BodyModel& body) {
   look.is_mesh = std::holds_alternative<contact::Mesh>(body.shape);
   look.layer = std::holds_alternative<contact::HalfSpace>(body.shape) ? Layer::kGround : Layer::kSolid;
   look.matters = look.moves || (!isGround(body.shape) && body.bounding_radius < kLargestThing);
+  look.p_BC = body.X_BI.p;
   look.radius = body.bounding_radius;
   return look;
 }
 
 void SceneDrawing::addMeshes(const engine::BodyModel& body, double reach, Renderer& renderer, BodyLook& look) {
   const auto* dish = std::get_if<contact::Dish>(&body.shape);
-  const double extent =
-      dish ? std::min(0.55 * dish->radius, std::max(1.2 * reach, 0.3 * dish->radius)) : kGroundExtent * reach;
+  const double extent = dish ? std::min(0.55 * dish->radius, std::max(1.2 * reach, 0.3 * dish->radius)) : kGroundExtent * reach;
   look.smooth = look.facets = renderer.add(shapeMesh(body.shape, MeshLook::kSmooth, extent));
   if (look.is_mesh) look.facets = renderer.add(shapeMesh(body.shape, MeshLook::kFacets, extent));
 }
@@ -110,7 +111,8 @@ DrawList SceneDrawing::compose(const Snapshot& snapshot, const ViewChoice& choic
     addFinger(snapshot, i, list);
     if (choice.devices) addDevice(snapshot.fingers[i], fingers_[i].radius, list);
   }
-  for (int i = 0; i < snapshot.contact_count; ++i) addContact(snapshot.contacts[static_cast<std::size_t>(i)], choice, list);
+  const double scale = metresPerNewton(snapshot);
+  for (int i = 0; i < snapshot.contact_count; ++i) addContact(snapshot.contacts[static_cast<std::size_t>(i)], choice, scale, list);
   return list;
 }
 
@@ -153,17 +155,26 @@ void SceneDrawing::addDevice(const FingerSnapshot& finger, double radius, DrawLi
   list.push_back({rod_, placed(pointing(finger.p_WP, spring), Vec3(thin, thin, spring.norm())), paint, Layer::kMark});
 }
 
-void SceneDrawing::addContact(const ContactSnapshot& contact, const ViewChoice& choice, DrawList& list) const {
+double SceneDrawing::metresPerNewton(const Snapshot& snapshot) const {
+  double largest = 0;
+  for (int i = 0; i < snapshot.contact_count; ++i) largest = std::max(largest, snapshot.contacts[static_cast<std::size_t>(i)].f_W.norm());
+  double scale = 0.8 * size_;  // for some newtons; ten times as large ones are drawn at a tenth, in steps of about two
+  for (int i = 0; scale * largest > kLongestArrow * size_; ++i) scale *= i % 3 == 1 ? 0.4 : 0.5;
+  return scale;
+}
+
+void SceneDrawing::addContact(const ContactSnapshot& contact, const ViewChoice& choice, double metres_per_newton, DrawList& list) const {
+  const double size = contact.finger < 0 ? 0.4 * size_ : size_;  // bodies have many
   const Paint paint{.colour = gripColour(contact.sliding), .gloss = 0.5f, .glow = 0.35f};
   if (choice.contacts) {
-    list.push_back({ball_, placed({Quat::Identity(), contact.p_W}, Vec3::Constant(0.06 * size_)), paint, Layer::kMark});
-    addArrow(contact.p_W, 0.45 * size_ * contact.n_W, 0.012 * size_, {.colour = kNormal, .glow = 0.7f}, list);
+    list.push_back({ball_, placed({Quat::Identity(), contact.p_W}, Vec3::Constant(0.06 * size)), paint, Layer::kMark});
+    addArrow(contact.p_W, 0.45 * size * contact.n_W, 0.012 * size, {.colour = kNormal, .glow = 0.7f}, list);
   }
   if (choice.forces && contact.f_W.norm() > kLeastForce) {
-    addArrow(contact.p_W, metres_per_newton_ * contact.f_W, 0.035 * size_, paint, list);
+    addArrow(contact.p_W, metres_per_newton * contact.f_W, 0.035 * size, paint, list);
   }
   if (!choice.cones || contact.finger < 0 || !(contact.mu > 0)) return;
-  const double height = 0.9 * size_ / std::sqrt(1 + contact.mu * contact.mu);
+  const double height = 0.9 * size / std::sqrt(1 + contact.mu * contact.mu);
   const Vec3 stretch(contact.mu * height, contact.mu * height, height);
   list.push_back({cone_,
                   placed(pointing(contact.p_W, contact.n_W), stretch),
@@ -182,11 +193,12 @@ void SceneDrawing::addArrow(const Vec3& from_W, const Vec3& along_W, double thic
 std::vector<ViewLabel> SceneDrawing::labels(const Snapshot& snapshot, const ViewChoice& choice) const {
   std::vector<ViewLabel> labels;
   if (!choice.forces || snapshot.trial.blind) return labels;
+  const double scale = metresPerNewton(snapshot);
   for (int i = 0; i < snapshot.contact_count; ++i) {
     const ContactSnapshot& contact = snapshot.contacts[static_cast<std::size_t>(i)];
     const double newtons = contact.f_W.norm();
-    if (newtons < 0.01) continue;
-    labels.push_back({contact.p_W + (metres_per_newton_ + 0.12 * size_ / newtons) * contact.f_W, fmt::format("{:.2f} N", newtons), contact.sliding});
+    if (newtons < 0.01 || (contact.finger < 0 && snapshot.contact_count > kMostLabels)) continue;
+    labels.push_back({contact.p_W + (scale + 0.12 * size_ / newtons) * contact.f_W, fmt::format("{:.2f} N", newtons), contact.sliding});
   }
   return labels;
 }
@@ -195,7 +207,7 @@ Vec3 SceneDrawing::centre_W(const Snapshot& snapshot) const {
   Eigen::AlignedBox3d box;
   for (const FingerSnapshot& finger : snapshot.fingers) box.extend(finger.p_WP);
   for (std::size_t i = 0; i < snapshot.X_WB.size(); ++i) {
-    if (bodies_[i].dynamic) box.extend(snapshot.X_WB[i].p);
+    if (bodies_[i].dynamic) box.extend(snapshot.X_WB[i] * bodies_[i].p_BC);
   }
   return box.isEmpty() ? Vec3(Vec3::Zero()) : Vec3(box.center());
 }
@@ -207,14 +219,15 @@ double SceneDrawing::radius(const Snapshot& snapshot) const {
     radius = std::max(radius, (snapshot.fingers[i].p_WP - centre).norm() + 2 * fingers_[i].radius);
   }
   for (std::size_t i = 0; i < snapshot.X_WB.size(); ++i) {
-    if (bodies_[i].matters) radius = std::max(radius, (snapshot.X_WB[i].p - centre).norm() + bodies_[i].radius);
+    if (bodies_[i].matters) radius = std::max(radius, (snapshot.X_WB[i] * bodies_[i].p_BC - centre).norm() + bodies_[i].radius);
   }
   return radius;
 }
 
 Camera SceneDrawing::camera(const Snapshot& snapshot) const {
   Camera camera;
-  camera.frame(centre_W(snapshot), 1.15 * radius(snapshot));
+  const double r = radius(snapshot);
+  camera.frame(centre_W(snapshot) + 0.1 * r * Vec3::UnitZ(), 1.25 * r);
   return camera;
 }
 

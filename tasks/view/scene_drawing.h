@@ -1,6 +1,6 @@
 // scene_drawing: a snapshot as things to draw: bodies, fingertips, where devices and proxies are, contacts, cones, forces.
 //
-//   force arrow   from the contact along the force on the finger, `metres_per_newton` long
+//   force arrow   from the contact along the force on the finger; its scale is the largest round one at which all fit the picture
 //   cone          of friction at a finger's contact: the force on the finger lies within it; its half opening is atan(mu)
 //   colours       sticking green, slipping red
 #pragma once
@@ -48,8 +48,8 @@ class SceneDrawing {
   // A ball about all that moves, in this snapshot.
   Vec3 centre_W(const Snapshot& snapshot) const;
   double radius(const Snapshot& snapshot) const;
-  Camera camera(const Snapshot& snapshot) const;  // that looks at it
-  double metres_per_newton() const { return metres_per_newton_; }
+  Camera camera(const Snapshot& snapshot) const;           // that looks at it
+  double metresPerNewton(const Snapshot& snapshot) const;  // of the arrows
 
  private:
   struct BodyLook {
@@ -57,8 +57,9 @@ class SceneDrawing {
     Paint paint;
     Layer layer = Layer::kSolid;
     bool dynamic = false, moves = false, is_mesh = false;
-    bool matters = false;  // is to be in the picture
-    double radius = 0;     // about its place [m]
+    bool matters = false;      // is to be in the picture
+    Vec3 p_BC = Vec3::Zero();  // its centre of mass [m]
+    double radius = 0;         // about it [m]
   };
 
   static BodyLook bodyLook(const engine::BodyModel& body);
@@ -66,7 +67,7 @@ class SceneDrawing {
   void addBodies(const Snapshot& snapshot, const ViewChoice& choice, DrawList& list) const;
   void addFinger(const Snapshot& snapshot, std::size_t finger, DrawList& list) const;
   void addDevice(const FingerSnapshot& finger, double radius, DrawList& list) const;
-  void addContact(const ContactSnapshot& contact, const ViewChoice& choice, DrawList& list) const;
+  void addContact(const ContactSnapshot& contact, const ViewChoice& choice, double metres_per_newton, DrawList& list) const;
   void addArrow(const Vec3& from_W, const Vec3& along_W, double thickness, const Paint& paint, DrawList& list) const;
 
   std::vector<grasp::FingerModel> fingers_;
@@ -74,7 +75,6 @@ class SceneDrawing {
   std::vector<Quat> plain_q_WF_;  // of fingers whose device says nothing of their orientation
   int ball_, rod_, cone_, head_, finger_, pad_, nail_;
   double size_ = 0.05;  // of marks: that of the things that move [m]
-  double metres_per_newton_ = 0.02;
 };
 
 }  // namespace pincer::tasks

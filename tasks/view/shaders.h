@@ -70,7 +70,7 @@ void main() {
   if (!gl_FrontFacing) n = -n;
   float facing = max(dot(n, sun_W), 0.0);
   float shade = facing > 0.0 ? lit(1.0 - facing) : 0.0;
-  vec3 sky = mix(vec3(0.30, 0.27, 0.25), vec3(0.50, 0.54, 0.60), 0.5 + 0.5 * n.z);
+  vec3 sky = mix(vec3(0.24, 0.22, 0.21), vec3(0.40, 0.44, 0.50), 0.5 + 0.5 * n.z);
   float fill = max(dot(n, v), 0.0);
   vec3 light = vec3(1.02, 0.98, 0.92) * facing * shade + sky + vec3(0.10) * fill;
   vec3 halfway = normalize(sun_W + v);

@@ -9,7 +9,7 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr double kNoticeTime = 2.5;     // [s]
+constexpr double kNoticeTime = 2.5;  // [s]
 
 double viewerSeconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
@@ -85,7 +85,8 @@ OverlayText Viewer::overlayText() const {
   text.choice = choice_;
   const devices::SurfaceSize size = surface_.size();
   for (const ViewLabel& label : painter_.scene().labels(shown(), choice_)) {
-    if (const auto pixel = painter_.camera().toPixel(label.p_W, size.width, size.height)) text.labels.push_back({*pixel, label.text, label.slips});
+    if (const auto pixel = painter_.camera().toPixel(label.p_W, size.width, size.height))
+      text.labels.push_back({*pixel, label.text, label.slips});
   }
   for (std::size_t i = 0; i < pads_.size(); ++i) {
     if (shown().fingers[i].q_WF) text.pads.push_back(pads_[i]);

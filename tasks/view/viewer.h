@@ -29,7 +29,9 @@ class Viewer {
   // What the person did, one picture, and shown. Returns false when the person has closed it.
   bool update();
 
-  void handle(const devices::InputEvent& event);  // what update() does with every event
+  // The parts of update():
+  void handle(const devices::InputEvent& event);
+  void look();  // at the channel
   Image picture() { return painter_.picture(); }
   ViewChoice& choice() { return choice_; }
   Painter& painter() { return painter_; }
@@ -37,7 +39,6 @@ class Viewer {
   double pictures_per_second() const { return pictures_per_second_; }
 
  private:
-  void look();  // at the channel
   void draw();
   void act(ViewAction action);
   void actOnTime(ViewAction action);

@@ -14,13 +14,20 @@ constexpr double kZoomStep = 0.9;       // per notch
 
 Vec3 wayOf(ViewAction action) {
   switch (action) {
-    case ViewAction::kHandLeft: return -Vec3::UnitX();
-    case ViewAction::kHandRight: return Vec3::UnitX();
-    case ViewAction::kHandUp: return Vec3::UnitZ();
-    case ViewAction::kHandDown: return -Vec3::UnitZ();
-    case ViewAction::kHandAway: return Vec3::UnitY();
-    case ViewAction::kHandNear: return -Vec3::UnitY();
-    default: return Vec3::Zero();
+    case ViewAction::kHandLeft:
+      return -Vec3::UnitX();
+    case ViewAction::kHandRight:
+      return Vec3::UnitX();
+    case ViewAction::kHandUp:
+      return Vec3::UnitZ();
+    case ViewAction::kHandDown:
+      return -Vec3::UnitZ();
+    case ViewAction::kHandAway:
+      return Vec3::UnitY();
+    case ViewAction::kHandNear:
+      return -Vec3::UnitY();
+    default:
+      return Vec3::Zero();
   }
 }
 
@@ -71,11 +78,21 @@ void Viewer::wheel(const devices::InputEvent& event) {
 void Viewer::act(ViewAction action) {
   if (toggle(action, choice_)) return;
   switch (action) {
-    case ViewAction::kQuit: quit_ = true; break;
-    case ViewAction::kFullScreen: surface_.toggleFullScreen(); break;
-    case ViewAction::kCamera: painter_.camera() = painter_.scene().camera(shown()); break;
-    case ViewAction::kScreenshot: saveScreenshot(); break;
-    case ViewAction::kSequence: toggleSequence(); break;
+    case ViewAction::kQuit:
+      quit_ = true;
+      break;
+    case ViewAction::kFullScreen:
+      surface_.toggleFullScreen();
+      break;
+    case ViewAction::kCamera:
+      painter_.camera() = painter_.scene().camera(shown());
+      break;
+    case ViewAction::kScreenshot:
+      saveScreenshot();
+      break;
+    case ViewAction::kSequence:
+      toggleSequence();
+      break;
     default:
       actOnTime(action);
       if (hand_) actOnHand(action);
@@ -97,13 +114,26 @@ void Viewer::actOnTime(ViewAction action) {
         ++*scrub_;
       }
       break;
-    case ViewAction::kTickBack: scrubBy(-1); break;
-    case ViewAction::kScrubBack: scrubTo(shown().time - 1); break;
-    case ViewAction::kScrubForward: scrubTo(shown().time + 1); break;
-    case ViewAction::kLive: scrub_.reset(); break;
-    case ViewAction::kSlower: pace_.speed = std::max(0.5 * pace_.speed, kSlowest); break;
-    case ViewAction::kFaster: pace_.speed = std::min(2 * pace_.speed, 1.0); break;
-    default: break;
+    case ViewAction::kTickBack:
+      scrubBy(-1);
+      break;
+    case ViewAction::kScrubBack:
+      scrubTo(shown().time - 1);
+      break;
+    case ViewAction::kScrubForward:
+      scrubTo(shown().time + 1);
+      break;
+    case ViewAction::kLive:
+      scrub_.reset();
+      break;
+    case ViewAction::kSlower:
+      pace_.speed = std::max(0.5 * pace_.speed, kSlowest);
+      break;
+    case ViewAction::kFaster:
+      pace_.speed = std::min(2 * pace_.speed, 1.0);
+      break;
+    default:
+      break;
   }
 }
 

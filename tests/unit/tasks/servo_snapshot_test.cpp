@@ -89,6 +89,7 @@ TEST(PacedCycle, PausesTakesSingleTicksAndSlowsDown) {
   for (int i = 20; i < 60; ++i) paced.tick(1e-3 * i);
   EXPECT_EQ(inner.ticks, 22);
   control.speed = 1;
+  control.linger = true;
   for (int i = 0; i < 1000; ++i) EXPECT_TRUE(paced.tick(1));
   EXPECT_EQ(inner.ticks, 100);  // over, and still there to be looked at
   control.stop = true;
