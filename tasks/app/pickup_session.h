@@ -11,8 +11,8 @@ namespace pincer::tasks {
 struct PickupSessionOptions {
   SpherePickupOptions study;
   ServoOptions servo;
-  std::string devices = "simulated";  // who brings the arms, as the session says it
   int sample_rate = 200;  // of the ticks that are kept [Hz], 1 .. 1000; divides the servo's rate. A trial's row always counts every tick.
+  std::string devices = "simulated";  // who brings the arms, as the session says it
 };
 
 // Throws InputError naming the first value out of range, its range and the remedy.

@@ -49,8 +49,8 @@ ObjectFile objectOf(const SpherePickupArguments& arguments) {
 }
 
 PickupSessionOptions optionsOf(const SpherePickupArguments& arguments) {
-  PickupSessionOptions options{arguments.study, arguments.run.servo, arguments.devices == "sim" ? "simulated" : arguments.devices,
-                               arguments.run.sample_rate};
+  PickupSessionOptions options{arguments.study, arguments.run.servo, arguments.run.sample_rate};
+  if (arguments.devices != "sim") options.devices = arguments.devices;
   if (arguments.condition != "both") options.study.conditions = {pickupConditionOf(arguments.condition)};
   if (!arguments.object.empty()) options.study.object = objectOf(arguments);
   if (arguments.object.empty() && arguments.size) {

@@ -1,8 +1,8 @@
+#include "devices/window/mouse_hand.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
-
-#include "devices/window/mouse_hand.h"
 
 namespace pincer::devices {
 namespace {
