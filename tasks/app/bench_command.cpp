@@ -106,6 +106,8 @@ void addGraspBench(CLI::App& bench, const std::shared_ptr<BenchArguments>& argum
   grasp->footer(kGraspExample);
   grasp->callback(
       [arguments, &exit_code] { exit_code = runMeasurements(graspMeasurements(arguments->grasp), arguments->measure, "bench grasp"); });
+}
+
 void addViewBench(CLI::App& bench, const std::shared_ptr<BenchArguments>& arguments, int& exit_code) {
   CLI::App* view = bench.add_subcommand("view", "Watching: pictures per second, a snapshot's cost, whether it delays the servo");
   addMeasureOptions(*view, arguments->measure);

@@ -4,11 +4,11 @@
 #include <thread>
 
 #include "devices/triple_buffer.h"
-#include "support/allocation_guard.h"
 #include "tasks/scene/builtin_scenes.h"
 #include "tasks/scene/simulation.h"
 #include "tasks/servo/paced_cycle.h"
 #include "tasks/servo/snapshot.h"
+#include "tests/support/allocation_guard.h"
 
 namespace pincer::tasks {
 namespace {
