@@ -91,6 +91,7 @@ const MeshFeatures& SmoothMesh::features() const {
   return *d.features;
 }
 const TriangleMesh& SmoothMesh::triangles() const { return data_->net.mesh(); }
+Patch SmoothMesh::patch(std::int32_t triangle) const { return data_->net.build(triangle).patch; }
 SurfaceVariant SmoothMesh::variant() const { return data_->variant; }
 const std::vector<std::int32_t>& SmoothMesh::foldedTriangles() const { return data_->findings.folded; }
 double SmoothMesh::tightestConcaveRadius() const { return data_->findings.concave_radius; }

@@ -50,6 +50,7 @@ class SmoothMesh {
   const std::vector<Vec3>& hullVertices() const;  // corners of the mesh's convex hull, each a vertex of the mesh [m]
   double boundingRadius() const;                  // of a sphere about B's origin that holds the surface [m]
   const TriangleMesh& triangles() const;          // without the file's normals
+  Patch patch(std::int32_t triangle) const;       // the surface over it, to be drawn or exported; built at every call
   std::size_t memoryBytes() const;                // of all that is kept of it
 
   SurfaceVariant variant() const;

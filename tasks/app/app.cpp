@@ -8,14 +8,15 @@
 #include <system_error>
 
 #include "contact/error.h"
+#include "devices/window/surface.h"
 #include "tasks/app/commands.h"
 
 namespace pincer::tasks {
 namespace {
 
 // The program's table of contents, in the order in which --help shows it.
-constexpr std::array kCommands = {addRunCommand,  addReportCommand, addExportCommand, addReplayCommand, addSimCommand,
-                                  addPlanCommand, addVerifyCommand, addStressCommand, addBenchCommand,  addMeshCommand};
+constexpr std::array kCommands = {addRunCommand,  addReportCommand, addExportCommand, addReplayCommand, addSimCommand,  addPlanCommand,
+                                  addVerifyCommand, addStressCommand, addBenchCommand, addMeshCommand, addDevicesCommand, addKeysCommand};
 
 constexpr const char* kExamples = R"(
 Examples:
@@ -57,6 +58,9 @@ int runApp(int argc, char** argv) {
   } catch (const InputError& error) {
     fmt::print(stderr, "pincer: {}\n", error.what());
     return kExitBadInput;
+  } catch (const devices::DisplayError& error) {
+    fmt::print(stderr, "pincer: {}\n", error.what());
+    return kExitDevice;
   } catch (const std::system_error& error) {  // fmt::print, when standard output can't be written
     fmt::print(stderr, "pincer: {}\n", error.what());
     return kExitBadInput;

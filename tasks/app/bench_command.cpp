@@ -10,6 +10,7 @@
 #include "tasks/bench/engine/engine_bench.h"
 #include "tasks/bench/grasp/grasp_bench.h"
 #include "tasks/bench/study_bench.h"
+#include "tasks/bench/view_bench.h"
 
 namespace pincer::tasks {
 namespace {
@@ -57,6 +58,7 @@ struct BenchArguments {
   EngineBenchOptions engine;
   GraspBenchOptions grasp;
   StudyBenchOptions study;
+  ViewBenchOptions view;
 };
 
 void addContactBench(CLI::App& bench, const std::shared_ptr<BenchArguments>& arguments, int& exit_code) {
@@ -106,6 +108,18 @@ void addGraspBench(CLI::App& bench, const std::shared_ptr<BenchArguments>& argum
       [arguments, &exit_code] { exit_code = runMeasurements(graspMeasurements(arguments->grasp), arguments->measure, "bench grasp"); });
 }
 
+void addViewBench(CLI::App& bench, const std::shared_ptr<BenchArguments>& arguments, int& exit_code) {
+  CLI::App* view = bench.add_subcommand("view", "Watching: pictures per second, a snapshot's cost, whether it delays the servo");
+  addMeasureOptions(*view, arguments->measure);
+  view->add_option("--pictures", arguments->view.pictures, "Pictures to time")->check(CLI::Range(1, 10000))->capture_default_str();
+  view->add_option("--seconds", arguments->view.seconds, "Of the servo in real time, watched and not")
+      ->check(CLI::Range(0.1, 3.9))
+      ->capture_default_str();
+  view->footer("\nExample:\n  pincer bench view");
+  view->callback(
+      [arguments, &exit_code] { exit_code = runMeasurements(viewMeasurements(arguments->view), arguments->measure, "bench view"); });
+}
+
 }  // namespace
 
 void addBenchCommand(CLI::App& app, int& exit_code) {
@@ -117,6 +131,7 @@ void addBenchCommand(CLI::App& app, int& exit_code) {
   addEngineBench(*bench, arguments, exit_code);
   addGraspBench(*bench, arguments, exit_code);
   addStudyBench(*bench, arguments, exit_code);
+  addViewBench(*bench, arguments, exit_code);
 }
 
 }  // namespace pincer::tasks

@@ -7,7 +7,9 @@
 #include "tasks/app/commands.h"
 #include "tasks/app/interrupt.h"
 #include "tasks/app/progress.h"
+#include "tasks/app/servo_text.h"
 #include "tasks/app/sim_run.h"
+#include "tasks/app/sim_view.h"
 #include "tasks/scene/builtin_scenes.h"
 
 namespace pincer::tasks {
@@ -17,24 +19,37 @@ constexpr const char* kSimExample = R"(
 Runs the bodies and fingers of a scene file (docs/scenes.md), shows where they end up, and checks what the scene expects.
 Exit code 1 if an expectation fails.
 
-Example:
-  pincer sim tasks/scenes/s4_pinch.json --out pinch.csv --every 0.1)";
+Examples:
+  pincer sim tasks/scenes/s4_pinch.json --out pinch.csv --every 0.1
+  pincer sim pickup --duration 2.5 --screenshot pickup.png
+  pincer sim pickup --view --devices mouse)";
 
 struct SimArguments {
-  std::string scene;
+  std::string scene, devices = "scene";
+  ViewOptions view;
   SimOptions options;
   bool json = false;
 };
+
+int watch(Simulation& simulation, const SimArguments& arguments, const std::atomic<bool>& interrupted) {
+  ViewOptions view = arguments.view;
+  view.title = arguments.scene;
+  const WatchResult result = watchScene(simulation, view, arguments.devices == "mouse", interrupted);
+  fmt::print("{}\nLifted by up to {:.1f} mm.\n", servoText(result.servo, simulation.scene().options.h), 1e3 * result.lift);
+  return interrupted ? kExitInterrupted : kExitOk;
+}
 
 int runSim(const SimArguments& arguments) {
   const std::atomic<bool>& interrupted = interruptFlag();
   Scene scene = readSceneOrBuiltin(arguments.scene);
   applyOptions(arguments.options, scene);
   Simulation simulation(std::move(scene));
+  if (arguments.view.view) return watch(simulation, arguments, interrupted);
   SimResult result = [&] {
     Progress progress("sim", simulation.scene().ticks());
     return runScene(simulation, arguments.options, interrupted, [&](std::int64_t done) { progress.update(done); });
   }();
+  if (!arguments.view.screenshot.empty()) writePng(pictureOf(simulation), arguments.view.screenshot);
   fmt::print("{}", arguments.json ? simJson(simulation, arguments.options, result) : simText(simulation, arguments.options, result));
   if (result.interrupted) return kExitInterrupted;
   return result.broke || result.log.anyFailed() ? kExitCheckFailed : kExitOk;
@@ -53,6 +68,10 @@ void addSimCommand(CLI::App& app, int& exit_code) {
   command->add_flag("--grasp", arguments->options.grasp,
                     "Say how well the fingers hold each body at the end: slip margins, force closure, epsilon");
   command->add_flag("--awake", arguments->options.awake, "Compute every tick, also those that would repeat the last one");
+  addViewOptions(*command, arguments->view);
+  command->add_option("--devices", arguments->devices, "With --view: who moves the fingers, the scene or your mouse")
+      ->check(CLI::IsMember({"scene", "mouse"}))
+      ->capture_default_str();
   command->add_flag("--json", arguments->json, "Print the result as JSON");
   command->footer(kSimExample);
   command->callback([arguments, &exit_code] { exit_code = runSim(*arguments); });

@@ -1,5 +1,6 @@
 #include "tasks/experiments/manipulation_study.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 
 #include "tasks/experiments/cylinder_trial.h"
@@ -134,6 +135,29 @@ std::unique_ptr<Participant> makeParticipant(const ManipulationStudy& study, con
   return makeParticipant(study.people, trial.task, seed, trial.condition() == PickupCondition::kCldForce);
 }
 
+namespace {
+
+// One trial by whoever does it. `clean`: no gate tripped.
+struct DoneTrial {
+  ServoReport servo;
+  bool clean = true;
+};
+DoneTrial runTrial(const ManipulationStudy& study, HandTrial& trial, const ManipulationTrial& spec, const ServoOptions& servo,
+                   const std::atomic<bool>& interrupted, const StudyHooks& hooks, const TrialProgress& at) {
+  const std::unique_ptr<Participant> participant = makeParticipant(study, spec);
+  const std::unique_ptr<Hands> hands =
+      hooks.host.hands ? hooks.host.hands(trial) : std::make_unique<SimulatedHands>(trial.scene(), *participant);
+  HandsCycle cycle(trial, *hands, servo.real_time);
+  DoneTrial done;
+  done.servo = hooks.host.serve ? hooks.host.serve(cycle, at.done, at.total) : runServo(servo, cycle, interrupted);
+  hands->stop();
+  const auto& mounts = trial.state().mounts;
+  done.clean = std::all_of(mounts.begin(), mounts.end(), [](const MountState& m) { return m.gate.trip == devices::Trip::kNone; });
+  return done;
+}
+
+}  // namespace
+
 std::size_t runManipulationStudy(const ManipulationStudy& study, const ServoOptions& servo, RecordSink& sink,
                                  const std::atomic<bool>& interrupted, const StudyHooks& hooks) {
   const auto trials = manipulationTrials(study);
@@ -142,16 +166,18 @@ std::size_t runManipulationStudy(const ManipulationStudy& study, const ServoOpti
     if (hooks.progress) hooks.progress({done, trials.size()});
   };
   std::size_t done = hooks.finished.size();
+  if (hooks.host.arm && !hooks.host.arm("the session begins")) return done;
   report(done);
-  for (const ManipulationTrial& trial : trials) {
-    if (hooks.finished.contains(trial.trial())) continue;
-    const std::unique_ptr<Participant> participant = makeParticipant(study, trial);
-    SimulatedTrial cycle(makeTrial(study, object, trial, sink), *participant);
-    const ServoReport servo_report = runServo(servo, cycle, interrupted);
-    if (hooks.served) hooks.served(servo_report);
-    if (servo_report.interrupted) break;
-    cycle.finish();
+  for (const ManipulationTrial& spec : trials) {
+    if (hooks.finished.contains(spec.trial())) continue;
+    const std::unique_ptr<HandTrial> trial = makeTrial(study, object, spec, sink);
+    const DoneTrial ended = runTrial(study, *trial, spec, servo, interrupted, hooks, {done, trials.size()});
+    if (hooks.served) hooks.served(ended.servo);
+    if (ended.servo.interrupted) break;
+    trial->finish();
     report(++done);
+    const bool goes_on = ended.clean || done == trials.size() || !hooks.host.arm || hooks.host.arm("a fault cut the forces in the last trial");
+    if (!goes_on) break;
   }
   return done;
 }

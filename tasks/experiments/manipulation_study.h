@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "tasks/experiments/cylinder_alignment.h"
+#include "tasks/experiments/hands_cycle.h"
 #include "tasks/experiments/pickup_object.h"
-#include "tasks/experiments/simulated_trial.h"
 #include "tasks/experiments/sphere_pickup.h"
 #include "tasks/participants/participant_model.h"
 
@@ -63,10 +63,11 @@ struct StudyHooks {
   std::set<std::int64_t> finished;                     // trials that needn't be done again
   std::function<void(const TrialProgress&)> progress;  // before the first and after every trial
   std::function<void(const ServoReport&)> served;      // what the servo says of each, the interrupted one included
+  TrialHost host;                                      // who watches, and whose hands they are
 };
 
-// Every trial with simulated participants. An interrupted trial leaves no row. Returns the number of trials finished, those of
-// `hooks.finished` included. Throws InputError for bad options or a bad object.
+// Every trial, with simulated participants unless `hooks.host` brings other hands. An interrupted trial leaves no row. Returns the number of
+// trials finished, those of `hooks.finished` included. Throws InputError for bad options or a bad object.
 std::size_t runManipulationStudy(const ManipulationStudy& study, const ServoOptions& servo, RecordSink& sink,
                                  const std::atomic<bool>& interrupted, const StudyHooks& hooks = {});
 

@@ -8,22 +8,23 @@
 #include "devices/arm/sim_arm.h"
 #include "devices/cld/sim_cld.h"
 #include "tasks/experiments/hand_scene.h"
+#include "tasks/experiments/hands.h"
 #include "tasks/participants/participant.h"
 #include "tasks/servo/tick.h"
 
 namespace pincer::tasks {
 
-class SimulatedHands {
+class SimulatedHands final : public Hands {
  public:
   SimulatedHands(const HandScene& scene, Participant& participant);
 
   // Moves devices to `now` [s]; time never goes back.
-  void advanceTo(double now);
-  const std::vector<FingerInputs>& sample();
+  void advanceTo(double now) override;
+  const std::vector<FingerInputs>& sample() override;
   // Commands of this tick to the devices, percept to the participant, its pulls to the arms.
-  void apply(const std::vector<FingerOutputs>& outputs, Cue cue, double now);
+  void apply(const std::vector<FingerOutputs>& outputs, Cue cue, double now) override;
 
-  const HandIntent& intent() const { return action_.intent; }
+  const HandIntent& intent() const override { return action_.intent; }
 
   // For tests that inject faults.
   devices::SimArm& arm(int finger) { return arms_[static_cast<std::size_t>(finger)]; }

@@ -1,11 +1,9 @@
 // simulated_trial: one trial with a simulated participant on simulated devices, as a cycle of the servo. Its time begins with the trial.
 #pragma once
-#include <atomic>
 #include <memory>
 
-#include "tasks/experiments/hand_trial.h"
+#include "tasks/experiments/hands_cycle.h"
 #include "tasks/experiments/simulated_hands.h"
-#include "tasks/servo/servo.h"
 
 namespace pincer::tasks {
 
@@ -14,8 +12,8 @@ class SimulatedTrial final : public ServoCycle {
   // `participant` must outlive the cycle.
   SimulatedTrial(std::unique_ptr<HandTrial> trial, Participant& participant);
 
-  bool tick(double now) override;
-  void cutForces() noexcept override { cut_ = true; }
+  bool tick(double now) override { return cycle_.tick(now); }
+  void cutForces() noexcept override { cycle_.cutForces(); }
   // Hands events, readings and the trial's row to the sink. Once, after the servo has returned.
   void finish() { trial_->finish(); }
 
@@ -25,7 +23,7 @@ class SimulatedTrial final : public ServoCycle {
  private:
   std::unique_ptr<HandTrial> trial_;
   SimulatedHands hands_;
-  std::atomic<bool> cut_{false};
+  HandsCycle cycle_{*trial_, hands_};
 };
 
 }  // namespace pincer::tasks

@@ -11,10 +11,14 @@ Simulation::Simulation(Scene scene)
       motions_(scene_.motions.size()) {}
 
 engine::StepReport Simulation::tick() {
+  fingerInputs(scene_, static_cast<double>(ticks_ + 1) * scene_.options.h, inputs_);
+  return tick(inputs_);
+}
+
+engine::StepReport Simulation::tick(std::span<const grasp::FingerInput> fingers) {
   ++ticks_;
-  fingerInputs(scene_, time(), inputs_);
   bodyMotions(scene_, time(), motions_);
-  return grasp::step(model_, state_, scratch_, inputs_, motions_);
+  return grasp::step(model_, state_, scratch_, fingers, motions_);
 }
 
 }  // namespace pincer::tasks

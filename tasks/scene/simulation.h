@@ -1,6 +1,7 @@
 // simulation: a scene in motion, one tick at a time.
 #pragma once
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "tasks/scene/scene.h"
@@ -14,6 +15,8 @@ class Simulation {
 
   // Fingers to where their trajectories are at the tick's end, then one step. Allocates nothing, throws nothing.
   engine::StepReport tick();
+  // The same with the fingers' devices where the caller says, one entry per finger.
+  engine::StepReport tick(std::span<const grasp::FingerInput> fingers);
 
   std::int64_t ticks() const { return ticks_; }                                   // done so far
   double time() const { return static_cast<double>(ticks_) * scene_.options.h; }  // [s]

@@ -71,7 +71,9 @@ TEST(House, ParticipantsSeeOnlyDevices) {
 // A third-party library is named only in files whose names say so.
 TEST(House, LibrariesStayInTheirFiles) {
   const std::map<std::string, std::string> home = {{"OpenMesh/", "_openmesh"}, {"LinearMath/", "_bullet"}, {"BulletCollision/", "_bullet"},
-                                                   {"sqlite3.h", "_sqlite"},   {"libusb.h", "_libusb"},    {"nlohmann/", ""}};
+                                                   {"sqlite3.h", "_sqlite"},   {"libusb.h", "_libusb"},    {"nlohmann/", ""},
+                                                   {"GLFW/", "_glfw"},         {"EGL/", "_egl"},           {"glad/", "_gl"},
+                                                   {"imgui", "_imgui"},        {"png.h", "_png"}};
   for (const auto& [folder, seen] : kMaySee) {
     for (const fs::path& file : sourcesUnder(fs::path(PINCER_SOURCE_DIR) / folder)) {
       for (const std::string& line : linesOf(file)) {

@@ -1,0 +1,23 @@
+// hands: whoever wears the fingers of a trial: a simulated participant, a person on a mouse, a person on real devices.
+#pragma once
+#include <vector>
+
+#include "tasks/participants/participant.h"
+#include "tasks/servo/tick.h"
+
+namespace pincer::tasks {
+
+class Hands {
+ public:
+  virtual ~Hands() = default;
+  // Moves what has no clock of its own to `now` [s]; time never goes back.
+  virtual void advanceTo(double now) = 0;
+  virtual const std::vector<FingerInputs>& sample() = 0;
+  // Commands of this tick to the devices, tones to the one who wears them.
+  virtual void apply(const std::vector<FingerOutputs>& outputs, Cue cue, double now) = 0;
+  virtual const HandIntent& intent() const = 0;
+  // Zero force at once, past the trial's own gate; from any thread.
+  virtual void stop() noexcept {}
+};
+
+}  // namespace pincer::tasks

@@ -1,0 +1,57 @@
+// draw_list: what a picture is made of. Lengths in metres, frame W; what goes to the graphics card is single precision.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "contact/math.h"
+
+namespace pincer::tasks {
+
+using Vec3f = Eigen::Vector3f;
+using Mat4f = Eigen::Matrix4f;
+
+struct ViewVertex {
+  Vec3f p;                     // [m], frame of the mesh
+  Vec3f n;                     // unit
+  Vec3f edge = Vec3f::Ones();  // barycentric coordinates in the triangle whose edges are to be shown; ones: no edge is near
+};
+
+struct ViewMesh {
+  std::vector<ViewVertex> vertices;
+  std::vector<std::uint32_t> triangles;  // three vertices each, counter-clockwise seen from outside
+};
+
+struct Paint {
+  Vec3f colour = Vec3f(0.7f, 0.7f, 0.7f);  // linear light, 0 .. 1
+  float alpha = 1;                         // under 1: drawn after all that is opaque
+  float gloss = 0.35f;                     // 0 chalk .. 1 glaze
+  float edges = 0;                         // how strongly the triangles' edges show
+  float octants = 0;                       // how strongly they differ by turns, so that a ball is seen to turn
+  float glow = 0;                          // share of the colour that needs no light: marks, which stand for no thing
+  float fade = 0;                          // distance from W's z axis at which it has faded out [m]; 0: never
+};
+
+enum class Layer : std::uint8_t {
+  kSolid,   // has a shadow, hides what is behind it
+  kMark,    // has none; shows through what hides it, faintly
+  kGround,  // takes shadows, has none
+};
+
+struct DrawItem {
+  int mesh = 0;  // Renderer::add
+  Mat4f X_WM = Mat4f::Identity();
+  Paint paint;
+  Layer layer = Layer::kSolid;
+};
+
+using DrawList = std::vector<DrawItem>;
+
+// A rigid placement of a mesh that is stretched along its own axes first.
+inline Mat4f placed(const Pose& X_WM, const Vec3& stretch = Vec3::Ones()) {
+  Mat4f m = Mat4f::Identity();
+  m.topLeftCorner<3, 3>() = (X_WM.q.toRotationMatrix() * stretch.asDiagonal()).cast<float>();
+  m.topRightCorner<3, 1>() = X_WM.p.cast<float>();
+  return m;
+}
+
+}  // namespace pincer::tasks

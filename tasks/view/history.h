@@ -1,0 +1,36 @@
+// history: the snapshots that were seen, to go back in.
+#pragma once
+#include <deque>
+
+#include "tasks/servo/snapshot.h"
+
+namespace pincer::tasks {
+
+class History {
+ public:
+  explicit History(std::size_t most = 7200) : most_(most) {}  // two minutes at 60 pictures a second
+
+  void add(const Snapshot& snapshot) {
+    if (!kept_.empty() && kept_.back().tick == snapshot.tick) return;
+    kept_.push_back(snapshot);
+    if (kept_.size() > most_) kept_.pop_front();
+  }
+  std::size_t size() const { return kept_.size(); }
+  const Snapshot& at(std::size_t i) const { return kept_[i]; }
+
+  // The last one at or before `time` [s], the first if there is none. Not of an empty history.
+  std::size_t find(double time) const {
+    std::size_t low = 0, high = kept_.size();
+    while (high - low > 1) {
+      const std::size_t middle = (low + high) / 2;
+      (kept_[middle].time <= time ? low : high) = middle;
+    }
+    return low;
+  }
+
+ private:
+  std::size_t most_;
+  std::deque<Snapshot> kept_;
+};
+
+}  // namespace pincer::tasks

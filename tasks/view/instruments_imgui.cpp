@@ -1,0 +1,112 @@
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "tasks/view/overlay_parts.h"
+
+namespace pincer::tasks {
+namespace {
+
+constexpr float kPadSide = 148;                        // of a fingerpad inset [pixels]
+constexpr float kChartWidth = 250, kChartHeight = 78;  // [pixels]
+constexpr ImU32 kSkinInk = IM_COL32(222, 170, 148, 255), kPadInk = IM_COL32(205, 130, 112, 255), kGridInk = IM_COL32(255, 255, 255, 60);
+constexpr ImU32 kWantedInk = IM_COL32(25, 60, 160, 255), kTactorInk = IM_COL32(20, 24, 30, 255), kParkedInk = IM_COL32(110, 110, 110, 255);
+constexpr std::array<ImU32, 3> kLineInks = {IM_COL32(95, 175, 255, 255), IM_COL32(255, 165, 70, 255), IM_COL32(120, 215, 130, 255)};
+
+// The pad seen from outside, as one looks at one's own finger: distal up; L's first axis is distal, its second radial.
+ImVec2 onPad(const ImVec2& middle, double reach, const Vec2& place_L) {
+  const double scale = 0.46 * kPadSide / reach;
+  return {middle.x + static_cast<float>(scale * place_L.y()), middle.y - static_cast<float>(scale * place_L.x())};
+}
+
+void drawTactor(ImDrawList* list, const ImVec2& middle, const PadLook& pad, const FingerSnapshot& finger) {
+  const ImVec2 wanted = onPad(middle, pad.reach, finger.tactor_parked ? Vec2(Vec2::Zero()) : finger.tactor_wanted_L);
+  const ImU32 ink = finger.tactor_parked ? kParkedInk : kWantedInk;
+  if (finger.tactor_L) {
+    const ImVec2 at = onPad(middle, pad.reach, *finger.tactor_L);
+    list->AddLine(at, wanted, ink, 1.5f);
+    list->AddCircleFilled(at, 8, finger.tactor_parked ? kParkedInk : kTactorInk, 24);
+    list->AddCircleFilled({at.x - 2, at.y - 2}, 2.2f, IM_COL32(255, 255, 255, 130), 12);
+  }
+  list->AddCircle(wanted, 10, ink, 24, 2);
+}
+
+void drawPad(const PadLook& pad, const FingerSnapshot& finger) {
+  ImGui::TextUnformatted(pad.finger.c_str());
+  const std::string force = fmt::format("{:.2f} N", finger.normal_force);
+  ImGui::SameLine(kPadSide - ImGui::CalcTextSize(force.c_str()).x + ImGui::GetStyle().WindowPadding.x);
+  ImGui::TextColored(finger.sliding ? ImVec4(1.0f, 0.45f, 0.35f, 1) : ImVec4(0.45f, 0.85f, 0.50f, 1), "%s", force.c_str());
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  const ImVec2 middle(corner.x + 0.5f * kPadSide, corner.y + 0.5f * kPadSide);
+  ImGui::Dummy({kPadSide, kPadSide});
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  // The fingertip: round at the top (distal), open at the bottom.
+  list->PushClipRect(corner, {corner.x + kPadSide, corner.y + kPadSide}, true);
+  const float r = 0.48f * kPadSide;
+  list->AddRectFilled({middle.x - r, middle.y - r}, {middle.x + r, corner.y + kPadSide + 40}, kSkinInk, r);
+  list->AddCircleFilled(middle, 0.36f * kPadSide, kPadInk, 48);
+  list->AddLine({middle.x - r, middle.y}, {middle.x + r, middle.y}, kGridInk);
+  list->AddLine({middle.x, middle.y - r}, {middle.x, middle.y + r}, kGridInk);
+  if (finger.has_display) drawTactor(list, middle, pad, finger);
+  if (finger.place_L) {
+    const ImVec2 at = onPad(middle, pad.reach, *finger.place_L);
+    list->AddLine({at.x - 5, at.y - 5}, {at.x + 5, at.y + 5}, IM_COL32(255, 255, 255, 255), 2);
+    list->AddLine({at.x - 5, at.y + 5}, {at.x + 5, at.y - 5}, IM_COL32(255, 255, 255, 255), 2);
+  }
+  list->PopClipRect();
+  if (pad.grip > 0) ImGui::TextDisabled("grip up to %.2g N", pad.grip);
+}
+
+std::string chartHead(const StripChart& chart) {
+  std::string head = chart.title() + ":";
+  for (std::size_t i = 0; i < chart.lines(); ++i) head += fmt::format(" {:.3g}", chart.last(i));
+  return head + " " + chart.unit();
+}
+
+void drawChart(const StripChart& chart) {
+  ImGui::BeginGroup();
+  ImGui::TextDisabled("%s", chartHead(chart).c_str());
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  ImGui::Dummy({kChartWidth, kChartHeight});
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  list->AddRectFilled(corner, {corner.x + kChartWidth, corner.y + kChartHeight}, IM_COL32(255, 255, 255, 14), 3);
+  const StripChart::Range range = chart.range();
+  const double end = chart.points().empty() ? 0 : chart.points().back().time;
+  const auto place = [&](double time, double value) {
+    const double x = 1 - (end - time) / chart.seconds(), y = (value - range.low) / (range.high - range.low);
+    return ImVec2(corner.x + static_cast<float>(x) * kChartWidth, corner.y + static_cast<float>(1 - y) * kChartHeight);
+  };
+  for (std::size_t line = 0; line < chart.lines(); ++line) {
+    std::vector<ImVec2> points;
+    for (const StripChart::Point& point : chart.points()) {
+      if (std::isfinite(point.values[line])) points.push_back(place(point.time, point.values[line]));
+    }
+    list->AddPolyline(points.data(), static_cast<int>(points.size()), kLineInks[line % kLineInks.size()], 0, 1.6f);
+  }
+  list->AddText({corner.x + 3, corner.y}, IM_COL32(255, 255, 255, 120), fmt::format("{:g}", range.high).c_str());
+  ImGui::EndGroup();
+}
+
+}  // namespace
+
+void drawPads(const OverlayText& text, int width) {
+  if (text.pads.empty() || text.snapshot->trial.blind) return;
+  const OverlayPanel panel("pads", width, 0, 1, 0);
+  for (std::size_t i = 0; i < std::min(text.pads.size(), text.snapshot->fingers.size()); ++i) {
+    drawPad(text.pads[i], text.snapshot->fingers[i]);
+  }
+}
+
+void drawCharts(const OverlayText& text, int height) {
+  if (text.charts.empty() || text.snapshot->trial.blind) return;
+  const OverlayPanel panel("charts", 0, height, 0, 1);
+  for (std::size_t i = 0; i < text.charts.size(); ++i) {
+    if (i > 0) ImGui::SameLine(0, 14);
+    drawChart(text.charts[i]);
+  }
+}
+
+}  // namespace pincer::tasks

@@ -1,0 +1,132 @@
+#include "tasks/view/keys.h"
+
+#include <fmt/format.h>
+
+#include <array>
+
+namespace pincer::tasks {
+namespace {
+
+using devices::Key;
+
+constexpr std::array kProgramKeys = {
+    KeyBinding{Key::kKeyF1, "F1", ViewAction::kHelp, "this help"},
+    KeyBinding{Key::kKeyF2, "F2", ViewAction::kTiming, "health: timing of the servo, state of the devices"},
+    KeyBinding{Key::kKeyF5, "F5", ViewAction::kFullScreen, "full screen"},
+    KeyBinding{Key::kKeyTab, "Tab", ViewAction::kOverlay, "panels and charts"},
+    KeyBinding{'P', "P", ViewAction::kScreenshot, "screenshot: a PNG in the current folder"},
+    KeyBinding{'V', "V", ViewAction::kSequence, "begin or end a sequence of PNGs, one per picture"},
+    KeyBinding{Key::kKeyEscape, "Esc", ViewAction::kQuit, "close"},
+};
+constexpr std::array kTimeKeys = {
+    KeyBinding{' ', "Space", ViewAction::kPause, "pause, go on"},
+    KeyBinding{Key::kKeyRight, "Right", ViewAction::kTickForward, "while paused: one tick on"},
+    KeyBinding{Key::kKeyLeft, "Left", ViewAction::kTickBack, "while paused: one picture back"},
+    KeyBinding{Key::kKeyHome, "Home", ViewAction::kScrubBack, "while paused: a second back in what was seen"},
+    KeyBinding{Key::kKeyEnd, "End", ViewAction::kScrubForward, "while paused: a second on"},
+    KeyBinding{Key::kKeyBackspace, "Backspace", ViewAction::kLive, "to the present"},
+    KeyBinding{'-', "-", ViewAction::kSlower, "slow motion, half as fast"},
+    KeyBinding{'=', "=", ViewAction::kFaster, "twice as fast, to real time"},
+};
+constexpr std::array kSceneKeys = {
+    KeyBinding{'C', "C", ViewAction::kContacts, "contact points and normals"},
+    KeyBinding{'F', "F", ViewAction::kForces, "contact forces"},
+    KeyBinding{'K', "K", ViewAction::kCones, "friction cones"},
+    KeyBinding{'D', "D", ViewAction::kDevices, "where the devices are"},
+    KeyBinding{'I', "I", ViewAction::kPads, "fingerpads"},
+    KeyBinding{'W', "W", ViewAction::kEdges, "wireframe: the edges of a mesh's triangles"},
+    KeyBinding{'M', "M", ViewAction::kFacets, "meshes as their flat triangles, or as the smooth surface"},
+    KeyBinding{'T', "T", ViewAction::kTransparent, "transparent bodies"},
+    KeyBinding{'S', "S", ViewAction::kShadows, "shadows"},
+    KeyBinding{'A', "A", ViewAction::kCamera, "look at everything again"},
+};
+constexpr std::array kHandKeys = {
+    KeyBinding{'G', "G", ViewAction::kSqueeze, "squeeze, let go"},
+    KeyBinding{Key::kKeyLeft, "Left", ViewAction::kHandLeft, "fingers to the left"},
+    KeyBinding{Key::kKeyRight, "Right", ViewAction::kHandRight, "fingers to the right"},
+    KeyBinding{Key::kKeyUp, "Up", ViewAction::kHandUp, "fingers up"},
+    KeyBinding{Key::kKeyDown, "Down", ViewAction::kHandDown, "fingers down"},
+    KeyBinding{Key::kKeyPageUp, "Page up", ViewAction::kHandAway, "fingers away from you"},
+    KeyBinding{Key::kKeyPageDown, "Page down", ViewAction::kHandNear, "fingers towards you"},
+    KeyBinding{',', ",", ViewAction::kGripLess, "weaker grip"},
+    KeyBinding{'.', ".", ViewAction::kGripMore, "stronger grip"},
+};
+constexpr std::array kGroups = {
+    KeyGroup{"Program", kProgramKeys},
+    KeyGroup{"Time", kTimeKeys},
+    KeyGroup{"Scene", kSceneKeys},
+    KeyGroup{"Fingers, with --devices mouse", kHandKeys},
+};
+constexpr std::array kCameraGestures = {
+    MouseGesture{"left button, drag", "turn the camera"},
+    MouseGesture{"right button, drag", "move the camera"},
+    MouseGesture{"wheel", "nearer, further"},
+};
+constexpr std::array kHandGestures = {
+    MouseGesture{"move", "fingers left, right, up, down"},        MouseGesture{"Shift, move", "fingers left, right, away, near"},
+    MouseGesture{"left button", "squeeze as long as it is held"}, MouseGesture{"wheel", "stronger or weaker grip"},
+    MouseGesture{"right button, drag", "turn the camera"},        MouseGesture{"Control, wheel", "nearer, further"},
+};
+
+std::optional<ViewAction> actionIn(std::span<const KeyBinding> keys, int code) {
+  for (const KeyBinding& key : keys) {
+    if (key.code == code) return key.action;
+  }
+  return {};
+}
+
+std::string gesturesMarkdown(const char* title, std::span<const MouseGesture> gestures) {
+  std::string text = fmt::format("\n## {}\n\n| mouse | |\n|---|---|\n", title);
+  for (const MouseGesture& gesture : gestures) text += fmt::format("| {} | {} |\n", gesture.name, gesture.effect);
+  return text;
+}
+
+}  // namespace
+
+std::span<const KeyGroup> keyGroups() { return kGroups; }
+std::span<const MouseGesture> cameraGestures() { return kCameraGestures; }
+std::span<const MouseGesture> handGestures() { return kHandGestures; }
+
+std::optional<ViewAction> actionOf(int key, bool hands) {
+  if (const auto action = actionIn(kHandKeys, key); hands && action) return action;
+  for (const KeyGroup& group : std::span(kGroups).first(kGroups.size() - 1)) {
+    if (const auto action = actionIn(group.keys, key)) return action;
+  }
+  return {};
+}
+
+bool toggle(ViewAction action, ViewChoice& choice) {
+  struct Switch {
+    ViewAction action;
+    bool ViewChoice::*shown;
+  };
+  constexpr std::array kSwitches = {
+      Switch{ViewAction::kHelp, &ViewChoice::help},       Switch{ViewAction::kTiming, &ViewChoice::timing},
+      Switch{ViewAction::kOverlay, &ViewChoice::overlay}, Switch{ViewAction::kContacts, &ViewChoice::contacts},
+      Switch{ViewAction::kForces, &ViewChoice::forces},   Switch{ViewAction::kCones, &ViewChoice::cones},
+      Switch{ViewAction::kDevices, &ViewChoice::devices}, Switch{ViewAction::kPads, &ViewChoice::pads},
+      Switch{ViewAction::kEdges, &ViewChoice::edges},     Switch{ViewAction::kFacets, &ViewChoice::facets},
+      Switch{ViewAction::kShadows, &ViewChoice::shadows}, Switch{ViewAction::kTransparent, &ViewChoice::transparent},
+  };
+  for (const Switch& at : kSwitches) {
+    if (at.action != action) continue;
+    choice.*at.shown = !(choice.*at.shown);
+    return true;
+  }
+  return false;
+}
+
+std::string keysMarkdown() {
+  std::string text =
+      "# Keys of the viewer\n\nMade by `pincer keys > docs/keys.md` from the table that the viewer itself reads (`tasks/view/keys.cpp`); "
+      "F1 shows it there. "
+      "`--no-keys` leaves Esc only.\n";
+  for (const KeyGroup& group : kGroups) {
+    text += fmt::format("\n## {}\n\n| key | |\n|---|---|\n", group.title);
+    for (const KeyBinding& key : group.keys) text += fmt::format("| {} | {} |\n", key.name, key.effect);
+  }
+  text += gesturesMarkdown("Mouse: camera", kCameraGestures);
+  return text + gesturesMarkdown("Mouse: fingers, with --devices mouse", kHandGestures);
+}
+
+}  // namespace pincer::tasks

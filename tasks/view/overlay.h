@@ -1,0 +1,60 @@
+// overlay: what is written over a picture: panels, charts, fingerpads, newtons, help. Drawn by Dear ImGui into whatever is drawn to.
+#pragma once
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tasks/servo/histogram.h"
+#include "tasks/servo/snapshot.h"
+#include "tasks/view/keys.h"
+#include "tasks/view/strip_chart.h"
+
+namespace pincer::tasks {
+
+// A text at a pixel.
+struct OverlayLabel {
+  Vec2 pixel;
+  std::string text;
+  bool slips = false;
+};
+
+struct PadLook {
+  std::string finger;    // its name
+  double reach = 0.012;  // of the pad that is shown, from its centre [m]
+  double grip = 0;       // that it is asked for, with mouse fingers [N]; 0: unknown
+};
+
+// All that an overlay says; the viewer fills it in for every picture.
+struct OverlayText {
+  const Snapshot* snapshot = nullptr;
+  ViewChoice choice;
+  std::vector<OverlayLabel> labels;
+  std::vector<PadLook> pads;  // one per finger
+  std::span<const StripChart> charts;
+  std::string title;   // of scene or task
+  std::string pace;    // "real time", "1/4 speed", "paused"
+  std::string notice;  // of what has just happened: a screenshot's name
+  double pictures_per_second = 0;
+  const Histogram* lateness = nullptr;  // of the ticks that were seen; null: not known
+  double scrub = -1;                    // where in the history, 0 .. 1; negative: at the present
+  bool hands = false;                   // the mouse moves fingers
+  bool keys = true;                     // do something
+};
+
+class Overlay {
+ public:
+  // The surface must be current, and OpenGL loaded (a Renderer made). One per thread at a time.
+  Overlay();
+  ~Overlay();
+  Overlay(const Overlay&) = delete;
+  Overlay& operator=(const Overlay&) = delete;
+
+  void draw(const OverlayText& text, int width, int height);
+
+ private:
+  struct Gui;
+  std::unique_ptr<Gui> gui_;
+};
+
+}  // namespace pincer::tasks

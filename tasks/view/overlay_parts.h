@@ -1,0 +1,26 @@
+// overlay_parts: the panels of the overlay, each drawn by one function between the beginning and the end of a picture.
+#pragma once
+#include "tasks/view/overlay.h"
+
+namespace pincer::tasks {
+
+// A panel of its own size at a corner of the picture: the place (x, y) [pixels] is the panel's (pivot_x, pivot_y), 0 left or upper, 1 right or
+// lower. What is written while it lives is in it.
+class OverlayPanel {
+ public:
+  OverlayPanel(const char* name, double x, double y, double pivot_x, double pivot_y);
+  ~OverlayPanel();
+  OverlayPanel(const OverlayPanel&) = delete;
+  OverlayPanel& operator=(const OverlayPanel&) = delete;
+};
+
+void drawLabels(const OverlayText& text);
+void drawStatus(const OverlayText& text);              // upper left
+void drawTrial(const OverlayText& text, int width);    // upper middle
+void drawPads(const OverlayText& text, int width);     // upper right
+void drawCharts(const OverlayText& text, int height);  // lower left
+void drawHealth(const OverlayText& text, int height);  // left
+void drawHelp(const OverlayText& text, int width, int height);
+void drawNotice(const OverlayText& text, int width, int height);  // lower middle, and where in the history
+
+}  // namespace pincer::tasks

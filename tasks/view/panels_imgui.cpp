@@ -1,0 +1,135 @@
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "tasks/view/overlay_parts.h"
+
+namespace pincer::tasks {
+namespace {
+
+constexpr ImU32 kInk = IM_COL32(18, 22, 28, 255), kPaper = IM_COL32(255, 255, 255, 205), kSlipInk = IM_COL32(190, 30, 10, 255);
+const ImVec4 kGoodText(0.45f, 0.85f, 0.50f, 1), kBadText(1.0f, 0.45f, 0.35f, 1);
+
+void textLine(const std::string& text) { ImGui::TextUnformatted(text.c_str()); }
+void dimLine(const std::string& text) { ImGui::TextDisabled("%s", text.c_str()); }
+void colourLine(bool good, const std::string& text) { ImGui::TextColored(good ? kGoodText : kBadText, "%s", text.c_str()); }
+
+std::string statusWords(const Snapshot& snapshot) {
+  if (snapshot.status & engine::kStateNotFinite) return "the state isn't finite: begin again";
+  if (snapshot.status & engine::kSolverNotConverged) return "contact forces are approximate";
+  if (snapshot.status & engine::kContactsDropped) return "contacts were dropped";
+  return snapshot.asleep ? "at rest" : "";
+}
+
+void gestureRows(std::span<const MouseGesture> gestures) {
+  for (const MouseGesture& gesture : gestures) {
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    textLine(gesture.name);
+    ImGui::TableNextColumn();
+    dimLine(gesture.effect);
+  }
+}
+
+void keyRows(const KeyGroup& group) {
+  for (const KeyBinding& key : group.keys) {
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    textLine(key.name);
+    ImGui::TableNextColumn();
+    dimLine(key.effect);
+  }
+}
+
+bool beginRows(const char* name) { return ImGui::BeginTable(name, 2, ImGuiTableFlags_SizingFixedFit); }
+
+}  // namespace
+
+void drawLabels(const OverlayText& text) {
+  ImDrawList* list = ImGui::GetBackgroundDrawList();
+  for (const OverlayLabel& label : text.labels) {
+    const ImVec2 size = ImGui::CalcTextSize(label.text.c_str());
+    const ImVec2 at(static_cast<float>(label.pixel.x()) - 0.5f * size.x, static_cast<float>(label.pixel.y()) - 0.5f * size.y);
+    list->AddRectFilled({at.x - 5, at.y - 2}, {at.x + size.x + 5, at.y + size.y + 2}, kPaper, 4);
+    list->AddText(at, label.slips ? kSlipInk : kInk, label.text.c_str());
+  }
+}
+
+void drawStatus(const OverlayText& text) {
+  const OverlayPanel panel("status", 0, 0, 0, 0);
+  const Snapshot& s = *text.snapshot;
+  if (!text.title.empty()) textLine(text.title);
+  textLine(fmt::format("{:.3f} s", s.time));
+  ImGui::SameLine();
+  dimLine(fmt::format("{}", text.pace));
+  if (s.tick_seconds > 0 && !s.trial.blind) dimLine(fmt::format("tick {:.1f} us, {} contacts", 1e6 * s.tick_seconds, s.contact_count));
+  const std::string words = statusWords(s);
+  if (!words.empty()) colourLine((s.status & ~std::uint32_t{0}) == 0, words);
+  if (text.keys) dimLine("F1 help");
+}
+
+void drawTrial(const OverlayText& text, int width) {
+  const TrialSnapshot& trial = text.snapshot->trial;
+  if (trial.trials == 0 && *trial.instruction == 0) return;
+  const OverlayPanel panel("trial", 0.5 * width, 0, 0.5, 0);
+  if (*trial.instruction) textLine(trial.instruction);
+  if (trial.trials == 0) return;
+  std::string line = fmt::format("trial {} of {}", trial.trial, trial.trials);
+  if (*trial.condition) line += fmt::format(" · {}", trial.condition);
+  if (*trial.stage) line += fmt::format(" · {}", trial.stage);
+  dimLine(line);
+}
+
+void drawHealth(const OverlayText& text, int height) {
+  const OverlayPanel panel("health", 0, 0.36 * height, 0, 0.5);
+  textLine("Health");
+  dimLine(fmt::format("{:.0f} pictures/s", text.pictures_per_second));
+  if (text.lateness && text.lateness->count() > 0) {
+    const auto us = [&](double q) { return 1e6 * text.lateness->quantile(q); };
+    dimLine(fmt::format("ticks late by {:.0f} us (median), {:.0f} us (99 %), {:.0f} us (worst)", us(0.5), us(0.99),
+                        1e6 * text.lateness->largest()));
+  }
+  for (std::size_t i = 0; i < text.snapshot->fingers.size(); ++i) {
+    const FingerSnapshot& finger = text.snapshot->fingers[i];
+    if (!finger.has_device) continue;
+    const std::string name = i < text.pads.size() ? text.pads[i].finger : fmt::format("finger {}", i);
+    const bool good = finger.device == devices::DeviceState::kReady && finger.trip == devices::Trip::kNone;
+    colourLine(good, fmt::format("{}: {}{}", name, devices::nameOf(finger.device), finger.armed ? ", armed" : ", not armed"));
+    if (finger.trip != devices::Trip::kNone) colourLine(false, devices::describe(finger.trip));
+  }
+}
+
+void drawHelp(const OverlayText& text, int width, int height) {
+  const OverlayPanel panel("help", 0.5 * width, 0.5 * height, 0.5, 0.5);
+  const auto groups = keyGroups();
+  if (!ImGui::BeginTable("columns", 2, ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_PadOuterX)) return;
+  ImGui::TableNextColumn();
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    if (i == 2) ImGui::TableNextColumn();
+    if (i + 1 == groups.size() && !text.hands) continue;
+    textLine(groups[i].title);
+    if (beginRows(groups[i].title)) {
+      keyRows(groups[i]);
+      ImGui::EndTable();
+    }
+  }
+  textLine("Mouse");
+  if (beginRows("mouse")) {
+    gestureRows(text.hands ? handGestures() : cameraGestures());
+    ImGui::EndTable();
+  }
+  ImGui::EndTable();
+}
+
+void drawNotice(const OverlayText& text, int width, int height) {
+  if (text.scrub >= 0) {
+    ImDrawList* list = ImGui::GetForegroundDrawList();
+    const auto w = static_cast<float>(width), y = static_cast<float>(height) - 5;
+    list->AddRectFilled({0, y}, {w, y + 5}, IM_COL32(30, 34, 40, 160));
+    list->AddRectFilled({0, y}, {w * static_cast<float>(text.scrub), y + 5}, IM_COL32(70, 140, 235, 255));
+  }
+  if (text.notice.empty()) return;
+  const OverlayPanel panel("notice", 0.5 * width, height, 0.5, 1);
+  textLine(text.notice);
+}
+
+}  // namespace pincer::tasks

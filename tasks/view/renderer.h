@@ -1,0 +1,42 @@
+// renderer: draws a list of things with OpenGL 3.3 core: shaded, with shadows, smooth borders; the same for a window and for memory.
+//
+// Light: a sun with a shadow map, a sky whose light comes from above and a ground that gives some back; colours are linear and end in sRGB.
+// Everything is drawn to an own multisampled picture, which then goes to the window, if there is one. Calls need the surface to be current.
+#pragma once
+#include <memory>
+
+#include "devices/window/surface.h"
+#include "tasks/view/camera.h"
+#include "tasks/view/draw_list.h"
+#include "tasks/view/image.h"
+
+namespace pincer::tasks {
+
+struct RenderOptions {
+  bool shadows = true;
+  Vec3 centre_W = Vec3::Zero();  // of what has sharp shadows [m]
+  double radius = 0.15;          // of it [m]
+};
+
+class Renderer {
+ public:
+  // Throws devices::DisplayError when the surface can't do what is needed.
+  explicit Renderer(devices::Surface& surface);
+  ~Renderer();
+  Renderer(const Renderer&) = delete;
+  Renderer& operator=(const Renderer&) = delete;
+
+  int add(const ViewMesh& mesh);  // returns its place
+  std::string graphics() const;   // who draws: "llvmpipe (LLVM 15, 256 bits)"
+  void draw(const DrawList& list, const Camera& camera, const RenderOptions& options);
+  // What was drawn since, overlays included.
+  Image picture();
+  // To the surface's window, if it is one.
+  void show();
+
+ private:
+  struct Gl;
+  std::unique_ptr<Gl> gl_;
+};
+
+}  // namespace pincer::tasks

@@ -1,0 +1,185 @@
+#include <glad/gl.h>
+
+#include <algorithm>
+
+#include "tasks/view/gl_parts.h"
+#include "tasks/view/renderer.h"
+#include "tasks/view/shaders.h"
+
+namespace pincer::tasks {
+namespace {
+
+constexpr int kShadowSide = 2048;                          // texels
+constexpr float kHiddenMarks = 0.3f;                       // share of a mark that shows through what hides it
+const Vec3 kSun_W = Vec3(-0.45, -0.55, 1.1).normalized();  // towards the sun
+
+// Everything within `radius` of the centre, seen from the sun.
+Mat4f worldToSun(const RenderOptions& options) {
+  const Mat3 R_WS = frameFromNormal(kSun_W);
+  Mat4f m = Mat4f::Identity();
+  m.topLeftCorner<3, 3>() = (R_WS.transpose() / options.radius).cast<float>();
+  m.row(2) *= -0.5f;  // depth grows away from the sun; things twice as far away still throw a shadow
+  m.topRightCorner<3, 1>() = -m.topLeftCorner<3, 3>() * options.centre_W.cast<float>();
+  return m;
+}
+
+bool isOpaque(const DrawItem& item) { return item.paint.alpha >= 1 && item.paint.fade <= 0; }
+
+}  // namespace
+
+struct Renderer::Gl {
+  explicit Gl(devices::Surface& s) : surface(s) {}
+
+  void drawShadows(const DrawList& list, const RenderOptions& options);
+  void drawSky();
+  void drawItem(const DrawItem& item, float alpha = 1);
+  void drawOpaque(const DrawList& list, Layer layer);
+  void drawHiddenMarks(const DrawList& list);
+  void drawTransparent(const DrawList& list, const Vec3& eye_W);
+
+  devices::Surface& surface;
+  GlProgram solid{kSolidVertexShader, kSolidFragmentShader}, shadow{kShadowVertexShader, kShadowFragmentShader},
+      sky{kSkyVertexShader, kSkyFragmentShader};
+  GlShadowMap shadow_map{kShadowSide};
+  GlPicture picture;
+  GlMesh nothing{{}};  // drawn where a shader makes its own corners
+  std::vector<std::unique_ptr<GlMesh>> meshes;
+};
+
+Renderer::Renderer(devices::Surface& surface) {
+  loadOpenGl(surface);
+  gl_ = std::make_unique<Gl>(surface);
+}
+Renderer::~Renderer() = default;
+
+int Renderer::add(const ViewMesh& mesh) {
+  gl_->meshes.push_back(std::make_unique<GlMesh>(mesh));
+  return static_cast<int>(gl_->meshes.size()) - 1;
+}
+
+std::string Renderer::graphics() const { return reinterpret_cast<const char*>(glGetString(GL_RENDERER)); }
+
+void Renderer::Gl::drawShadows(const DrawList& list, const RenderOptions& options) {
+  shadow_map.begin();
+  shadow.use();
+  shadow.set("world_to_sun", worldToSun(options));
+  for (const DrawItem& item : list) {
+    if (item.layer != Layer::kSolid || !isOpaque(item)) continue;
+    shadow.set("X_WM", item.X_WM);
+    meshes[static_cast<std::size_t>(item.mesh)]->draw();
+  }
+}
+
+void Renderer::Gl::drawSky() {
+  sky.use();
+  glDisable(GL_DEPTH_TEST);
+  nothing.draw();
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  glEnable(GL_DEPTH_TEST);
+}
+
+void Renderer::Gl::drawItem(const DrawItem& item, float alpha) {
+  const Eigen::Matrix3f linear = item.X_WM.topLeftCorner<3, 3>();
+  solid.set("X_WM", item.X_WM);
+  solid.set("N_WM", Eigen::Matrix3f(linear.inverse().transpose()));
+  solid.set("paint", Eigen::Vector4f(item.paint.colour.x(), item.paint.colour.y(), item.paint.colour.z(), alpha * item.paint.alpha));
+  solid.set("gloss", item.paint.gloss);
+  solid.set("edges", item.paint.edges);
+  solid.set("octants", item.paint.octants);
+  solid.set("glow", item.paint.glow);
+  solid.set("fade", item.paint.fade);
+  meshes[static_cast<std::size_t>(item.mesh)]->draw();
+}
+
+void Renderer::Gl::drawOpaque(const DrawList& list, Layer layer) {
+  for (const DrawItem& item : list) {
+    if (item.layer == layer && isOpaque(item)) drawItem(item);
+  }
+}
+
+void Renderer::Gl::drawHiddenMarks(const DrawList& list) {
+  glDepthFunc(GL_GREATER);
+  glDepthMask(GL_FALSE);
+  for (const DrawItem& item : list) {
+    if (item.layer == Layer::kMark && isOpaque(item)) drawItem(item, kHiddenMarks);
+  }
+  glDepthFunc(GL_LEQUAL);
+  glDepthMask(GL_TRUE);
+}
+
+void Renderer::Gl::drawTransparent(const DrawList& list, const Vec3& eye_W) {
+  std::vector<const DrawItem*> items;
+  for (const DrawItem& item : list) {
+    if (!isOpaque(item)) items.push_back(&item);
+  }
+  const auto distance = [&](const DrawItem* item) { return (item->X_WM.topRightCorner<3, 1>() - eye_W.cast<float>()).norm(); };
+  // The ground first, it lies under everything; then from far to near.
+  std::stable_sort(items.begin(), items.end(), [&](const DrawItem* a, const DrawItem* b) {
+    const bool a_ground = a->layer == Layer::kGround, b_ground = b->layer == Layer::kGround;
+    return a_ground != b_ground ? a_ground : distance(a) > distance(b);
+  });
+  for (const DrawItem* item : items) {
+    glDepthMask(item->layer == Layer::kGround ? GL_TRUE : GL_FALSE);
+    drawItem(*item);
+  }
+  glDepthMask(GL_TRUE);
+}
+
+void Renderer::draw(const DrawList& list, const Camera& camera, const RenderOptions& options) {
+  const devices::SurfaceSize size = gl_->surface.size();
+  gl_->picture.resize(size.width, size.height);
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_LEQUAL);
+  glDisable(GL_CULL_FACE);
+  glDisable(GL_BLEND);
+  glDisable(GL_SCISSOR_TEST);
+  if (options.shadows) gl_->drawShadows(list, options);
+  gl_->picture.begin();
+  glEnable(GL_MULTISAMPLE);
+  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  gl_->drawSky();
+  gl_->shadow_map.bind();
+  GlProgram& solid = gl_->solid;
+  solid.use();
+  solid.set("world_to_clip", camera.world_to_clip(static_cast<double>(size.width) / size.height));
+  solid.set("world_to_sun", worldToSun(options));
+  solid.set("eye_W", Vec3f(camera.eye_W().cast<float>()));
+  solid.set("sun_W", Vec3f(kSun_W.cast<float>()));
+  solid.set("shadow_strength", options.shadows ? 0.85f : 0.0f);
+  solid.set("shadow_texel", 1.0f / kShadowSide);
+  solid.set("shadow_map", 0);
+  gl_->drawOpaque(list, Layer::kSolid);
+  gl_->drawOpaque(list, Layer::kGround);
+  glEnable(GL_BLEND);
+  glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  gl_->drawTransparent(list, camera.eye_W());
+  gl_->drawHiddenMarks(list);
+  gl_->drawOpaque(list, Layer::kMark);
+  gl_->picture.resolve();
+}
+
+Image Renderer::picture() {
+  const GlPicture& picture = gl_->picture;
+  Image image{picture.width(), picture.height(), {}};
+  const std::size_t row = 3 * static_cast<std::size_t>(image.width);
+  std::vector<std::uint8_t> upside_down(row * static_cast<std::size_t>(image.height));
+  glBindFramebuffer(GL_FRAMEBUFFER, picture.plain());
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadPixels(0, 0, image.width, image.height, GL_RGB, GL_UNSIGNED_BYTE, upside_down.data());
+  for (int y = image.height - 1; y >= 0; --y) {
+    const auto* from = upside_down.data() + row * static_cast<std::size_t>(y);
+    image.bytes.insert(image.bytes.end(), from, from + row);
+  }
+  return image;
+}
+
+void Renderer::show() {
+  if (!gl_->surface.isWindow()) return;
+  const GlPicture& picture = gl_->picture;
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, picture.plain());
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+  glBlitFramebuffer(0, 0, picture.width(), picture.height(), 0, 0, picture.width(), picture.height(), GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  gl_->surface.present();
+}
+
+}  // namespace pincer::tasks

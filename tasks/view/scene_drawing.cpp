@@ -1,0 +1,234 @@
+#include "tasks/view/scene_drawing.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "tasks/view/shape_meshes.h"
+
+namespace pincer::tasks {
+namespace {
+
+const Vec3f kSkin(0.83f, 0.50f, 0.37f), kPad(0.88f, 0.40f, 0.34f), kNail(0.93f, 0.72f, 0.64f);
+const Vec3f kStick(0.02f, 0.50f, 0.20f), kSlip(0.95f, 0.10f, 0.03f), kNormal(0.02f, 0.07f, 0.30f), kPorcelain(0.50f, 0.52f, 0.54f);
+const Vec3f kFloor(0.50f, 0.52f, 0.55f), kDevice(0.10f, 0.30f, 0.85f);
+const std::array<Vec3f, 6> kBodyColours = {Vec3f(0.90f, 0.42f, 0.06f), Vec3f(0.06f, 0.36f, 0.62f), Vec3f(0.30f, 0.55f, 0.16f),
+                                           Vec3f(0.55f, 0.16f, 0.42f), Vec3f(0.80f, 0.62f, 0.10f), Vec3f(0.10f, 0.50f, 0.52f)};
+constexpr double kFingerBehind = 3.2;       // length of a finger behind its tip's centre, in radii
+constexpr double kPadAngle = 55 * kDegree;  // of the pad about its normal, that the display's tactor reaches
+constexpr double kGroundExtent = 12;        // radius of the drawn floor, in radii of what moves
+constexpr double kLargestThing = 1;         // a larger body that doesn't move needn't be in the picture [m]
+constexpr double kLongestArrow = 2.2;       // in sizes of what moves
+constexpr int kMostLabels = 8;              // more contacts than these, and only fingers' forces are written beside them
+constexpr double kLeastForce = 1e-3;        // smaller ones get no arrow [N]
+
+bool isGround(const contact::Shape& shape) {
+  return std::holds_alternative<contact::HalfSpace>(shape) || std::holds_alternative<contact::Dish>(shape);
+}
+
+Paint paintOfBody(const engine::BodyModel& body, std::size_t& next_colour) {
+  Paint paint;
+  if (std::holds_alternative<contact::Dish>(body.shape)) return {.colour = kPorcelain, .gloss = 0.75f};
+  if (std::holds_alternative<contact::HalfSpace>(body.shape)) return {.colour = kFloor, .gloss = 0.1f};
+  if (!body.dynamic) return {.colour = Vec3f(0.55f, 0.55f, 0.57f), .gloss = 0.2f};
+  paint.colour = kBodyColours[next_colour++ % kBodyColours.size()];
+  paint.gloss = 0.6f;
+  if (std::holds_alternative<contact::Sphere>(body.shape)) paint.octants = 0.13f;
+  return paint;
+}
+
+// A rotation that takes z to `along_W`.
+Pose pointing(const Vec3& from_W, const Vec3& along_W) { return {Quat(frameFromNormal(along_W.normalized())), from_W}; }
+
+const Vec3f& gripColour(bool sliding) { return sliding ? kSlip : kStick; }
+
+// Where fingers whose devices give no orientation come from: from outside, and from above.
+Quat plainOrientation(const Snapshot& start, std::size_t finger) {
+  Vec3 others = Vec3::Zero();
+  for (const FingerSnapshot& other : start.fingers) others += other.p_WP / static_cast<double>(start.fingers.size());
+  Vec3 away = start.fingers[finger].p_WP - others;
+  away = away.norm() > 1e-6 ? Vec3(away.normalized() + 0.55 * Vec3::UnitZ()).normalized() : Vec3::UnitZ();
+  const Vec3 distal = -away;
+  const Vec3 back = std::abs(away.z()) < 0.99 ? Vec3((Vec3::UnitZ() - away.z() * away).normalized()) : Vec3::UnitY();
+  Mat3 R;
+  R << distal, back.cross(distal), back;
+  return Quat(R);
+}
+
+}  // namespace
+
+SceneDrawing::SceneDrawing(const grasp::GraspModel& model, const Snapshot& start, Renderer& renderer)
+    : fingers_(model.fingers),
+      ball_(renderer.add(ballMesh())),
+      rod_(renderer.add(rodMesh())),
+      cone_(renderer.add(openConeMesh())),
+      head_(renderer.add(arrowHeadMesh())),
+      finger_(renderer.add(fingerMesh(kFingerBehind))),
+      pad_(renderer.add(padMesh(kPadAngle))),
+      nail_(renderer.add(nailMesh())) {
+  for (const engine::BodyModel& body : model.world.bodies) bodies_.push_back(bodyLook(body));
+  const double reach = radius(start);
+  std::size_t next_colour = 0;
+  double smallest = kInfinity;
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    const engine::BodyModel& body = model.world.bodies[i];
+    addMeshes(body, reach, renderer, bodies_[i]);
+    bodies_[i].paint = paintOfBody(body, next_colour);
+    if (bodies_[i].layer == Layer::kGround) bodies_[i].paint.fade = static_cast<float>(kGroundExtent * reach);
+    if (body.dynamic) smallest = std::min(smallest, body.bounding_radius);
+  }
+  for (const grasp::FingerModel& finger : model.fingers) smallest = std::min(smallest, 3 * finger.radius);
+  if (smallest < kInfinity) size_ = smallest;
+  for (std::size_t i = 0; i < start.fingers.size(); ++i) plain_q_WF_.push_back(plainOrientation(start, i));
+}
+
+SceneDrawing::BodyLook SceneDrawing::bodyLook(const engine::BodyModel& body) {
+  BodyLook look;
+  look.dynamic = body.dynamic;
+  look.moves = body.dynamic || body.driven;
+  look.is_mesh = std::holds_alternative<contact::Mesh>(body.shape);
+  look.layer = std::holds_alternative<contact::HalfSpace>(body.shape) ? Layer::kGround : Layer::kSolid;
+  look.matters = look.moves || (!isGround(body.shape) && body.bounding_radius < kLargestThing);
+  look.p_BC = body.X_BI.p;
+  look.radius = body.bounding_radius;
+  return look;
+}
+
+void SceneDrawing::addMeshes(const engine::BodyModel& body, double reach, Renderer& renderer, BodyLook& look) {
+  const auto* dish = std::get_if<contact::Dish>(&body.shape);
+  const double extent = dish ? std::min(0.55 * dish->radius, std::max(1.2 * reach, 0.3 * dish->radius)) : kGroundExtent * reach;
+  look.smooth = look.facets = renderer.add(shapeMesh(body.shape, MeshLook::kSmooth, extent));
+  if (look.is_mesh) look.facets = renderer.add(shapeMesh(body.shape, MeshLook::kFacets, extent));
+}
+
+DrawList SceneDrawing::compose(const Snapshot& snapshot, const ViewChoice& choice) const {
+  DrawList list;
+  addBodies(snapshot, choice, list);
+  if (snapshot.trial.blind) return list;
+  for (std::size_t i = 0; i < snapshot.fingers.size(); ++i) {
+    addFinger(snapshot, i, list);
+    if (choice.devices) addDevice(snapshot.fingers[i], fingers_[i].radius, list);
+  }
+  const double scale = metresPerNewton(snapshot);
+  for (int i = 0; i < snapshot.contact_count; ++i) addContact(snapshot.contacts[static_cast<std::size_t>(i)], choice, scale, list);
+  return list;
+}
+
+void SceneDrawing::addBodies(const Snapshot& snapshot, const ViewChoice& choice, DrawList& list) const {
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    const BodyLook& look = bodies_[i];
+    if (snapshot.trial.blind && look.moves) continue;
+    DrawItem item{choice.facets ? look.facets : look.smooth, placed(snapshot.X_WB[i]), look.paint, look.layer};
+    if (look.is_mesh && choice.edges) item.paint.edges = choice.facets ? 0.7f : 0.3f;
+    if (look.moves && choice.transparent) item.paint.alpha = 0.4f;
+    list.push_back(item);
+  }
+}
+
+void SceneDrawing::addFinger(const Snapshot& snapshot, std::size_t finger, DrawList& list) const {
+  const FingerSnapshot& seen = snapshot.fingers[finger];
+  const grasp::FingerModel& model = fingers_[finger];
+  const Vec3 r = Vec3::Constant(model.radius);
+  Pose X_WM{plain_q_WF_[finger], seen.p_WP};
+  if (seen.q_WF) {
+    Mat3 R_FM;  // the drawn finger's pad is -z, its tip +x
+    R_FM << model.distal_F, model.distal_F.cross(model.pad_normal_F), -model.pad_normal_F;
+    X_WM.q = *seen.q_WF * Quat(R_FM);
+  }
+  list.push_back({finger_, placed(X_WM, r), {.colour = kSkin, .gloss = 0.3f}});
+  list.push_back({nail_, placed(X_WM, r), {.colour = kNail, .gloss = 0.8f}});
+  if (seen.q_WF) list.push_back({pad_, placed(X_WM, r), {.colour = kPad, .gloss = 0.25f}});
+}
+
+void SceneDrawing::addDevice(const FingerSnapshot& finger, double radius, DrawList& list) const {
+  list.push_back({ball_,
+                  placed({Quat::Identity(), finger.p_WF}, Vec3::Constant(radius)),
+                  {.colour = kDevice, .alpha = 0.16f, .gloss = 0.5f},
+                  Layer::kMark});
+  const Vec3 spring = finger.p_WF - finger.p_WP;
+  if (spring.norm() < 1e-5) return;
+  const double thin = 0.02 * size_;
+  const Paint paint{.colour = kDevice, .glow = 0.6f};
+  list.push_back({ball_, placed({Quat::Identity(), finger.p_WF}, Vec3::Constant(2.5 * thin)), paint, Layer::kMark});
+  list.push_back({rod_, placed(pointing(finger.p_WP, spring), Vec3(thin, thin, spring.norm())), paint, Layer::kMark});
+}
+
+double SceneDrawing::metresPerNewton(const Snapshot& snapshot) const {
+  double largest = 0;
+  for (int i = 0; i < snapshot.contact_count; ++i) largest = std::max(largest, snapshot.contacts[static_cast<std::size_t>(i)].f_W.norm());
+  double scale = 0.8 * size_;  // for some newtons; ten times as large ones are drawn at a tenth, in steps of about two
+  for (int i = 0; scale * largest > kLongestArrow * size_; ++i) scale *= i % 3 == 1 ? 0.4 : 0.5;
+  return scale;
+}
+
+void SceneDrawing::addContact(const ContactSnapshot& contact, const ViewChoice& choice, double metres_per_newton, DrawList& list) const {
+  const double size = contact.finger < 0 ? 0.4 * size_ : size_;  // bodies have many
+  const Paint paint{.colour = gripColour(contact.sliding), .gloss = 0.5f, .glow = 0.35f};
+  if (choice.contacts) {
+    list.push_back({ball_, placed({Quat::Identity(), contact.p_W}, Vec3::Constant(0.06 * size)), paint, Layer::kMark});
+    addArrow(contact.p_W, 0.45 * size * contact.n_W, 0.012 * size, {.colour = kNormal, .glow = 0.7f}, list);
+  }
+  if (choice.forces && contact.f_W.norm() > kLeastForce) {
+    addArrow(contact.p_W, metres_per_newton * contact.f_W, 0.035 * size, paint, list);
+  }
+  if (!choice.cones || contact.finger < 0 || !(contact.mu > 0)) return;
+  const double height = 0.9 * size / std::sqrt(1 + contact.mu * contact.mu);
+  const Vec3 stretch(contact.mu * height, contact.mu * height, height);
+  list.push_back({cone_,
+                  placed(pointing(contact.p_W, contact.n_W), stretch),
+                  {.colour = gripColour(contact.sliding), .alpha = 0.22f, .gloss = 0.2f, .glow = 0.5f},
+                  Layer::kMark});
+}
+
+void SceneDrawing::addArrow(const Vec3& from_W, const Vec3& along_W, double thickness, const Paint& paint, DrawList& list) const {
+  const double length = along_W.norm(), head = std::min(5.5 * thickness, 0.6 * length);
+  const Pose X_WM = pointing(from_W, along_W);
+  list.push_back({rod_, placed(X_WM, Vec3(thickness, thickness, length - head)), paint, Layer::kMark});
+  const double wide = std::min(2.4 * thickness, 0.6 * length);
+  list.push_back({head_, placed({X_WM.q, X_WM * Vec3(0, 0, length - head)}, Vec3(wide, wide, head)), paint, Layer::kMark});
+}
+
+std::vector<ViewLabel> SceneDrawing::labels(const Snapshot& snapshot, const ViewChoice& choice) const {
+  std::vector<ViewLabel> labels;
+  if (!choice.forces || snapshot.trial.blind) return labels;
+  const double scale = metresPerNewton(snapshot);
+  for (int i = 0; i < snapshot.contact_count; ++i) {
+    const ContactSnapshot& contact = snapshot.contacts[static_cast<std::size_t>(i)];
+    const double newtons = contact.f_W.norm();
+    if (newtons < 0.01 || (contact.finger < 0 && snapshot.contact_count > kMostLabels)) continue;
+    labels.push_back({contact.p_W + (scale + 0.12 * size_ / newtons) * contact.f_W, fmt::format("{:.2f} N", newtons), contact.sliding});
+  }
+  return labels;
+}
+
+Vec3 SceneDrawing::centre_W(const Snapshot& snapshot) const {
+  Eigen::AlignedBox3d box;
+  for (const FingerSnapshot& finger : snapshot.fingers) box.extend(finger.p_WP);
+  for (std::size_t i = 0; i < snapshot.X_WB.size(); ++i) {
+    if (bodies_[i].dynamic) box.extend(snapshot.X_WB[i] * bodies_[i].p_BC);
+  }
+  return box.isEmpty() ? Vec3(Vec3::Zero()) : Vec3(box.center());
+}
+
+double SceneDrawing::radius(const Snapshot& snapshot) const {
+  const Vec3 centre = centre_W(snapshot);
+  double radius = 0.01;
+  for (std::size_t i = 0; i < snapshot.fingers.size(); ++i) {
+    radius = std::max(radius, (snapshot.fingers[i].p_WP - centre).norm() + 2 * fingers_[i].radius);
+  }
+  for (std::size_t i = 0; i < snapshot.X_WB.size(); ++i) {
+    if (bodies_[i].matters) radius = std::max(radius, (snapshot.X_WB[i] * bodies_[i].p_BC - centre).norm() + bodies_[i].radius);
+  }
+  return radius;
+}
+
+Camera SceneDrawing::camera(const Snapshot& snapshot) const {
+  Camera camera;
+  const double r = radius(snapshot);
+  camera.frame(centre_W(snapshot) + 0.1 * r * Vec3::UnitZ(), 1.25 * r);
+  return camera;
+}
+
+}  // namespace pincer::tasks

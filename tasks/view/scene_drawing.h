@@ -1,0 +1,80 @@
+// scene_drawing: a snapshot as things to draw: bodies, fingertips, where devices and proxies are, contacts, cones, forces.
+//
+//   force arrow   from the contact along the force on the finger; its scale is the largest round one at which all fit the picture
+//   cone          of friction at a finger's contact: the force on the finger lies within it; its half opening is atan(mu)
+//   colours       sticking green, slipping red
+#pragma once
+#include <string>
+#include <vector>
+
+#include "tasks/servo/snapshot.h"
+#include "tasks/view/camera.h"
+#include "tasks/view/renderer.h"
+
+namespace pincer::tasks {
+
+// What is shown; a key each (keys.h).
+struct ViewChoice {
+  bool facets = false;       // of meshes, in place of the smooth surface
+  bool edges = true;         // of the triangles of meshes
+  bool contacts = true;      // places and normals
+  bool forces = true;        // arrows, newtons
+  bool cones = true;         // of friction
+  bool devices = true;       // where the devices are, and the spring to the proxies
+  bool transparent = false;  // moving bodies
+  bool shadows = true;
+  bool overlay = true;  // panels and charts
+  bool pads = true;     // the fingerpad insets
+  bool help = false;
+  bool timing = false;
+};
+
+// A text at a place of the scene.
+struct ViewLabel {
+  Vec3 p_W;
+  std::string text;
+  bool slips;
+};
+
+class SceneDrawing {
+ public:
+  // Makes the meshes; `start` says where things are at first.
+  SceneDrawing(const grasp::GraspModel& model, const Snapshot& start, Renderer& renderer);
+
+  // What there is to see of `snapshot`. A blind trial shows nothing but the fingers' home: an empty dish.
+  DrawList compose(const Snapshot& snapshot, const ViewChoice& choice) const;
+  std::vector<ViewLabel> labels(const Snapshot& snapshot, const ViewChoice& choice) const;
+
+  // A ball about all that moves, in this snapshot.
+  Vec3 centre_W(const Snapshot& snapshot) const;
+  double radius(const Snapshot& snapshot) const;
+  Camera camera(const Snapshot& snapshot) const;           // that looks at it
+  double metresPerNewton(const Snapshot& snapshot) const;  // of the arrows
+
+ private:
+  struct BodyLook {
+    int smooth = 0, facets = 0;
+    Paint paint;
+    Layer layer = Layer::kSolid;
+    bool dynamic = false, moves = false, is_mesh = false;
+    bool matters = false;      // is to be in the picture
+    Vec3 p_BC = Vec3::Zero();  // its centre of mass [m]
+    double radius = 0;         // about it [m]
+  };
+
+  static BodyLook bodyLook(const engine::BodyModel& body);
+  static void addMeshes(const engine::BodyModel& body, double reach, Renderer& renderer, BodyLook& look);
+  void addBodies(const Snapshot& snapshot, const ViewChoice& choice, DrawList& list) const;
+  void addFinger(const Snapshot& snapshot, std::size_t finger, DrawList& list) const;
+  void addDevice(const FingerSnapshot& finger, double radius, DrawList& list) const;
+  void addContact(const ContactSnapshot& contact, const ViewChoice& choice, double metres_per_newton, DrawList& list) const;
+  void addArrow(const Vec3& from_W, const Vec3& along_W, double thickness, const Paint& paint, DrawList& list) const;
+
+  std::vector<grasp::FingerModel> fingers_;
+  std::vector<BodyLook> bodies_;
+  std::vector<Quat> plain_q_WF_;  // of fingers whose device says nothing of their orientation
+  int ball_, rod_, cone_, head_, finger_, pad_, nail_;
+  double size_ = 0.05;  // of marks: that of the things that move [m]
+};
+
+}  // namespace pincer::tasks

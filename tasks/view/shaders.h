@@ -1,0 +1,124 @@
+// shaders: the programs of the renderer, GLSL 3.30.
+#pragma once
+
+namespace pincer::tasks {
+
+// Light in the shader: radiance L = albedo (sun max(n.s, 0) shadow + mix(ground, sky, (1 + n.z)/2)) + highlights; then an S-shaped curve so that
+// bright places keep their colour, and sRGB's gamma.
+inline constexpr const char* kSolidVertexShader = R"(#version 330 core
+layout(location = 0) in vec3 p_M;
+layout(location = 1) in vec3 n_M;
+layout(location = 2) in vec3 edge_M;
+uniform mat4 X_WM;
+uniform mat3 N_WM;
+uniform mat4 world_to_clip;
+uniform mat4 world_to_sun;
+out vec3 p_W;
+out vec3 n_W;
+out vec3 edge;
+out vec3 p_sun;
+out vec3 octant;
+void main() {
+  octant = p_M;
+  vec4 p = X_WM * vec4(p_M, 1.0);
+  p_W = p.xyz;
+  n_W = N_WM * n_M;
+  edge = edge_M;
+  p_sun = (world_to_sun * vec4(p.xyz, 1.0)).xyz;
+  gl_Position = world_to_clip * p;
+}
+)";
+
+inline constexpr const char* kSolidFragmentShader = R"(#version 330 core
+in vec3 p_W;
+in vec3 n_W;
+in vec3 edge;
+in vec3 p_sun;
+in vec3 octant;
+uniform vec3 eye_W;
+uniform vec3 sun_W;
+uniform vec4 paint;
+uniform float gloss;
+uniform float edges;
+uniform float octants;
+uniform float glow;
+uniform float fade;
+uniform float shadow_strength;
+uniform float shadow_texel;
+uniform sampler2DShadow shadow_map;
+out vec4 colour;
+
+float lit(float slope) {
+  if (shadow_strength <= 0.0) return 1.0;
+  if (any(greaterThan(abs(p_sun.xy), vec2(0.98)))) return 1.0;
+  vec3 at = 0.5 * p_sun + 0.5;
+  at.z -= 0.0012 + 0.0025 * slope;
+  float sum = 0.0;
+  for (int x = -1; x <= 1; ++x)
+    for (int y = -1; y <= 1; ++y) sum += texture(shadow_map, vec3(at.xy + 1.5 * shadow_texel * vec2(x, y), at.z));
+  return mix(1.0, sum / 9.0, shadow_strength);
+}
+
+vec3 film(vec3 x) {  // rises like x, ends at 1
+  x *= 1.0 / (1.0 + 0.18 * x * x);
+  return pow(clamp(x, 0.0, 1.0), vec3(1.0 / 2.2));
+}
+
+void main() {
+  vec3 v = normalize(eye_W - p_W);
+  vec3 n = normalize(n_W);
+  if (!gl_FrontFacing) n = -n;
+  float facing = max(dot(n, sun_W), 0.0);
+  float shade = facing > 0.0 ? lit(1.0 - facing) : 0.0;
+  vec3 sky = mix(vec3(0.24, 0.22, 0.21), vec3(0.40, 0.44, 0.50), 0.5 + 0.5 * n.z);
+  float fill = max(dot(n, v), 0.0);
+  vec3 light = vec3(1.02, 0.98, 0.92) * facing * shade + sky + vec3(0.10) * fill;
+  vec3 halfway = normalize(sun_W + v);
+  float rim = pow(1.0 - fill, 5.0);
+  float sharp = mix(8.0, 160.0, gloss * gloss);
+  float highlight = gloss * (0.35 * pow(max(dot(n, halfway), 0.0), sharp) * shade * (0.4 + gloss) + 0.22 * rim);
+  vec3 albedo = paint.rgb;
+  if (octants > 0.0) {
+    vec3 side = clamp(octant / max(fwidth(octant), vec3(1e-7)), -1.0, 1.0);
+    albedo *= 1.0 + octants * side.x * side.y * side.z;
+  }
+  if (edges > 0.0) {
+    vec3 width = fwidth(edge);
+    vec3 near = smoothstep(vec3(0.0), 1.4 * width, edge);
+    albedo = mix(albedo * (1.0 - 0.75 * edges), albedo, min(near.x, min(near.y, near.z)));
+  }
+  vec3 radiance = mix(albedo * light + highlight, albedo, glow);
+  float alpha = paint.a;
+  if (fade > 0.0) alpha *= 1.0 - smoothstep(0.35 * fade, fade, length(p_W.xy));
+  colour = vec4(film(radiance), alpha);
+}
+)";
+
+inline constexpr const char* kShadowVertexShader = R"(#version 330 core
+layout(location = 0) in vec3 p_M;
+uniform mat4 X_WM;
+uniform mat4 world_to_sun;
+void main() { gl_Position = world_to_sun * (X_WM * vec4(p_M, 1.0)); }
+)";
+
+inline constexpr const char* kShadowFragmentShader = R"(#version 330 core
+void main() {}
+)";
+
+// A triangle that covers the picture.
+inline constexpr const char* kSkyVertexShader = R"(#version 330 core
+out float up;
+void main() {
+  vec2 corner = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
+  up = 0.5 + 0.5 * corner.y;
+  gl_Position = vec4(corner, 1.0, 1.0);
+}
+)";
+
+inline constexpr const char* kSkyFragmentShader = R"(#version 330 core
+in float up;
+out vec4 colour;
+void main() { colour = vec4(mix(vec3(0.93, 0.935, 0.94), vec3(0.70, 0.755, 0.82), smoothstep(0.0, 1.0, up)), 1.0); }
+)";
+
+}  // namespace pincer::tasks

@@ -1,0 +1,40 @@
+#include "tasks/view/strip_chart.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pincer::tasks {
+namespace {
+
+// The next of 1, 2, 5, 10 ... times a power of ten, at or above x > 0.
+double roundedUp(double x) {
+  const double power = std::pow(10, std::floor(std::log10(x)));
+  for (const double step : {1.0, 2.0, 5.0}) {
+    if (x <= step * power * (1 + 1e-12)) return step * power;
+  }
+  return 10 * power;
+}
+
+}  // namespace
+
+void StripChart::add(double time, std::vector<double> values) {
+  if (!points_.empty() && time < points_.back().time) points_.clear();
+  if (!points_.empty() && time == points_.back().time) points_.pop_back();
+  points_.push_back({time, std::move(values)});
+  while (points_.front().time < time - seconds_) points_.pop_front();
+}
+
+StripChart::Range StripChart::range() const {
+  double low = 0, high = 0;
+  for (const Point& point : points_) {
+    for (const double value : point.values) {
+      if (!std::isfinite(value)) continue;
+      low = std::min(low, value);
+      high = std::max(high, value);
+    }
+  }
+  if (low == 0 && high == 0) return {0, 1};
+  return {low < 0 ? -roundedUp(-low) : 0, high > 0 ? roundedUp(high) : 0};
+}
+
+}  // namespace pincer::tasks

@@ -1,0 +1,83 @@
+// viewer: what a person who watches has: pictures of the latest snapshots, time to go back in, keys and mouse.
+//
+// It reads snapshots from a channel and writes to the servo nothing but the pace and, with mouse fingers, where the hand wants to be. So
+// nothing it does can delay a tick.
+#pragma once
+#include <optional>
+#include <string>
+
+#include "devices/window/mouse_hand.h"
+#include "tasks/servo/paced_cycle.h"
+#include "tasks/view/history.h"
+#include "tasks/view/overlay.h"
+#include "tasks/view/painter.h"
+
+namespace pincer::tasks {
+
+struct ViewerOptions {
+  std::string title;
+  bool keys = true;          // false: only Esc
+  std::string folder = ".";  // for screenshots and sequences
+};
+
+class Viewer {
+ public:
+  // All must outlive it; `hand` may be null.
+  Viewer(devices::Surface& surface, const grasp::GraspModel& model, const Snapshot& start, SnapshotChannel& channel, PaceControl& pace,
+         devices::MouseHand* hand, ViewerOptions options);
+
+  // What the person did, one picture, and shown. Returns false when the person has closed it.
+  bool update();
+
+  // The parts of update():
+  void handle(const devices::InputEvent& event);
+  void look();  // at the channel
+  Image picture() { return painter_.picture(); }
+  ViewChoice& choice() { return choice_; }
+  Painter& painter() { return painter_; }
+  const Histogram& lateness() const { return lateness_; }
+  double pictures_per_second() const { return pictures_per_second_; }
+
+ private:
+  void draw();
+  void act(ViewAction action);
+  void actOnTime(ViewAction action);
+  void actOnHand(ViewAction action);
+  void drag(double right, double down);  // [shares of the picture's height]
+  void wheel(const devices::InputEvent& event);
+  void scrubBy(int pictures);
+  void scrubTo(double time);  // [s]
+  void saveScreenshot();
+  void toggleSequence();
+  void savePictureOfSequence();
+  void addToCharts(const Snapshot& snapshot);
+  const Snapshot& shown() const { return scrub_ ? history_.at(*scrub_) : channel_.current(); }
+  OverlayText overlayText() const;
+  std::string paceText() const;
+  double metresPerHeight() const;
+
+  devices::Surface& surface_;
+  SnapshotChannel& channel_;
+  PaceControl& pace_;
+  devices::MouseHand* hand_;
+  ViewerOptions options_;
+  Painter painter_;
+  Overlay overlay_;
+  ViewChoice choice_;
+  History history_;
+  std::vector<StripChart> charts_;
+  std::vector<PadLook> pads_;
+  int object_ = -1;  // body whose height is shown
+  double start_height_ = 0;
+  Histogram lateness_;
+  std::optional<std::size_t> scrub_;  // place in the history; absent: the present
+  Vec2 mouse_ = Vec2::Zero();         // [pixels]
+  bool mouse_known_ = false;
+  bool left_ = false, right_ = false, shift_ = false;
+  bool quit_ = false;
+  std::string notice_, sequence_;  // sequence_: folder, empty: none is being written
+  int sequence_count_ = 0;
+  double notice_until_ = 0, last_picture_ = 0, pictures_per_second_ = 0;
+};
+
+}  // namespace pincer::tasks

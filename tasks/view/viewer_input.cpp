@@ -1,0 +1,158 @@
+#include <algorithm>
+#include <cmath>
+
+#include "tasks/view/viewer.h"
+
+namespace pincer::tasks {
+namespace {
+
+constexpr double kTurn = 3.0;           // of the camera by a drag over the picture's height [rad]
+constexpr double kKeyStep = 4e-3;       // of the fingers by a key [m]
+constexpr double kGripStep = 1.15;      // per notch or key
+constexpr double kSlowest = 1.0 / 256;  // of slow motion
+constexpr double kZoomStep = 0.9;       // per notch
+
+Vec3 wayOf(ViewAction action) {
+  switch (action) {
+    case ViewAction::kHandLeft:
+      return -Vec3::UnitX();
+    case ViewAction::kHandRight:
+      return Vec3::UnitX();
+    case ViewAction::kHandUp:
+      return Vec3::UnitZ();
+    case ViewAction::kHandDown:
+      return -Vec3::UnitZ();
+    case ViewAction::kHandAway:
+      return Vec3::UnitY();
+    case ViewAction::kHandNear:
+      return -Vec3::UnitY();
+    default:
+      return Vec3::Zero();
+  }
+}
+
+}  // namespace
+
+void Viewer::handle(const devices::InputEvent& event) {
+  using devices::InputKind;
+  if (event.kind == InputKind::kKey) {
+    if (event.code == devices::kKeyShift) shift_ = event.down;
+    if (!event.down) return;
+    if (!options_.keys && event.code != devices::kKeyEscape) return;
+    if (const auto action = actionOf(event.code, hand_ && !pace_.paused)) act(*action);
+  } else if (event.kind == InputKind::kButton) {
+    if (event.code == devices::kButtonLeft) left_ = event.down;
+    if (event.code == devices::kButtonRight) right_ = event.down;
+    if (event.code == devices::kButtonLeft && hand_) hand_->squeeze(event.down);
+  } else if (event.kind == InputKind::kWheel) {
+    wheel(event);
+  } else {
+    const Vec2 now(event.x, event.y), by = (now - mouse_) / surface_.size().height;
+    if (mouse_known_) drag(by.x(), by.y());
+    mouse_ = now;
+    mouse_known_ = true;
+  }
+}
+
+void Viewer::drag(double right, double down) {
+  Camera& camera = painter_.camera();
+  if (hand_ && !right_) {
+    const Vec3 way = shift_ ? Vec3(right, -down, 0) : Vec3(right, 0, -down);
+    if (!pace_.paused) hand_->move(metresPerHeight() * way);
+  } else if (right_ && !hand_) {
+    camera.pan(-right, down);
+  } else if (left_ || right_) {
+    camera.turn(-kTurn * right, kTurn * down);
+  }
+}
+
+void Viewer::wheel(const devices::InputEvent& event) {
+  const bool hand = hand_ && !event.modifiers.control && !pace_.paused;
+  if (hand) {
+    hand_->changeGrip(std::pow(kGripStep, event.y));
+  } else {
+    painter_.camera().zoom(std::pow(kZoomStep, event.y));
+  }
+}
+
+void Viewer::act(ViewAction action) {
+  if (toggle(action, choice_)) return;
+  switch (action) {
+    case ViewAction::kQuit:
+      quit_ = true;
+      break;
+    case ViewAction::kFullScreen:
+      surface_.toggleFullScreen();
+      break;
+    case ViewAction::kCamera:
+      painter_.camera() = painter_.scene().camera(shown());
+      break;
+    case ViewAction::kScreenshot:
+      saveScreenshot();
+      break;
+    case ViewAction::kSequence:
+      toggleSequence();
+      break;
+    default:
+      actOnTime(action);
+      if (hand_) actOnHand(action);
+  }
+}
+
+void Viewer::actOnTime(ViewAction action) {
+  const bool at_present = !scrub_ || *scrub_ + 1 >= history_.size();
+  switch (action) {
+    case ViewAction::kPause:
+      pace_.paused = !pace_.paused;
+      if (!pace_.paused) scrub_.reset();
+      break;
+    case ViewAction::kTickForward:
+      if (pace_.paused && at_present) {
+        scrub_.reset();
+        pace_.single_ticks.fetch_add(1);
+      } else if (scrub_) {
+        ++*scrub_;
+      }
+      break;
+    case ViewAction::kTickBack:
+      scrubBy(-1);
+      break;
+    case ViewAction::kScrubBack:
+      scrubTo(shown().time - 1);
+      break;
+    case ViewAction::kScrubForward:
+      scrubTo(shown().time + 1);
+      break;
+    case ViewAction::kLive:
+      scrub_.reset();
+      break;
+    case ViewAction::kSlower:
+      pace_.speed = std::max(0.5 * pace_.speed, kSlowest);
+      break;
+    case ViewAction::kFaster:
+      pace_.speed = std::min(2 * pace_.speed, 1.0);
+      break;
+    default:
+      break;
+  }
+}
+
+void Viewer::scrubBy(int pictures) {
+  if (!pace_.paused || history_.size() == 0) return;
+  const auto last = static_cast<std::ptrdiff_t>(history_.size()) - 1;
+  const auto from = scrub_ ? static_cast<std::ptrdiff_t>(*scrub_) : last;
+  scrub_ = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(from + pictures, 0, last));
+}
+
+void Viewer::scrubTo(double time) {
+  if (pace_.paused && history_.size() > 0) scrub_ = history_.find(time);
+}
+
+void Viewer::actOnHand(ViewAction action) {
+  hand_->move(kKeyStep * wayOf(action));
+  if (action == ViewAction::kSqueeze) hand_->toggleSqueeze();
+  if (action == ViewAction::kGripLess) hand_->changeGrip(1 / kGripStep);
+  if (action == ViewAction::kGripMore) hand_->changeGrip(kGripStep);
+}
+
+}  // namespace pincer::tasks

@@ -1,0 +1,99 @@
+#include <gtest/gtest.h>
+
+#include "tasks/app/sim_view.h"
+#include "tasks/scene/builtin_scenes.h"
+#include "tasks/view/viewer.h"
+
+namespace pincer::tasks {
+namespace {
+
+using devices::InputEvent;
+using devices::InputKind;
+
+// A person at the window, played: the viewer's own events, the servo's own ticks, in virtual time.
+class PlayedPerson {
+ public:
+  PlayedPerson()
+      : simulation_(readBuiltinScene("pickup")),
+        hand_(mouseMounts(simulation_.scene())),
+        start_(snapshotOf(simulation_)),
+        channel_(start_),
+        cycle_(simulation_, channel_, &hand_),
+        paced_(cycle_, pace_, 1000),
+        surface_(devices::openOffscreen({320, 180})),
+        viewer_(*surface_, simulation_.model(), start_, channel_, pace_, &hand_, {}) {}
+
+  void wait(double seconds) {
+    for (int i = 0; i < std::lround(1000 * seconds); ++i) paced_.tick(1e-3 * static_cast<double>(ticks_++));
+  }
+  void button(int code, bool down) { viewer_.handle({InputKind::kButton, code, down, x_, y_, {}}); }
+  void moveBy(double x, double y) { viewer_.handle({InputKind::kMove, 0, false, x_ += x, y_ += y, {}}); }
+  void key(int code) { viewer_.handle({InputKind::kKey, code, true, 0, 0, {}}); }
+  double height() const { return simulation_.bodyPose(1).p.z(); }
+  SceneCycle& cycle() { return cycle_; }
+  Viewer& viewer() { return viewer_; }
+  PaceControl& pace() { return pace_; }
+  Simulation& simulation() { return simulation_; }
+
+ private:
+  Simulation simulation_;
+  devices::MouseHand hand_;
+  Snapshot start_;
+  SnapshotChannel channel_;
+  SceneCycle cycle_;
+  PaceControl pace_;
+  PacedCycle paced_;
+  std::unique_ptr<devices::Surface> surface_;
+  Viewer viewer_;
+  double x_ = 160, y_ = 90;
+  long ticks_ = 0;
+};
+
+TEST(MousePickup, PinchesLiftsHoldsAndLetsGo) {
+  PlayedPerson person;
+  person.moveBy(0, 0);
+  person.wait(0.2);
+  person.button(devices::kButtonLeft, true);
+  person.wait(1.5);
+  for (int i = 0; i < 30; ++i) {
+    person.moveBy(0, -1);
+    person.wait(0.03);
+  }
+  person.wait(0.5);
+  const double lifted = person.height() - 0.02;
+  EXPECT_GT(lifted, 0.03);  // 30 pixels of 180 are a sixth of a picture that shows all of a scene 0.12 m wide
+  EXPECT_NEAR(person.cycle().lift(), lifted, 5e-3);
+  person.wait(2);
+  EXPECT_NEAR(person.height() - 0.02, lifted, 1e-4);  // held: nothing creeps
+  person.button(devices::kButtonLeft, false);
+  person.wait(1);
+  EXPECT_LT(person.height(), 0.05);  // fallen back into the dish
+}
+
+// What the person sees can be held, and goes on where it stood.
+TEST(MousePickup, SpacePausesAndRightTakesATick) {
+  PlayedPerson person;
+  person.wait(0.1);
+  person.key(' ');
+  person.wait(0.1);
+  EXPECT_EQ(person.simulation().ticks(), 100);
+  person.key(devices::kKeyRight);
+  person.key(devices::kKeyRight);
+  person.wait(0.1);
+  EXPECT_EQ(person.simulation().ticks(), 102);
+  person.key(' ');
+  person.wait(0.1);
+  EXPECT_EQ(person.simulation().ticks(), 202);
+}
+
+TEST(MousePickup, KeysSwitchWhatIsShown) {
+  PlayedPerson person;
+  EXPECT_TRUE(person.viewer().choice().forces);
+  person.key('F');
+  EXPECT_FALSE(person.viewer().choice().forces);
+  person.key('F');
+  EXPECT_TRUE(person.viewer().choice().forces);
+}
+
+}  // namespace
+}  // namespace pincer::tasks
