@@ -56,7 +56,7 @@ std::map<std::string, double> valuesOf(DeviceLink& device) {
   return values;
 }
 
-void change(DeviceLink& device, const std::string& name, double value) {
+void changeValue(DeviceLink& device, const std::string& name, double value) {
   checkCalibrationValue(name, value);
   const auto values = valuesOf(device);
   const auto found = values.find(name);
@@ -91,11 +91,11 @@ int calibrate(const CalibrateArguments& arguments) {
     if (file.serial != arguments.serial) {
       throw InputError(fmt::format("{}: it is the calibration of {}, not of {}.", arguments.load, file.serial, arguments.serial));
     }
-    for (const auto& [name, value] : file.values) change(device, name, value);
+    for (const auto& [name, value] : file.values) changeValue(device, name, value);
   }
   for (const std::string& text : arguments.set) {
     const auto [name, value] = assignment(text);
-    change(device, name, value);
+    changeValue(device, name, value);
   }
   const auto values = valuesOf(device);
   for (const auto& [name, value] : values) fmt::print("{:<20} {}\n", name, value);

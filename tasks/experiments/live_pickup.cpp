@@ -1,6 +1,7 @@
 #include "tasks/experiments/live_pickup.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "devices/usb/usb_bus.h"
 
@@ -15,7 +16,7 @@ bool LivePickup::tick(double now) {
   const std::int64_t start = devices::usb::monotonicNs();
   const std::vector<FingerInputs>& samples = hands_.sample(now);
   const std::int64_t sampled = devices::usb::monotonicNs();
-  const bool more = trial_.step(samples, hands_.intent(trial_.scratch(), trial_.scene().object), now);
+  const bool more = trial_.step(samples, hands_.intent(std::as_const(trial_).scratch(), trial_.scene().object), now);
   const std::int64_t stepped = devices::usb::monotonicNs();
   hands_.apply(trial_.outputs(), trial_.cue());
   samples_.add(1e-9 * static_cast<double>(sampled - start));

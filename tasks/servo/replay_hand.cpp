@@ -63,9 +63,9 @@ double numberIn(const std::string& path, int line, const std::vector<std::string
 }
 
 // The first trial of a table of samples.
-class Recording {
+class ReplayRecording {
  public:
-  Recording(const std::string& path, int fingers) : places_(static_cast<std::size_t>(fingers)) {
+  ReplayRecording(const std::string& path, int fingers) : places_(static_cast<std::size_t>(fingers)) {
     std::ifstream file(path);
     std::string line;
     if (!std::getline(file, line)) throw InputError(path + ": there is no such file, or it is empty. Give a CSV file of samples.");
@@ -124,7 +124,7 @@ class ReplayHand final : public HandDevices {
   }
 
   std::string path_;
-  Recording recording_;
+  ReplayRecording recording_;
   std::vector<std::unique_ptr<ReplayArm>> arms_;
 };
 

@@ -23,7 +23,7 @@ std::string listOf(UsbHost& host) {
 
 // The finger's device: the one asked for, or the next in the order of the serial numbers.
 template <typename Device>
-Device* chosen(const std::vector<Device*>& all, const std::vector<std::string>& serials, std::size_t finger, const char* kind) {
+Device* chosenDeviceDevice(const std::vector<Device*>& all, const std::vector<std::string>& serials, std::size_t finger, const char* kind) {
   if (finger >= serials.size()) return finger < all.size() ? all[finger] : nullptr;
   const auto found = std::find_if(all.begin(), all.end(), [&](Device* d) { return d->deviceIdentity().serial == serials[finger]; });
   if (found != all.end()) return *found;
@@ -37,8 +37,8 @@ class UsbHand final : public HandDevices {
     const bool found = host_.waitFor(fingers, options.needs_displays ? fingers : 0, options.timeout);
     if (!found) refuse(options);
     for (std::size_t i = 0; i < fingers; ++i) {
-      arms_.push_back(chosen(host_.arms(), options.arms, i, "arm"));
-      displays_.push_back(chosen(host_.displays(), options.displays, i, "display"));
+      arms_.push_back(chosenDevice(host_.arms(), options.arms, i, "arm"));
+      displays_.push_back(chosenDevice(host_.displays(), options.displays, i, "display"));
     }
   }
   devices::Arm& arm(int finger) override { return *arms_[static_cast<std::size_t>(finger)]; }

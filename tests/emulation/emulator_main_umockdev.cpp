@@ -6,6 +6,7 @@
 // --unplug: pulls the first arm out after so many seconds and plugs it in again half a second later.
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <umockdev.h>

@@ -16,7 +16,7 @@ namespace premium = devices::premium;
 
 // `visit` at 9 x 9 x 9 places of the workspace.
 template <typename Visit>
-void overWorkspace(Visit visit) {
+void overArmWorkspace(Visit visit) {
   constexpr int n = 9;
   for (int i = 0; i < n * n * n; ++i) {
     const Vec3 share(i % n, (i / n) % n, i / (n * n));
@@ -25,7 +25,7 @@ void overWorkspace(Visit visit) {
 }
 
 // The motors' force on a tip that is held at `p_D`, after `f_D` was commanded for 20 ms.
-Vec3 renderedForce(const Vec3& p_D, const Vec3& f_D) {
+Vec3 renderedArmForce(const Vec3& p_D, const Vec3& f_D) {
   devices::SimArmSettings settings;
   settings.start_D = p_D;
   devices::SimArm arm(settings);
@@ -37,14 +37,14 @@ Vec3 renderedForce(const Vec3& p_D, const Vec3& f_D) {
   return arm.motorForce_D();
 }
 
-std::vector<Record> forceErrors(MeasureContext& context) {
+std::vector<Record> armForceErrors(MeasureContext& context) {
   double worst = 0;
   int places = 0;
-  overWorkspace([&](const Vec3& p_D) {
+  overArmWorkspace([&](const Vec3& p_D) {
     if (context.interrupted()) return;
     for (const Vec3& direction : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1), Vec3(-1, 1, -1).normalized()}) {
       const Vec3 wanted = 1.4 * direction;  // the continuous force: no joint saturates
-      worst = std::max(worst, (renderedForce(p_D, wanted) - wanted).norm() / wanted.norm());
+      worst = std::max(worst, (renderedArmForce(p_D, wanted) - wanted).norm() / wanted.norm());
     }
     context.progress(++places / 729.0);
   });
@@ -52,10 +52,10 @@ std::vector<Record> forceErrors(MeasureContext& context) {
 }
 
 // The eigenvalues of J^-T M J^-1.
-std::vector<Record> apparentMass(MeasureContext&) {
+std::vector<Record> armApparentMass(MeasureContext&) {
   double least = std::numeric_limits<double>::infinity(), most = 0;
   const premium::Inertia inertia = premium::inertia(0);
-  overWorkspace([&](const Vec3& p_D) {
+  overArmWorkspace([&](const Vec3& p_D) {
     const auto q = premium::inverse(p_D);
     if (!q) return;
     const premium::MassMatrix m = premium::massMatrix(inertia, *q);
@@ -70,7 +70,7 @@ std::vector<Record> apparentMass(MeasureContext&) {
           atMost("apparent mass, most over the workspace", 1e3 * most, "g", 165)};
 }
 
-std::vector<Record> resolution(MeasureContext&) {
+std::vector<Record> armResolution(MeasureContext&) {
   devices::SimArm arm;
   return {atMost("position resolution", 1e3 * arm.capabilities().resolution, "mm", 0.0301)};
 }
@@ -78,7 +78,7 @@ std::vector<Record> resolution(MeasureContext&) {
 }  // namespace
 
 std::vector<Measurement> armMeasurements() {
-  return {{"arm/force", forceErrors}, {"arm/mass", apparentMass}, {"arm/resolution", resolution}};
+  return {{"arm/force", armForceErrors}, {"arm/mass", armApparentMass}, {"arm/resolution", armResolution}};
 }
 
 }  // namespace pincer::tasks

@@ -15,10 +15,10 @@ using devices::SimCld;
 using devices::SimOneDofCld;
 
 // A display as it is seen from outside: a place asked for, a millisecond, where the tactor then is.
-using Probe = std::function<double(double place)>;
+using DisplayProbe = std::function<double(double place)>;
 
 // A fresh 2-DOF display, watched along one axis on the cylindrical half of the finger, where the axes are the actuators'.
-Probe twoDof(int axis) {
+DisplayProbe twoDofProbe(int axis) {
   return [cld = SimCld(), axis](double place) mutable {
     Vec2 place_L(-0.004, 0);
     place_L[axis] += place;
@@ -28,7 +28,7 @@ Probe twoDof(int axis) {
   };
 }
 
-Probe oneDof() {
+DisplayProbe oneDofProbe() {
   return [cld = SimOneDofCld()](double place) mutable {
     cld.command({false, Vec2(place, 0)});
     cld.advance(1e-3);
@@ -37,7 +37,7 @@ Probe oneDof() {
 }
 
 // Half the travel while it follows a sine, once it is steady.
-double amplitudeOf(Probe probe, double amplitude, double frequency) {
+double displayAmplitude(DisplayProbe probe, double amplitude, double frequency) {
   const int period = static_cast<int>(std::lround(1000 / frequency));
   double low = 1, high = -1;
   for (int i = 0; i < 5 * period; ++i) {
@@ -48,34 +48,34 @@ double amplitudeOf(Probe probe, double amplitude, double frequency) {
 }
 
 // The dissertation's way: the smallest slow sine that still moves the output.
-double backlashOf(const std::function<Probe()>& make) {
+double backlashOf(const std::function<DisplayProbe()>& make) {
   double still = 0, moves = 2e-3;
   while (moves - still > 1e-6) {
     const double middle = (still + moves) / 2;
-    (amplitudeOf(make(), middle, 0.2) > 2e-6 ? moves : still) = middle;
+    (displayAmplitude(make(), middle, 0.2) > 2e-6 ? moves : still) = middle;
   }
   return 2 * moves;
 }
 
-double bandwidthOf(const std::function<Probe()>& make) {
-  const double slow = amplitudeOf(make(), 2e-3, 0.2);
+double bandwidthOf(const std::function<DisplayProbe()>& make) {
+  const double slow = displayAmplitude(make(), 2e-3, 0.2);
   double frequency = 1;
-  while (frequency < 40 && amplitudeOf(make(), 2e-3, frequency) > slow * std::numbers::sqrt2 / 2) frequency += 0.1;
+  while (frequency < 40 && displayAmplitude(make(), 2e-3, frequency) > slow * std::numbers::sqrt2 / 2) frequency += 0.1;
   return frequency;
 }
 
-std::vector<Record> backlash(MeasureContext&) {
-  const double pd = 1e3 * backlashOf([] { return twoDof(0); }), ru = 1e3 * backlashOf([] { return twoDof(1); });
+std::vector<Record> displayBacklash(MeasureContext&) {
+  const double pd = 1e3 * backlashOf([] { return twoDofProbe(0); }), ru = 1e3 * backlashOf([] { return twoDofProbe(1); });
   return {atMost("proximal-distal, off the published 1.13 mm by", std::abs(pd - 1.13), "mm", 0.02),
           atMost("radial-ulnar, off the published 0.42 mm by", std::abs(ru - 0.42), "mm", 0.02)};
 }
 
-std::vector<Record> bandwidth(MeasureContext&) {
-  return {atLeast("proximal-distal, -3 dB", bandwidthOf([] { return twoDof(0); }), "Hz", 5),
-          atLeast("radial-ulnar, -3 dB", bandwidthOf([] { return twoDof(1); }), "Hz", 5)};
+std::vector<Record> displayBandwidth(MeasureContext&) {
+  return {atLeast("proximal-distal, -3 dB", bandwidthOf([] { return twoDofProbe(0); }), "Hz", 5),
+          atLeast("radial-ulnar, -3 dB", bandwidthOf([] { return twoDofProbe(1); }), "Hz", 5)};
 }
 
-std::vector<Record> resolution(MeasureContext&) {
+std::vector<Record> displayResolution(MeasureContext&) {
   SimCld cld;
   double step = 0, last = 0;
   for (int i = 0; i < 4000; ++i) {
@@ -89,7 +89,7 @@ std::vector<Record> resolution(MeasureContext&) {
 }
 
 // From a command in step with the frames to the first motion.
-std::vector<Record> delay(MeasureContext&) {
+std::vector<Record> displayDelay(MeasureContext&) {
   double worst = 0;
   for (int phase = 0; phase < 4; ++phase) {
     SimCld cld;
@@ -104,10 +104,10 @@ std::vector<Record> delay(MeasureContext&) {
           exactly("frames of commands", cld.capabilities().rate, "Hz", 500)};
 }
 
-std::vector<Record> roller(MeasureContext&) {
+std::vector<Record> rollerFigures(MeasureContext&) {
   SimOneDofCld cld;
-  return {atMost("backlash, off the published 0.23 mm by", std::abs(1e3 * backlashOf(oneDof) - 0.23), "mm", 0.01),
-          atLeast("bandwidth, -3 dB", bandwidthOf(oneDof), "Hz", 5),
+  return {atMost("backlash, off the published 0.23 mm by", std::abs(1e3 * backlashOf(oneDofProbe) - 0.23), "mm", 0.01),
+          atLeast("bandwidth, -3 dB", bandwidthOf(oneDofProbe), "Hz", 5),
           atMost("resolution", 1e6 * cld.capabilities().resolution, "um", 0.801)};
 }
 
@@ -131,21 +131,21 @@ std::vector<Record> policyErrors(double speed) {
           unbounded("time with more than 1.3 mm", 100 * e.beyond_limit, "%")};
 }
 
-std::vector<Record> lag(MeasureContext&) {
+std::vector<Record> displayLag(MeasureContext&) {
   return {atMost("behind a slow ramp (people notice 61 ms)", 1e3 * devices::DisplayFigures{}.lag(), "ms", 1e3 * devices::kDelayLimit)};
 }
 
 }  // namespace
 
 std::vector<Measurement> displayMeasurements() {
-  return {{"cld/resolution", resolution},
-          {"cld/bandwidth", bandwidth},
-          {"cld/backlash", backlash},
-          {"cld/delay", delay},
+  return {{"cld/resolution", displayResolution},
+          {"cld/bandwidth", displayBandwidth},
+          {"cld/backlash", displayBacklash},
+          {"cld/delay", displayDelay},
           {"cld/error-20mm_s", [](MeasureContext&) { return policyErrors(0.020); }},
           {"cld/error-74mm_s", [](MeasureContext&) { return policyErrors(0.074); }},
-          {"cld/lag", lag},
-          {"roller/figures", roller}};
+          {"cld/lag", displayLag},
+          {"roller/figures", rollerFigures}};
 }
 
 }  // namespace pincer::tasks

@@ -38,7 +38,7 @@ class GateAdversary {
   Mat3 J_ = 0.2 * Mat3::Identity();
 };
 
-std::vector<Record> adversary(MeasureContext& context) {
+std::vector<Record> hostileTicks(MeasureContext& context) {
   GateLimits limits;
   limits.ramp_time = 0.1;
   limits.peak_torque = Vec3(1.2, 1.2, 1.0);
@@ -68,6 +68,6 @@ std::vector<Record> adversary(MeasureContext& context) {
 
 }  // namespace
 
-std::vector<Measurement> gateMeasurements() { return {{"gate/adversary", adversary}}; }
+std::vector<Measurement> gateMeasurements() { return {{"gate/adversary", hostileTicks}}; }
 
 }  // namespace pincer::tasks

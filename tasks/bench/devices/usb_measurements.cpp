@@ -19,7 +19,7 @@ std::string besideThisProgram(const char* name) {
   return error ? name : (self.parent_path() / name).string();
 }
 
-std::vector<std::string> cells(const std::string& line) {
+std::vector<std::string> tabbedCells(const std::string& line) {
   std::vector<std::string> found(1);
   for (const char c : line) {
     if (c == '\t')
@@ -31,7 +31,7 @@ std::vector<std::string> cells(const std::string& line) {
 }
 
 // name, metric, value, unit, relation, bound
-Record recordOf(const std::vector<std::string>& c) {
+Record usbRecord(const std::vector<std::string>& c) {
   const double value = std::strtod(c[2].c_str(), nullptr), bound = std::strtod(c[5].c_str(), nullptr);
   Record record = c[4] == ">="   ? atLeast(c[1], value, c[3], bound)
                   : c[4] == "==" ? exactly(c[1], value, c[3], bound)
@@ -55,8 +55,8 @@ std::vector<Record> measureUsb(const DevicesBenchOptions& options, MeasureContex
   std::vector<Record> records;
   std::array<char, 1024> line;
   while (pipe && std::fgets(line.data(), static_cast<int>(line.size()), pipe.get()) != nullptr && !context.interrupted()) {
-    const auto fields = cells(line.data());
-    if (fields.size() == 6) records.push_back(recordOf(fields));
+    const auto fields = tabbedCells(line.data());
+    if (fields.size() == 6) records.push_back(usbRecord(fields));
     context.progress(std::min(1.0, static_cast<double>(records.size()) / 22));
   }
   if (records.empty()) throw InputError(fmt::format("bench devices: {} measured nothing; run it by hand to see why.", program));
