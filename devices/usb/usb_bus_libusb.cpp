@@ -1,6 +1,8 @@
 #include <fcntl.h>
 #include <libusb.h>
 #include <poll.h>
+#include <pthread.h>
+#include <sched.h>
 #include <sys/eventfd.h>
 #include <time.h>
 #include <unistd.h>
@@ -57,10 +59,16 @@ struct Transfer {
   libusb_transfer* transfer = nullptr;
   std::array<std::uint8_t, 2 * kFrameSize> buffer{};  // longer than a frame, so that a too long packet is seen as one
   bool flying = false;
-  bool done = false;  // set by libusb's callback, looked at by the loop
+  bool done = false;                     // set by libusb's callback, looked at by the loop
+  std::uint64_t order = 0;               // of its completion among the port's
+  std::uint64_t* completions = nullptr;  // of the port
 };
 
-void LIBUSB_CALL markDone(libusb_transfer* transfer) { static_cast<Transfer*>(transfer->user_data)->done = true; }
+void LIBUSB_CALL markDone(libusb_transfer* transfer) {
+  auto& t = *static_cast<Transfer*>(transfer->user_data);
+  t.done = true;
+  t.order = ++*t.completions;
+}
 
 struct PortState {
   libusb_device* device = nullptr;  // null: free
@@ -70,6 +78,7 @@ struct PortState {
   Transfer out;
   FrameBytes packet{};  // being sent
   int failures = 0;
+  std::uint64_t completions = 0;
   bool closing = false, told_closed = false;
 };
 
@@ -124,6 +133,9 @@ class UsbBus::Thread {
 
  private:
   void run() {
+    // Just below the servo's priority, where the system permits it: a command that waits for this thread waits for nothing else.
+    const sched_param priority{.sched_priority = 79};
+    pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority);
     const bool told = watchPlugs();
     if (!told) lookForDevices();
     handleEvents();
@@ -229,12 +241,14 @@ class UsbBus::Thread {
 
   void start(PortState& p) {
     for (Transfer& t : p.in) {
+      t.completions = &p.completions;
       t.transfer = libusb_alloc_transfer(0);
       libusb_fill_interrupt_transfer(t.transfer, p.handle, p.endpoints.in, t.buffer.data(), static_cast<int>(t.buffer.size()), markDone, &t,
                                      0);
       t.transfer->type = p.endpoints.in_type;
       submit(p, t);
     }
+    p.out.completions = &p.completions;
     p.out.transfer = libusb_alloc_transfer(0);
     libusb_fill_interrupt_transfer(p.out.transfer, p.handle, p.endpoints.out, p.packet.data(), kFrameSize, markDone, &p.out, 0);
     p.out.transfer->type = p.endpoints.out_type;
@@ -249,9 +263,7 @@ class UsbBus::Thread {
   void serve(int port) {
     PortState& p = states_[static_cast<std::size_t>(port)];
     if (p.device == nullptr) return;
-    for (Transfer& t : p.in) {
-      if (t.flying && t.done) finishIn(port, p, t);
-    }
+    while (Transfer* t = nextDone(p)) finishIn(port, p, *t);
     if (p.out.flying && p.out.done) {
       p.out.flying = false;
       finished(p, *p.out.transfer);
@@ -263,6 +275,15 @@ class UsbBus::Thread {
       if (!p.out.flying && !p.closing && ports_.toSend(port, p.packet, clock_())) submit(p, p.out);
     }
     if (p.closing) close(port, p);
+  }
+
+  // Those that came back are read in the order of their coming: otherwise a frame would be late that wasn't.
+  static Transfer* nextDone(PortState& p) {
+    Transfer* next = nullptr;
+    for (Transfer& t : p.in) {
+      if (t.flying && t.done && (next == nullptr || t.order < next->order)) next = &t;
+    }
+    return next;
   }
 
   void finishIn(int port, PortState& p, Transfer& t) {

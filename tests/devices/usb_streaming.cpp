@@ -223,6 +223,27 @@ TEST_F(Usb, ADeviceThatReportsAFaultIsNoLongerReady) {
   EXPECT_EQ(devices::usb::describeFaults(arm->status().faults), "emergency stop");
 }
 
+// It was read in the order of the transfers' places, not of their coming: every other pair of frames counted as late.
+TEST_F(Usb, TransfersThatCompleteTogetherAreReadInTheOrderOfTheirCompletion) {
+  UsbBench bench;
+  bench.addArm("A1");
+  UsbHost host(bench.clock());
+  ASSERT_TRUE(findAll(bench, host, 1, 0));
+  auto* arm = host.arms()[0];
+  auto accepted = arm->counts().accepted;
+  for (int round = 0; round < 100; ++round) {
+    const int frames = 2 + round % 4;  // so that the next to come back is now the one, now the other
+    bench.bus.device(0).with([&](auto& firmware) {
+      for (int i = 0; i < frames; ++i) firmware.advance(2e-3);
+    });
+    bench.bus.device(0).advance(1e-4);
+    ASSERT_TRUE(eventually([&] { return arm->counts().accepted >= accepted + frames; })) << "round " << round;
+    accepted = arm->counts().accepted;
+  }
+  EXPECT_EQ(arm->counts().late, 0);
+  EXPECT_EQ(arm->counts().lost, 0);
+}
+
 // What was held up on its way is seen as old, though it arrives now.
 TEST_F(Usb, AHeldUpStateIsAsOldAsItIs) {
   UsbBench bench;

@@ -1,4 +1,6 @@
 #include <fmt/format.h>
+#include <pthread.h>
+#include <sched.h>
 #include <umockdev.h>
 
 #include <chrono>
@@ -101,6 +103,8 @@ void EmulatedBus::advance(double dt) {
 void EmulatedBus::runInRealTime() {
   running_ = true;
   thread_ = std::thread([this] {
+    const sched_param priority{.sched_priority = 81};  // a device doesn't wait for this computer, if that is permitted
+    pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority);
     using Time = std::chrono::steady_clock;
     auto last = Time::now();
     for (auto due = last; running_;) {
