@@ -23,7 +23,7 @@ std::string listOf(UsbHost& host) {
 
 // The finger's device: the one asked for, or the next in the order of the serial numbers.
 template <typename Device>
-Device* chosenDeviceDevice(const std::vector<Device*>& all, const std::vector<std::string>& serials, std::size_t finger, const char* kind) {
+Device* chosenDevice(const std::vector<Device*>& all, const std::vector<std::string>& serials, std::size_t finger, const char* kind) {
   if (finger >= serials.size()) return finger < all.size() ? all[finger] : nullptr;
   const auto found = std::find_if(all.begin(), all.end(), [&](Device* d) { return d->deviceIdentity().serial == serials[finger]; });
   if (found != all.end()) return *found;
