@@ -10,13 +10,15 @@
 #include "contact/error.h"
 #include "devices/window/surface.h"
 #include "tasks/app/commands.h"
+#include "tasks/servo/hand_devices.h"
 
 namespace pincer::tasks {
 namespace {
 
 // The program's table of contents, in the order in which --help shows it.
-constexpr std::array kCommands = {addRunCommand,  addReportCommand, addExportCommand, addReplayCommand, addSimCommand,  addPlanCommand,
-                                  addVerifyCommand, addStressCommand, addBenchCommand, addMeshCommand, addDevicesCommand, addKeysCommand};
+constexpr std::array kCommands = {addRunCommand,   addReportCommand, addExportCommand,  addReplayCommand,
+                                  addSimCommand,   addPlanCommand,   addVerifyCommand,  addStressCommand,
+                                  addBenchCommand, addMeshCommand,   addDevicesCommand, addKeysCommand};
 
 constexpr const char* kExamples = R"(
 Examples:
@@ -59,6 +61,9 @@ int runApp(int argc, char** argv) {
     fmt::print(stderr, "pincer: {}\n", error.what());
     return kExitBadInput;
   } catch (const devices::DisplayError& error) {
+    fmt::print(stderr, "pincer: {}\n", error.what());
+    return kExitDevice;
+  } catch (const DeviceError& error) {
     fmt::print(stderr, "pincer: {}\n", error.what());
     return kExitDevice;
   } catch (const std::system_error& error) {  // fmt::print, when standard output can't be written

@@ -19,5 +19,6 @@ void addReportCommand(CLI::App& app, int& exit_code);
 void addExportCommand(CLI::App& app, int& exit_code);
 void addReplayCommand(CLI::App& app, int& exit_code);
 void addKeysCommand(CLI::App& app, int& exit_code);
+void addDevicesCommand(CLI::App& app, int& exit_code);
 
 }  // namespace pincer::tasks

@@ -29,7 +29,13 @@ class SessionSink final : public RecordSink {
 
 std::string devicesJson(const ManipulationSessionOptions& o) {
   JsonWriter json;
-  json.beginObject().key("arms").value("simulated").key("tactile_displays").value("simulated").key("rate").value(o.servo.rate);
+  json.beginObject()
+      .key("arms")
+      .value(o.devices)
+      .key("tactile_displays")
+      .value(o.devices == "mouse" ? "simulated" : o.devices)
+      .key("rate")
+      .value(o.servo.rate);
   return json.key("sample_rate").value(o.sample_rate).key("real_time").value(o.servo.real_time).endObject().text();
 }
 
@@ -50,6 +56,7 @@ ManipulationSessionResult runInto(SessionWriter& writer, const ManipulationSessi
                                   const std::atomic<bool>& interrupted) {
   SessionSink sink(writer, std::lround(options.servo.rate) / options.sample_rate);
   ManipulationSessionResult result;
+  hooks.host = options.host;
   hooks.served = [&](const ServoReport& trial) { result.servo.add(trial); };
   result.trials = runManipulationStudy(options.study, options.servo, sink, interrupted, hooks);
   result.interrupted = result.servo.interrupted;
@@ -79,21 +86,21 @@ ManipulationSessionResult runManipulationSession(const ManipulationSessionOption
                                                  const std::atomic<bool>& interrupted, const TrialProgressLine& progress) {
   validate(options);
   SessionWriter writer = SessionWriter::create(path, sessionInfo(options), storeOptions(options.servo));
-  return runInto(writer, options, {{}, progress, {}}, interrupted);
+  return runInto(writer, options, {{}, progress, {}, {}}, interrupted);
 }
 
-ManipulationSessionResult resumeManipulationSession(const ServoOptions& servo, int sample_rate, const std::string& path,
+ManipulationSessionResult resumeManipulationSession(const ManipulationSessionOptions& wanted, const std::string& path,
                                                     const std::atomic<bool>& interrupted, const TrialProgressLine& progress) {
-  ManipulationSessionOptions options;
-  StudyHooks hooks{{}, progress, {}};
+  ManipulationSessionOptions options = wanted;
+  StudyHooks hooks{{}, progress, {}, {}};
   {
     const SessionReader session(path);
     if (session.complete()) throw InputError(path + ": the session is complete; there is nothing to go on with.");
-    options = {parseStudyFile(session.info().protocol_json, path + ": protocol"), servo, sample_rate};
+    options.study = parseStudyFile(session.info().protocol_json, path + ": protocol");
     for (const TrialRecord& trial : session.trials()) hooks.finished.insert(trial.trial);
   }
   validate(options);
-  SessionWriter writer = SessionWriter::resume(path, storeOptions(servo));
+  SessionWriter writer = SessionWriter::resume(path, storeOptions(options.servo));
   return runInto(writer, options, hooks, interrupted);
 }
 

@@ -11,6 +11,8 @@ namespace pincer::tasks {
 struct ManipulationSessionOptions {
   ManipulationStudy study;
   ServoOptions servo;
+  std::string devices = "simulated";  // who brings arms and displays, as the session says it
+  TrialHost host = {};                // who watches, and whose hands they are
   int sample_rate = 200;  // of the ticks that are kept [Hz], 1 .. 1000; divides the servo's rate. A trial's row always counts every tick.
 };
 
@@ -31,7 +33,8 @@ ManipulationSessionResult runManipulationSession(const ManipulationSessionOption
 
 // Goes on with a session that was interrupted or killed: the study is the one in the file, finished trials stay, what is left of an
 // unfinished one is removed. Throws InputError; also when the session is complete.
-ManipulationSessionResult resumeManipulationSession(const ServoOptions& servo, int sample_rate, const std::string& path,
+// `options.study` doesn't count.
+ManipulationSessionResult resumeManipulationSession(const ManipulationSessionOptions& options, const std::string& path,
                                                     const std::atomic<bool>& interrupted, const TrialProgressLine& progress);
 
 }  // namespace pincer::tasks

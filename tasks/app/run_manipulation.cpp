@@ -6,12 +6,15 @@
 #include <optional>
 
 #include "tasks/app/app.h"
+#include "tasks/app/device_options.h"
 #include "tasks/app/interrupt.h"
 #include "tasks/app/manipulation_session.h"
 #include "tasks/app/progress.h"
 #include "tasks/app/run_options.h"
 #include "tasks/app/run_tasks.h"
 #include "tasks/app/servo_text.h"
+#include "tasks/app/trial_view.h"
+#include "tasks/experiments/live_hands.h"
 #include "tasks/experiments/manipulation_file.h"
 #include "tasks/experiments/pickup_object.h"
 #include "tasks/report/report.h"
@@ -23,8 +26,10 @@ namespace {
 constexpr const char* kSpherePickupExample = R"(
 Index finger and thumb pick up spheres of different friction that lie in a dish, with and without contact location displays.
 
-Example:
-  pincer run sphere-pickup --repetitions 2 --seed 7 --out out/first)";
+Examples:
+  pincer run sphere-pickup --repetitions 2 --seed 7 --out out/first
+  pincer run sphere-pickup --devices mouse --view      your own fingers, on the mouse
+  pincer run sphere-pickup --devices usb               on arms and displays (docs/devices.md))";
 
 constexpr const char* kCylinderExample = R"(
 Index finger and thumb find the flat of an upright cylinder and turn it towards the monitor, with and without contact location displays.
@@ -44,6 +49,8 @@ Examples:
 
 struct ManipulationArguments {
   RunOptions run;
+  DeviceRunOptions devices;
+  ViewOptions view;
   std::string condition = "both", strategy, object, units, shading, study_file, write_study;
   std::optional<double> size;
   bool resume = false, free_body = false;
@@ -64,7 +71,10 @@ ObjectFile objectOf(const ManipulationArguments& arguments) {
 }
 
 ManipulationSessionOptions optionsOf(const ManipulationArguments& arguments) {
-  ManipulationSessionOptions options{arguments.study, arguments.run.servo, arguments.run.sample_rate};
+  ManipulationSessionOptions options;
+  options.study = arguments.study;
+  options.servo = arguments.run.servo;
+  options.sample_rate = arguments.run.sample_rate;
   if (!arguments.study_file.empty()) options.study = readStudyFile(arguments.study_file);
   if (arguments.condition != "both") options.study.conditions = {pickupConditionOf(arguments.condition)};
   if (!arguments.strategy.empty()) options.study.people.strategy = arguments.strategy == "simple" ? Strategy::kSimple : Strategy::kRational;
@@ -91,7 +101,7 @@ int show(const ManipulationArguments& arguments, const std::string& directory, c
   fmt::print("{}\n", arguments.run.json ? summaryJson(summary) : formatTable(summary));
   const auto say = [&](const std::string& line) { fmt::print(arguments.run.json ? stderr : stdout, "{}\n", line); };
   const ServoOptions& servo = arguments.run.servo;
-  if (servo.real_time) say(servoText(result.servo, 1 / servo.rate));
+  if (servo.real_time || arguments.view.view || arguments.devices.devices != "sim") say(servoText(result.servo, 1 / servo.rate));
   say(fmt::format("Session: {}", session.path()));
   if (!servo.real_time && result.servo.wall > 0) {
     const double simulated = static_cast<double>(result.servo.ticks) / servo.rate;
@@ -108,6 +118,29 @@ int show(const ManipulationArguments& arguments, const std::string& directory, c
   return faults > 0 ? kExitCheckFailed : kExitOk;
 }
 
+// Whose hands do the trials, and who watches; lives as long as the session.
+struct Stage {
+  std::unique_ptr<HandDevices> devices;
+  std::unique_ptr<TrialStage> window;
+};
+
+Stage setStage(const ManipulationArguments& arguments, ManipulationSessionOptions& options, const std::atomic<bool>& interrupted) {
+  Stage stage;
+  const std::string& choice = arguments.devices.devices;
+  options.servo.real_time = options.servo.real_time || arguments.view.view;
+  if (choice != "mouse") stage.devices = openDevices(arguments.devices, options.servo);
+  ViewOptions view = arguments.view;
+  view.title = taskName(options.study);
+  stage.window = hostOf(choice, view, options.servo, interrupted);
+  if (stage.window) options.host = stage.window->host();
+  if (choice != "sim") options.devices = choice;
+  if (stage.devices) {
+    options.host.hands = [devices = stage.devices.get()](const HandTrial& trial) { return std::make_unique<LiveHands>(trial, *devices); };
+    options.host.arm = [asked = arguments.devices](const std::string& why) { return operatorArms(asked, why); };
+  }
+  return stage;
+}
+
 int runManipulation(const ManipulationArguments& arguments) {
   const std::atomic<bool>& interrupted = interruptFlag();
   std::unique_ptr<Progress> line;
@@ -121,10 +154,11 @@ int runManipulation(const ManipulationArguments& arguments) {
   };
   if (arguments.resume) {
     if (arguments.run.out.empty()) throw InputError("run: --resume needs --out DIR, the directory of the session to go on with.");
-    return finish(arguments.run.out, resumeManipulationSession(arguments.run.servo, arguments.run.sample_rate,
-                                                               arguments.run.out + "/session.db", interrupted, progress));
+    ManipulationSessionOptions options = optionsOf(arguments);
+    const Stage stage = setStage(arguments, options, interrupted);
+    return finish(arguments.run.out, resumeManipulationSession(options, arguments.run.out + "/session.db", interrupted, progress));
   }
-  const ManipulationSessionOptions options = optionsOf(arguments);
+  ManipulationSessionOptions options = optionsOf(arguments);
   validate(options);
   if (!arguments.write_study.empty()) {
     writeAtomically(arguments.write_study, studyFile(options.study));
@@ -132,6 +166,7 @@ int runManipulation(const ManipulationArguments& arguments) {
     return kExitOk;
   }
   makePickupObject(options.study.pickup);  // bad options and objects are named before anything is written
+  const Stage stage = setStage(arguments, options, interrupted);
   const std::string directory = outputDirectory(arguments.run, taskName(options.study));
   makeDirectory(directory);
   return finish(directory, runManipulationSession(options, directory + "/session.db", interrupted, progress));
@@ -170,6 +205,8 @@ CLI::App* addManipulationCommand(CLI::App& run, const char* name, const char* wh
   command->add_option("--seed", arguments->study.seed, "Of all that varies; the same seed gives the same session")->capture_default_str();
   command->add_flag("--resume", arguments->resume, "Go on with the interrupted or killed session in --out");
   addRunOptions(*command, arguments->run);
+  addDeviceOptions(*command, arguments->devices);
+  addTrialViewOptions(*command, arguments->view);
   command->footer(example);
   command->callback([arguments, &exit_code] { exit_code = runManipulation(*arguments); });
   return command;

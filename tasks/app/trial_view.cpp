@@ -83,8 +83,8 @@ class WindowStage final : public TrialStage {
   TrialHost host() override {
     TrialHost host;
     if (mouse_) {
-      host.hands = [this](const HandScene& scene) {
-        auto hands = std::make_unique<MouseHands>(scene);
+      host.hands = [this](const HandTrial& trial) {
+        auto hands = std::make_unique<MouseHands>(trial.scene());
         hand_ = &hands->hand();
         return hands;
       };
@@ -123,12 +123,9 @@ class WindowStage final : public TrialStage {
 
 }  // namespace
 
-void addTrialViewOptions(CLI::App& command, ViewOptions& options, std::string& devices) {
+void addTrialViewOptions(CLI::App& command, ViewOptions& options) {
   addViewOptions(command, options);
   command.add_flag("--blind", options.blind, "In the window show neither object nor fingers nor forces, as the protocol asks of a person");
-  command.add_option("--devices", devices, "Whose hands: a simulated participant's, or yours on the mouse (needs --view)")
-      ->check(CLI::IsMember({"sim", "mouse"}))
-      ->capture_default_str();
 }
 
 std::unique_ptr<TrialStage> hostOf(const std::string& devices, const ViewOptions& view, const ServoOptions& servo,

@@ -8,8 +8,8 @@
 
 namespace pincer::tasks {
 
-// --view, --no-keys, --devices and --blind.
-void addTrialViewOptions(CLI::App& command, ViewOptions& options, std::string& devices);
+// --view, --no-keys and --blind.
+void addTrialViewOptions(CLI::App& command, ViewOptions& options);
 
 class TrialStage {
  public:

@@ -1,7 +1,8 @@
 #include "tasks/experiments/manipulation_study.h"
 
-#include <algorithm>
 #include <fmt/format.h>
+
+#include <algorithm>
 
 #include "tasks/experiments/cylinder_trial.h"
 #include "tasks/experiments/pickup_trial.h"
@@ -176,7 +177,8 @@ std::size_t runManipulationStudy(const ManipulationStudy& study, const ServoOpti
     if (ended.servo.interrupted) break;
     trial->finish();
     report(++done);
-    const bool goes_on = ended.clean || done == trials.size() || !hooks.host.arm || hooks.host.arm("a fault cut the forces in the last trial");
+    const bool goes_on =
+        ended.clean || done == trials.size() || !hooks.host.arm || hooks.host.arm("a fault cut the forces in the last trial");
     if (!goes_on) break;
   }
   return done;

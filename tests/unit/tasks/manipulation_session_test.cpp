@@ -72,7 +72,7 @@ TEST(ManipulationSession, GoesOnToTheSameEnd) {
   std::atomic<bool> interrupted{false};
   runManipulationSession(options, directory / "part.db", interrupted, [&](const TrialProgress& at) { interrupted = at.done == 1; });
   EXPECT_EQ(SessionReader(directory / "part.db").trials().size(), 1u);
-  EXPECT_EQ(resumeManipulationSession({}, 200, directory / "part.db", kGoOn, {}).trials, 3u);
+  EXPECT_EQ(resumeManipulationSession({}, directory / "part.db", kGoOn, {}).trials, 3u);
   runManipulationSession(options, directory / "whole.db", kGoOn, {});
   const SessionReader part(directory / "part.db"), whole(directory / "whole.db");
   EXPECT_TRUE(part.complete());
@@ -82,7 +82,7 @@ TEST(ManipulationSession, GoesOnToTheSameEnd) {
     EXPECT_EQ(part.trials()[i].duration, whole.trials()[i].duration);
   }
   EXPECT_EQ(part.events().size(), whole.events().size());
-  EXPECT_THROW(resumeManipulationSession({}, 200, directory / "part.db", kGoOn, {}), InputError);
+  EXPECT_THROW(resumeManipulationSession({}, directory / "part.db", kGoOn, {}), InputError);
 }
 
 // Killed at moments that the clock chooses; each time what had been reported as finished is there, and the session goes on.
