@@ -15,7 +15,6 @@ constexpr double kTick = 0.5e-3;   // of the firmware [s]
 constexpr int kTicksPerFrame = 4;  // commands at 500 Hz
 
 void check(const SimCldSettings& s) {
-  requireSetting("simulated CLD", s.reach.minCoeff() > 0 && s.reach.maxCoeff() < 0.1, "reach", s.reach.minCoeff(), "(0, 0.1) m");
   requireSetting("simulated CLD", s.speed > 0 && s.speed < 10, "speed", s.speed, "(0, 10) m/s");
   requireSetting("simulated CLD", s.natural_frequency > 0 && s.natural_frequency < 500, "natural_frequency", s.natural_frequency,
                  "(0, 500) Hz");
@@ -23,15 +22,21 @@ void check(const SimCldSettings& s) {
   requireSetting("simulated CLD", s.play.minCoeff() >= 0 && s.play.maxCoeff() < 0.1, "play", s.play.minCoeff(), "[0, 0.1) m");
   requireSetting("simulated CLD", s.resolution > 0 && s.resolution < 0.01, "resolution", s.resolution, "(0, 0.01) m");
   requireSetting("simulated CLD", s.delay >= 0 && s.delay <= kTick * kTicksPerFrame, "delay", s.delay, "[0, 0.002] s");
+  requireSetting("simulated CLD", s.jitter >= 0 && s.delay + s.jitter <= kTick * kTicksPerFrame, "jitter", s.jitter,
+                 "[0, 0.002 - delay] s");
 }
 
 double rounded(double value, double step) { return std::floor(value / step + 0.5) * step; }
 
 }  // namespace
 
-SimCld::SimCld(const SimCldSettings& settings) : settings_(settings) {
+SimCld::SimCld(const SimCldSettings& settings) : settings_(settings), kinematics_(settings.geometry, settings.profile) {
   check(settings);
-  capabilities_ = {settings.resolution, settings.speed, 1 / (kTick * kTicksPerFrame), settings.reach};
+  const double round = settings.profile.radius * settings.geometry.carriage_max;
+  most_ = Vec2(settings.geometry.place_max, round);
+  least_ = Vec2(settings.geometry.place_min, -round);
+  capabilities_ = {settings.resolution, settings.speed, 1 / (kTick * kTicksPerFrame), most_.cwiseMax(-least_)};
+  jitter_ticks_ = static_cast<int>(std::floor(settings.jitter / kTick + 0.5));
   delay_ticks_ = static_cast<int>(std::floor(settings.delay / kTick + 0.5));
   const double w = 2 * std::numbers::pi * settings.natural_frequency;
   const double decay = settings.damping_ratio * w;
@@ -53,8 +58,9 @@ TactileSample SimCld::sample() { return sample_; }
 bool SimCld::command(const TactileCommand& command) {
   const Vec2 wanted = command.parked ? Vec2::Zero() : command.place_L;
   if (!wanted.allFinite()) return true;
-  mailbox_ = wanted.cwiseMax(-settings_.reach).cwiseMin(settings_.reach);
-  return *mailbox_ != wanted;
+  const Reach reach = kinematics_.reach(wanted);
+  mailbox_ = Vec2(reach.way.along, settings_.profile.radius * reach.way.round);
+  return reach.moved;
 }
 
 void SimCld::advance(double dt) {
@@ -77,7 +83,8 @@ void SimCld::tick() {
   if (frame_tick_ == 0 && mailbox_) {
     in_flight_ = mailbox_;
     mailbox_.reset();
-    hops_left_ = delay_ticks_;
+    draw_ = draw_ * 6364136223846793005u + 1442695040888963407u;  // Knuth's MMIX generator
+    hops_left_ = delay_ticks_ + static_cast<int>((draw_ >> 33) % static_cast<unsigned>(jitter_ticks_ + 1));
     if (hops_left_ == 0) arrive();
   }
   frame_tick_ = (frame_tick_ + 1) % kTicksPerFrame;
@@ -100,8 +107,8 @@ void SimCld::moveAxis(int axis) {
   const double limit = settings_.speed * kTick;
   a += std::clamp(a11_ * x + a12_ * v - x, -limit, limit);
   v = std::clamp(a21_ * x + a22_ * v, -settings_.speed, settings_.speed);
-  if (std::abs(a) > settings_.reach[axis]) {  // an overshoot meets the end stop
-    a = std::copysign(settings_.reach[axis], a);
+  if (a > most_[axis] || a < least_[axis]) {  // an overshoot meets the end stop
+    a = std::clamp(a, least_[axis], most_[axis]);
     v = 0;
   }
   tactor_[axis] = std::clamp(tactor_[axis], a - settings_.play[axis] / 2, a + settings_.play[axis] / 2);
@@ -116,7 +123,7 @@ void SimCld::takeSample() {
   if (fault_ == SimFault::kNotFinitePosition) {
     sample_.place_L = Vec2::Constant(std::numeric_limits<double>::quiet_NaN());
   } else {
-    sample_.place_L = Vec2(rounded(actuator_.x(), settings_.resolution), rounded(actuator_.y(), settings_.resolution));
+    sample_.place_L = placeOf(Vec2(rounded(actuator_.x(), settings_.resolution), rounded(actuator_.y(), settings_.resolution)));
   }
 }
 

@@ -9,13 +9,14 @@
 
 #include "contact/error.h"
 #include "tasks/app/commands.h"
+#include "tasks/servo/hand_devices.h"
 
 namespace pincer::tasks {
 namespace {
 
 // The program's table of contents, in the order in which --help shows it.
-constexpr std::array kCommands = {addRunCommand,    addReportCommand, addExportCommand, addSimCommand, addPlanCommand,
-                                  addVerifyCommand, addStressCommand, addBenchCommand,  addMeshCommand};
+constexpr std::array kCommands = {addRunCommand,    addReportCommand, addExportCommand, addSimCommand,  addPlanCommand,
+                                  addVerifyCommand, addStressCommand, addBenchCommand,  addMeshCommand, addDevicesCommand};
 
 constexpr const char* kExamples = R"(
 Examples:
@@ -57,6 +58,9 @@ int runApp(int argc, char** argv) {
   } catch (const InputError& error) {
     fmt::print(stderr, "pincer: {}\n", error.what());
     return kExitBadInput;
+  } catch (const DeviceError& error) {
+    fmt::print(stderr, "pincer: {}\n", error.what());
+    return kExitDevice;
   } catch (const std::system_error& error) {  // fmt::print, when standard output can't be written
     fmt::print(stderr, "pincer: {}\n", error.what());
     return kExitBadInput;

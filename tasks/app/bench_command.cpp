@@ -7,6 +7,7 @@
 #include "tasks/app/commands.h"
 #include "tasks/app/measure_command.h"
 #include "tasks/bench/contact_bench.h"
+#include "tasks/bench/devices/devices_bench.h"
 #include "tasks/bench/engine/engine_bench.h"
 #include "tasks/bench/grasp/grasp_bench.h"
 #include "tasks/bench/study_bench.h"
@@ -51,11 +52,21 @@ Examples:
   pincer bench grasp --only hold
   pincer bench grasp --only coupling --out out/bench)";
 
+constexpr const char* kDevicesExample = R"(
+The simulated displays and arm, measured from outside, beside the published figures; the force limiter against an adversary; two emulated arms
+and displays at 1 kHz under the real libusb, pulled out, plugged in and disturbed (docs/usb-protocol.md). Exit code 1 if a promise isn't kept.
+
+Examples:
+  pincer bench devices
+  pincer bench devices --only cld
+  pincer bench devices --only usb --seconds 10 --cycles 20)";
+
 struct BenchArguments {
   MeasureOptions measure;
   ContactBenchOptions contact;
   EngineBenchOptions engine;
   GraspBenchOptions grasp;
+  DevicesBenchOptions devices;
   StudyBenchOptions study;
 };
 
@@ -106,6 +117,22 @@ void addGraspBench(CLI::App& bench, const std::shared_ptr<BenchArguments>& argum
       [arguments, &exit_code] { exit_code = runMeasurements(graspMeasurements(arguments->grasp), arguments->measure, "bench grasp"); });
 }
 
+void addDevicesBench(CLI::App& bench, const std::shared_ptr<BenchArguments>& arguments, int& exit_code) {
+  CLI::App* devices = bench.add_subcommand("devices", "Displays, arm, force limiter and USB against what is published and promised");
+  addMeasureOptions(*devices, arguments->measure);
+  devices->add_option("--seconds", arguments->devices.seconds, "Of two hands at 1 kHz")
+      ->check(CLI::Range(1.0, 3600.0))
+      ->capture_default_str();
+  devices->add_option("--cycles", arguments->devices.cycles, "Of pulling out and plugging in")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  devices->add_option("--usb", arguments->devices.usb, "The program that measures USB (default: devices_bench beside this one)");
+  devices->footer(kDevicesExample);
+  devices->callback([arguments, &exit_code] {
+    exit_code = runMeasurements(deviceMeasurements(arguments->devices), arguments->measure, "bench devices");
+  });
+}
+
 }  // namespace
 
 void addBenchCommand(CLI::App& app, int& exit_code) {
@@ -116,6 +143,7 @@ void addBenchCommand(CLI::App& app, int& exit_code) {
   addContactBench(*bench, arguments, exit_code);
   addEngineBench(*bench, arguments, exit_code);
   addGraspBench(*bench, arguments, exit_code);
+  addDevicesBench(*bench, arguments, exit_code);
   addStudyBench(*bench, arguments, exit_code);
 }
 

@@ -17,5 +17,6 @@ void addVerifyCommand(CLI::App& app, int& exit_code);
 void addStressCommand(CLI::App& app, int& exit_code);
 void addReportCommand(CLI::App& app, int& exit_code);
 void addExportCommand(CLI::App& app, int& exit_code);
+void addDevicesCommand(CLI::App& app, int& exit_code);
 
 }  // namespace pincer::tasks

@@ -50,7 +50,8 @@ std::string sceneJson(const SpherePickupOptions& o) {
 
 std::string devicesJson(const PickupSessionOptions& o) {
   JsonWriter json;
-  json.beginObject().key("arms").value("simulated").key("tactile_displays").value("simulated").key("rate").value(o.servo.rate);
+  const char* what = o.live.devices != nullptr ? "real" : "simulated";
+  json.beginObject().key("arms").value(what).key("tactile_displays").value(what).key("rate").value(o.servo.rate);
   return json.key("sample_rate").value(o.sample_rate).key("real_time").value(o.servo.real_time).endObject().text();
 }
 
@@ -97,7 +98,9 @@ PickupSessionResult runPickupSession(const PickupSessionOptions& options, const 
   SessionSink sink(writer, std::lround(options.servo.rate) / options.sample_rate);
   PickupSessionResult result;
   const auto served = [&](const ServoReport& trial) { result.servo.add(trial); };
-  result.trials = runPickupStudy(options.study, options.servo, sink, interrupted, progress, served);
+  result.trials = options.live.devices != nullptr
+                      ? runLivePickupStudy(options.study, options.servo, sink, options.live, interrupted, progress, served)
+                      : runPickupStudy(options.study, options.servo, sink, interrupted, progress, served);
   result.interrupted = result.servo.interrupted;
   if (result.interrupted) {
     writer.abort("interrupted by the user");

@@ -4,6 +4,7 @@
 #include <functional>
 #include <string>
 
+#include "tasks/experiments/live_pickup.h"
 #include "tasks/experiments/pickup_run.h"
 
 namespace pincer::tasks {
@@ -11,6 +12,7 @@ namespace pincer::tasks {
 struct PickupSessionOptions {
   SpherePickupOptions study;
   ServoOptions servo;
+  LiveSession live;       // without devices: a simulated participant on simulated ones
   int sample_rate = 200;  // of the ticks that are kept [Hz], 1 .. 1000; divides the servo's rate. A trial's row always counts every tick.
 };
 

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "tasks/app/app.h"
+#include "tasks/app/device_options.h"
 #include "tasks/app/interrupt.h"
 #include "tasks/app/pickup_session.h"
 #include "tasks/app/progress.h"
@@ -27,6 +28,7 @@ Example:
 
 struct SpherePickupArguments {
   RunOptions run;
+  DeviceRunOptions devices;
   std::string condition = "both", object, units, shading;
   std::optional<double> size;
   SpherePickupOptions study;
@@ -46,7 +48,7 @@ ObjectFile objectOf(const SpherePickupArguments& arguments) {
 }
 
 PickupSessionOptions optionsOf(const SpherePickupArguments& arguments) {
-  PickupSessionOptions options{arguments.study, arguments.run.servo, arguments.run.sample_rate};
+  PickupSessionOptions options{arguments.study, arguments.run.servo, {}, arguments.run.sample_rate};
   if (arguments.condition != "both") options.study.conditions = {pickupConditionOf(arguments.condition)};
   if (!arguments.object.empty()) options.study.object = objectOf(arguments);
   if (arguments.object.empty() && arguments.size) {
@@ -78,7 +80,7 @@ int show(const SpherePickupArguments& arguments, const std::string& directory, c
   fmt::print("{}\n", arguments.run.json ? summaryJson(summary) : formatTable(summary));
   const auto say = [&](const std::string& line) { fmt::print(arguments.run.json ? stderr : stdout, "{}\n", line); };
   const ServoOptions& servo = arguments.run.servo;
-  if (servo.real_time) say(servoText(result.servo, 1 / servo.rate));
+  if (servo.real_time || arguments.devices.devices != "sim") say(servoText(result.servo, 1 / servo.rate));
   say(fmt::format("Session: {}", session.path()));
   if (result.interrupted) {
     say(fmt::format("Interrupted after {} trials; they are safe. See them: pincer report {}", result.trials, session.path()));
@@ -93,9 +95,11 @@ int show(const SpherePickupArguments& arguments, const std::string& directory, c
 int runSpherePickup(const SpherePickupArguments& arguments) {
   const std::atomic<bool>& interrupted = interruptFlag();
   const std::string directory = outputDirectory(arguments.run, "sphere-pickup");
-  const PickupSessionOptions options = optionsOf(arguments);
+  PickupSessionOptions options = optionsOf(arguments);
   validate(options);
   makePickupObject(options.study);  // bad options and objects are named before anything is written
+  const auto devices = openDevices(arguments.devices, options.servo);
+  options.live = {devices.get(), [&](const std::string& why) { return operatorArms(arguments.devices, why); }};
   makeDirectory(directory);
   return show(arguments, directory, runSession(options, directory + "/session.db", interrupted));
 }
@@ -125,6 +129,7 @@ void addSpherePickupTask(CLI::App& run, int& exit_code) {
   CLI::App* command = run.add_subcommand("sphere-pickup", "Pick up spheres of different friction");
   addStudyOptions(*command, *arguments);
   addRunOptions(*command, arguments->run);
+  addDeviceOptions(*command, arguments->devices);
   command->footer(kSpherePickupExample);
   command->callback([arguments, &exit_code] { exit_code = runSpherePickup(*arguments); });
 }

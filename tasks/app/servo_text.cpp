@@ -21,6 +21,7 @@ std::string servoText(const ServoReport& report, double period) {
   std::string text = fmt::format("Real time: {} ticks of {:g} us in {:.1f} s; {} missed ({:.3g} %)\n", report.ticks, inMicroseconds(period),
                                  report.wall, report.missed, 100 * static_cast<double>(report.missed) / due);
   text += percentiles("began late by", report.lateness) + "\n" + percentiles("took", report.duration);
+  for (const StageTimes& stage : report.stages) text += "\n" + percentiles(("  " + stage.name).c_str(), stage.times);
   if (report.watchdog_tripped) text += "\nThe watchdog cut the forces: ticks stalled for longer than it allows. Close other programs.";
   if (!report.note.empty()) text += "\n" + report.note;
   return text;

@@ -7,6 +7,8 @@
 #include <time.h>
 
 #include <algorithm>
+#include <atomic>
+#include <functional>
 #include <stdexcept>
 #include <thread>
 
@@ -26,6 +28,9 @@ void sleepUntil(std::int64_t ns) {
   while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, nullptr) != 0) {
   }
 }
+
+std::atomic<int> g_report_requests{0};  // a signal handler reaches nothing but globals
+static_assert(std::atomic<int>::is_always_lock_free, "a signal handler may take no lock");
 
 // Asks for what real time needs for the time of a session, and gives it back.
 class RealTimePriority {
@@ -59,7 +64,8 @@ class RealTimePriority {
 // The second thread: cuts the forces when the loop is silent.
 class WatchdogThread {
  public:
-  WatchdogThread(double limit, ServoCycle& cycle) : dog_(static_cast<std::int64_t>(1e9 * limit)), cycle_(cycle) {
+  WatchdogThread(double limit, ServoCycle& cycle, const std::function<void(const ServoReport&)>& show)
+      : dog_(static_cast<std::int64_t>(1e9 * limit)), cycle_(cycle), show_(show) {
     dog_.arm(nowNs());
     // Four times per limit, and often enough that the end of a session needn't wait.
     thread_ = std::thread([this, period = static_cast<std::int64_t>(1e9 * std::min(0.25 * limit, 0.01))] { watch(period); });
@@ -73,6 +79,16 @@ class WatchdogThread {
   WatchdogThread& operator=(const WatchdogThread&) = delete;
 
   void feed() { dog_.feed(nowNs()); }
+  // From the servo thread, after a tick: copies what is asked for, allocates nothing.
+  void offer(const ServoReport& report) {
+    if (!show_ || g_report_requests.load(std::memory_order_relaxed) == answered_ || copied_.load(std::memory_order_acquire)) return;
+    answered_ = g_report_requests.load(std::memory_order_relaxed);
+    copy_.ticks = report.ticks;
+    copy_.missed = report.missed;
+    copy_.lateness = report.lateness;
+    copy_.duration = report.duration;
+    copied_.store(true, std::memory_order_release);
+  }
   bool expired() const { return dog_.expired(); }
 
  private:
@@ -80,10 +96,19 @@ class WatchdogThread {
     for (std::int64_t next = nowNs() + period_ns; !stop_; next += period_ns) {
       sleepUntil(next);
       if (dog_.check(nowNs())) cycle_.cutForces();
+      if (!copied_.load(std::memory_order_acquire)) continue;
+      copy_.wall = 1e-9 * static_cast<double>(nowNs() - begun_ns_);
+      show_(copy_);
+      copied_.store(false, std::memory_order_release);
     }
   }
   devices::Watchdog dog_;
   ServoCycle& cycle_;
+  const std::function<void(const ServoReport&)>& show_;
+  const std::int64_t begun_ns_ = nowNs();
+  int answered_ = g_report_requests.load();
+  ServoReport copy_;
+  std::atomic<bool> copied_{false};
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };
@@ -106,7 +131,7 @@ bool runVirtual(const ServoOptions& options, ServoCycle& cycle, const std::atomi
 bool runReal(const ServoOptions& options, ServoCycle& cycle, const std::atomic<bool>& interrupted, ServoReport& report) {
   const RealTimePriority priority;
   report.note = priority.note();
-  WatchdogThread dog(options.watchdog, cycle);
+  WatchdogThread dog(options.watchdog, cycle, options.show);
   const auto period = static_cast<std::int64_t>(1e9 / options.rate);
   const std::int64_t start = nowNs();
   bool more = true;
@@ -118,6 +143,7 @@ bool runReal(const ServoOptions& options, ServoCycle& cycle, const std::atomic<b
     tick += late / period;
     more = timedTick(cycle, 1e-9 * static_cast<double>(tick * period), report);
     dog.feed();
+    dog.offer(report);
   }
   report.watchdog_tripped = dog.expired();
   return more;
@@ -130,11 +156,17 @@ void ServoReport::add(const ServoReport& other) {
   missed += other.missed;
   lateness.add(other.lateness);
   duration.add(other.duration);
+  for (const StageTimes& stage : other.stages) {
+    const auto same = std::find_if(stages.begin(), stages.end(), [&](const StageTimes& s) { return s.name == stage.name; });
+    same == stages.end() ? stages.push_back(stage) : same->times.add(stage.times);
+  }
   wall += other.wall;
   watchdog_tripped = watchdog_tripped || other.watchdog_tripped;
   interrupted = interrupted || other.interrupted;
   if (note.empty()) note = other.note;
 }
+
+void requestServoReport() noexcept { g_report_requests.fetch_add(1); }
 
 ServoReport runServo(const ServoOptions& options, ServoCycle& cycle, const std::atomic<bool>& interrupted) {
   if (!(options.rate >= 100 && options.rate <= 4000)) throw std::invalid_argument("servo rate out of range [100, 4000] Hz");
@@ -149,6 +181,7 @@ ServoReport runServo(const ServoOptions& options, ServoCycle& cycle, const std::
     throw;
   }
   report.wall = 1e-9 * static_cast<double>(nowNs() - start);
+  report.stages = cycle.stages();
   return report;
 }
 

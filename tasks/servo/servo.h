@@ -2,15 +2,24 @@
 // system's monotonic clock. The cycle that it drives can't tell which.
 //
 // Real time: clock_nanosleep to absolute times, SCHED_FIFO and mlockall when permitted (a note says so when not). A tick whose time has passed
-// is skipped and counted, never caught up. A second thread watches: no finished tick for `watchdog` seconds cuts the forces, latched.
+// is skipped and counted, never caught up. A second thread watches: no finished tick for `watchdog` seconds cuts the forces, latched. On
+// SIGUSR1 (requestServoReport) it also shows how it has gone so far; the servo thread only copies its numbers.
 #pragma once
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <string>
+#include <vector>
 
 #include "tasks/servo/histogram.h"
 
 namespace pincer::tasks {
+
+// A stage of a tick.
+struct StageTimes {
+  std::string name;
+  Histogram times;  // [s]
+};
 
 class ServoCycle {
  public:
@@ -19,12 +28,17 @@ class ServoCycle {
   virtual bool tick(double now) = 0;
   // Zero force at every motor, latched until an operator arms again. Called from any thread.
   virtual void cutForces() noexcept = 0;
+  // How long each stage of a tick took, of those that the cycle cares to time; asked for after the servo has returned.
+  virtual std::vector<StageTimes> stages() const { return {}; }
 };
+
+struct ServoReport;
 
 struct ServoOptions {
   bool real_time = false;
-  double rate = 1000;      // [Hz], 100 .. 4000
-  double watchdog = 5e-3;  // [s]; real time only
+  double rate = 1000;                                 // [Hz], 100 .. 4000
+  double watchdog = 5e-3;                             // [s]; real time only
+  std::function<void(const ServoReport&)> show = {};  // what to do with a report on request; called from another thread
 };
 
 struct ServoReport {
@@ -32,7 +46,8 @@ struct ServoReport {
   std::int64_t missed = 0;  // skipped ticks; always 0 in virtual time
   Histogram lateness;       // of a tick's start [s]; real time only
   Histogram duration;       // of a tick [s]
-  double wall = 0;          // [s]
+  std::vector<StageTimes> stages = {};
+  double wall = 0;  // [s]
   bool watchdog_tripped = false;
   bool interrupted = false;  // before the cycle was done
   std::string note;          // a line for each thing that the system didn't permit; empty when all is well
@@ -40,6 +55,9 @@ struct ServoReport {
   // As if the two runs were one.
   void add(const ServoReport& other);
 };
+
+// Asks every servo that runs in real time to show how it goes; safe in a signal handler.
+void requestServoReport() noexcept;
 
 // Runs `cycle` until it is done or `interrupted` becomes true. An exception from a tick cuts the forces and is passed on. Throws
 // std::invalid_argument for options out of range.

@@ -190,6 +190,39 @@ TEST(ServoWatchdog, CutsForcesFromItsOwnThreadWhenATickStalls) {
   EXPECT_EQ(cycle.cuts_by_another_thread, 1);
 }
 
+TEST(ServoReport, IsShownOnRequestWhileTheServoRuns) {
+  ServoOptions options = realTime();
+  options.watchdog = 0.02;  // it looks often
+  std::atomic<std::int64_t> shown_ticks{0};
+  options.show = [&](const ServoReport& report) { shown_ticks = report.ticks; };
+  Cycle cycle([&](double now) {
+    if (now > 0.005 && shown_ticks == 0) requestServoReport();
+    return shown_ticks == 0 && now < 20;
+  });
+  runServo(options, cycle, kNeverStop);
+  EXPECT_GT(shown_ticks, 0);
+}
+
+TEST(ServoReport, HoldsTheStagesOfTheCycleAndAddsThoseOfTheSameName) {
+  class Staged final : public ServoCycle {
+   public:
+    bool tick(double now) override {
+      times_.add(1e-6);
+      return now < 0.0045;
+    }
+    void cutForces() noexcept override {}
+    std::vector<StageTimes> stages() const override { return {{"physics", times_}}; }
+
+   private:
+    Histogram times_;
+  };
+  Staged first, second;
+  ServoReport sum = runServo({}, first, kNeverStop);
+  sum.add(runServo({}, second, kNeverStop));
+  ASSERT_EQ(sum.stages.size(), 1u);
+  EXPECT_EQ(sum.stages[0].times.count(), 12);
+}
+
 TEST(ServoReport, AddsAnotherAsIfTheTwoWereOneRun) {
   Cycle first([](double now) { return now < 0.02; }), second([](double now) { return now < 0.01; });
   const ServoReport a = runServo(realTime(), first, kNeverStop), b = runServo({}, second, kNeverStop);

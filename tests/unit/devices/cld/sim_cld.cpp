@@ -137,12 +137,13 @@ TEST(SimCld, OvershootsAsASecondOrderResponseWhetherTheStepIsShortOrLong) {
 
 TEST(SimCld, MovesAnUnreachablePlaceToTheNearestReachableOneAndSaysSo) {
   SimCld cld;
-  const Vec2 reach = cld.capabilities().reach;
-  EXPECT_FALSE(cld.command({false, reach}));
-  EXPECT_TRUE(cld.command({false, Vec2(0.5, -0.003)}));
+  EXPECT_FALSE(cld.command({false, Vec2(cld.capabilities().reach.x(), 0)}));
+  EXPECT_TRUE(cld.command({false, Vec2(0.02, -0.003)}));
   cld.advance(2);
-  EXPECT_NEAR(cld.trueActuator_L().x(), reach.x(), 1e-9);  // settled
-  EXPECT_NEAR(cld.trueActuator_L().y(), -0.003, 1e-9);
+  const Vec2 nearest = cld.kinematics().reach(Vec2(0.02, -0.003)).place_L;
+  EXPECT_NEAR((cld.trueActuator_L() - nearest).norm(), 0, 1e-9);  // settled
+  EXPECT_GT(nearest.x(), 0.0115);
+  EXPECT_LT(nearest.y(), -0.001);
 }
 
 TEST(SimCld, ParksAtTheCentreWhateverThePlace) {
@@ -167,14 +168,15 @@ TEST(SimCld, RefusesAPlaceThatIsNotANumber) {
 TEST(SimCld, TactorStaysWithinThePlayAndTheReach) {
   tests::RandomNumbers draw(1);
   SimCld cld;
-  const Vec2 reach = cld.capabilities().reach;
-  for (int i = 0; i < 200000; ++i) {
+  const TwoDofGeometry& stops = cld.kinematics().geometry();
+  for (int i = 0; i < 100000; ++i) {
     if (draw.below(20) == 0) cld.command({draw.below(5) == 0, Vec2{draw.uniform(-0.03, 0.03), draw.uniform(-0.03, 0.03)}});
     cld.advance(draw.uniform(1e-5, 2e-3));
-    const Vec2 gap = (cld.trueTactor_L() - cld.trueActuator_L()).cwiseAbs();
-    ASSERT_LE(gap.x(), 1.13e-3 / 2 * (1 + 1e-12));
-    ASSERT_LE(gap.y(), 0.42e-3 / 2 * (1 + 1e-12));
-    ASSERT_TRUE((cld.trueActuator_L().cwiseAbs().array() <= reach.array()).all());
+    const PadWay tactor = cld.kinematics().wayTo(cld.trueTactor_L()), actuator = cld.kinematics().wayTo(cld.trueActuator_L());
+    ASSERT_LE(std::abs(tactor.along - actuator.along), 1.13e-3 / 2 + 1e-9);  // 1 nm: the way back from a place a quarter turn away
+    ASSERT_LE(0.008 * std::abs(tactor.round - actuator.round), 0.42e-3 / 2 + 1e-9);
+    ASSERT_TRUE(actuator.along >= stops.place_min - 1e-9 && actuator.along <= stops.place_max + 1e-9);
+    ASSERT_LE(std::abs(actuator.round), stops.carriage_max + 1e-9);
   }
 }
 
@@ -227,6 +229,34 @@ TEST(SimCld, SuffersTheFaultsOfARealOne) {
   cld.advance(1);
   EXPECT_EQ(cld.state(), DeviceState::kReady);
   EXPECT_NEAR(cld.sample().place_L->x(), -0.007, 53e-6);
+}
+
+// Plate on the cylinder, ring on the tip, carriage round both.
+TEST(SimCld, LeadsItsThreeActuatorsByTheFingersProfile) {
+  SimCld cld;
+  cld.command({false, Vec2(-0.006, 0.004)});
+  cld.advance(2);
+  EXPECT_NEAR((cld.trueActuators() - Vec3(-0.006, 0, 0.5)).norm(), 0, 1e-6);
+  cld.command({false, Vec2(0.004, 0)});
+  cld.advance(2);
+  EXPECT_NEAR((cld.trueActuators() - Vec3(0, 0.5, 0)).norm(), 0, 1e-6);
+}
+
+TEST(SimCld, JitterDelaysACommandByUpToItsSize) {
+  SimCldSettings settings;
+  settings.delay = 1e-3;
+  settings.jitter = 1e-3;
+  SimCld cld(settings);
+  std::set<int> delays;
+  for (int k = 0; k < 60; ++k) {
+    const double before = cld.trueActuator_L().x();
+    cld.command({false, Vec2(k % 2 ? 0.004 : -0.004, 0)});
+    int half_ms = 0;
+    for (; cld.trueActuator_L().x() == before && half_ms < 20; ++half_ms) cld.advance(0.5e-3);
+    delays.insert(half_ms - 1);
+    for (; half_ms < 4000; ++half_ms) cld.advance(0.5e-3);  // at rest again, and in step with the frames
+  }
+  EXPECT_EQ(delays, (std::set<int>{2, 3, 4}));
 }
 
 TEST(SimCld, NamesASettingThatIsOutOfRange) {

@@ -1,0 +1,31 @@
+// device_options: which devices a session runs on, as its user asks for them, and the operator who switches the forces on.
+#pragma once
+#include <memory>
+#include <string>
+
+#include "tasks/servo/hand_devices.h"
+#include "tasks/servo/servo.h"
+
+namespace CLI {
+class App;
+}
+
+namespace pincer::tasks {
+
+struct DeviceRunOptions {
+  std::string devices = "sim";
+  DeviceOptions which;
+  double watchdog_ms = 5;
+  bool yes = false;
+};
+
+// Adds --devices, --arms, --displays, --watchdog, --recording, --firmware and --yes.
+void addDeviceOptions(CLI::App& command, DeviceRunOptions& options);
+
+// Null for simulated ones. Says what was found; makes `servo` one of real time. Throws DeviceError.
+std::unique_ptr<HandDevices> openDevices(const DeviceRunOptions& options, ServoOptions& servo);
+
+// Asks on the terminal whether forces may come on, because `why`; yes if the user said --yes. False when there is nobody to ask.
+bool operatorArms(const DeviceRunOptions& options, const std::string& why);
+
+}  // namespace pincer::tasks

@@ -1,0 +1,84 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <memory>
+#include <thread>
+
+#include "devices/usb/usb_host.h"
+#include "tasks/app/app.h"
+#include "tasks/app/devices_commands.h"
+#include "tasks/app/json_writer.h"
+#include "tasks/servo/hand_devices_parts.h"
+
+namespace pincer::tasks {
+namespace {
+
+using devices::usb::UsbHost;
+
+struct DevicesListArguments {
+  bool json = false;
+  double timeout = 1;
+};
+
+void listArm(const devices::usb::UsbArm& arm) {
+  const auto& can = arm.capabilities();
+  fmt::print("arm      {:<12} {:<16} {:<10} {:.3g} N peak, {:.3g} N continuous, {:.3g} um, {:.3g} N/mm\n", arm.deviceIdentity().serial,
+             arm.deviceIdentity().model, devices::nameOf(arm.linkState()), can.peak_force, can.continuous_force, 1e6 * can.resolution,
+             1e-3 * can.stiffness_limit);
+}
+
+void listDisplay(const devices::usb::UsbDisplay& display) {
+  const auto& can = display.capabilities();
+  fmt::print("display  {:<12} {:<16} {:<10} +-{:.3g} x +-{:.3g} mm, {:.3g} um, {:.3g} mm/s\n", display.deviceIdentity().serial,
+             display.deviceIdentity().model, devices::nameOf(display.linkState()), 1e3 * can.reach.x(), 1e3 * can.reach.y(),
+             1e6 * can.resolution, 1e3 * can.speed);
+}
+
+template <typename Device>
+void writeDevice(const Device& device, const char* kind, JsonWriter& json) {
+  json.beginObject().key("kind").value(kind).key("serial").value(device.deviceIdentity().serial);
+  json.key("model").value(device.deviceIdentity().model).key("firmware").value(static_cast<int>(device.deviceIdentity().firmware));
+  json.key("state").value(devices::nameOf(device.linkState())).endObject();
+}
+
+void printJson(UsbHost& host) {
+  JsonWriter json;
+  json.beginObject().key("devices").beginArray();
+  for (const auto* arm : host.arms()) writeDevice(*arm, "arm", json);
+  for (const auto* display : host.displays()) writeDevice(*display, "display", json);
+  json.endArray().key("problems").beginArray();
+  for (const std::string& problem : host.problems()) json.value(problem);
+  fmt::print("{}\n", json.endArray().endObject().text());
+}
+
+int listDevices(const DevicesListArguments& arguments) {
+  const auto usb = startUsb();
+  UsbHost& host = *usb;
+  if (host.waitFor(1, 0, arguments.timeout)) std::this_thread::sleep_for(std::chrono::milliseconds(200));  // the others, too
+  if (arguments.json) {
+    printJson(host);
+  } else {
+    for (const auto* arm : host.arms()) listArm(*arm);
+    for (const auto* display : host.displays()) listDisplay(*display);
+    for (const std::string& problem : host.problems()) fmt::print("{}\n", problem);
+    if (host.arms().empty() && host.displays().empty() && host.problems().empty()) {
+      fmt::print(
+          "No device of pincer's USB protocol is plugged in. Check cable and power; `lsusb` must show 1209:0001 (docs/devices.md).\n");
+    }
+  }
+  return host.problems().empty() ? kExitOk : kExitDevice;
+}
+
+}  // namespace
+
+void addDevicesList(CLI::App& devices, int& exit_code) {
+  auto arguments = std::make_shared<DevicesListArguments>();
+  CLI::App* command = devices.add_subcommand("list", "What is plugged in, and what it can do");
+  command->add_flag("--json", arguments->json, "For machines");
+  command->add_option("--timeout", arguments->timeout, "For devices to answer [s]")->check(CLI::Range(0.1, 60.0))->capture_default_str();
+  command->footer("\nExample:\n  pincer devices list");
+  command->callback([arguments, &exit_code] { exit_code = listDevices(*arguments); });
+}
+
+}  // namespace pincer::tasks

@@ -1,0 +1,47 @@
+#include "tasks/servo/device_calibration.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+#include "tasks/scene/strict_json.h"
+#include "tasks/session/atomic_file.h"
+
+namespace pincer::tasks {
+namespace {
+
+constexpr NumberRule kCalibrationRule = {.min = -10, .max = 10, .remedy = "Lengths are in metres, angles in radians."};
+
+}  // namespace
+
+DeviceCalibration readCalibration(const std::string& path) {
+  const JsonValue json = readJson(path);
+  constexpr std::array<std::string_view, 2> kKeys{"device", "values"};
+  json.allowOnly(kKeys);
+  DeviceCalibration calibration;
+  calibration.serial = json.at("device", "The serial number: pincer devices list").text();
+  const JsonValue& values = json.at("values", "By name.");
+  for (const std::string& name : values.keys()) {
+    if (name.empty() || name.size() > 20) values.at(name).reject("has a name that isn't 1 to 20 characters long.");
+    calibration.values[name] = values.at(name).number(kCalibrationRule);
+  }
+  return calibration;
+}
+
+void writeCalibration(const DeviceCalibration& calibration, const std::string& path) {
+  std::string text = fmt::format("{{\n  \"device\": \"{}\",\n  \"values\": {{", calibration.serial);
+  const char* separator = "\n";
+  for (const auto& [name, value] : calibration.values) {
+    text += fmt::format("{}    \"{}\": {}", separator, name, value);
+    separator = ",\n";
+  }
+  writeAtomically(path, text + "\n  }\n}\n");
+}
+
+void checkCalibrationValue(const std::string& name, double value) {
+  if (std::abs(value) <= 10) return;  // false for NaN
+  throw InputError(fmt::format("calibration: {} = {} is out of range [-10, 10]. Lengths are in metres, angles in radians.", name, value));
+}
+
+}  // namespace pincer::tasks

@@ -1,0 +1,21 @@
+// device_calibration: the values that tell one arm or display from its siblings, in a file that a person can read and keep:
+//
+//   { "device": "A1", "values": { "base_x": -0.25, ... } }     [m] and [rad], each within +-10
+#pragma once
+#include <map>
+#include <string>
+
+namespace pincer::tasks {
+
+struct DeviceCalibration {
+  std::string serial;
+  std::map<std::string, double> values;  // by name, 1 .. 20 characters each
+};
+
+// Throws InputError naming line, value, range and remedy.
+DeviceCalibration readCalibration(const std::string& path);
+void writeCalibration(const DeviceCalibration& calibration, const std::string& path);
+// Throws InputError for a value out of range.
+void checkCalibrationValue(const std::string& name, double value);
+
+}  // namespace pincer::tasks
