@@ -8,6 +8,7 @@
 
 #include "contact/error.h"
 #include "tasks/experiments/manipulation_file.h"
+#include "tasks/experiments/simulated_trial.h"
 #include "tasks/session/columns.h"
 
 namespace pincer::tasks {

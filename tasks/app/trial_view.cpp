@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "contact/error.h"
+#include "devices/window/surface.h"
 #include "tasks/experiments/mouse_hands.h"
 #include "tasks/measure/timing.h"
 

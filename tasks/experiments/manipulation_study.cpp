@@ -6,6 +6,7 @@
 
 #include "tasks/experiments/cylinder_trial.h"
 #include "tasks/experiments/pickup_trial.h"
+#include "tasks/experiments/simulated_hands.h"
 
 namespace pincer::tasks {
 namespace {

@@ -8,6 +8,8 @@
 #include <mutex>
 #include <thread>
 
+#include "tasks/experiments/simulated_trial.h"
+
 namespace pincer::tasks {
 namespace {
 

@@ -251,15 +251,15 @@ TEST(SceneReader, SaysWhereTheSceneNamesABadMesh) {
   EXPECT_NE(shading.find("Did you mean \"facet\"?"), std::string::npos) << shading;
 }
 
-std::string sceneWithFinger(const std::string& finger) {
+std::string sceneOfFinger(const std::string& finger) {
   return "{\"version\": 1, \"duration\": 1, \"bodies\": [], \"fingers\": [" + finger + "]}";
 }
 
 TEST(SceneFingers, TipsPadsAndCouplingsAreRead) {
   const Scene scene =
-      parseScene(sceneWithFinger("{\"shape\": {\"type\": \"ellipsoid\", \"semi_axes\": [0.009, 0.008, 0.007]}, \"position\": [0, 0, 1],"
-                                 "\"stiffness\": {\"normal\": 2000, \"tangential\": 800}, \"modulus\": 1e5, \"twist_stiffness\": 0.3,"
-                                 "\"method\": \"penalty\", \"arm\": {\"mass\": 0.06, \"damping\": 0.4}, \"rotation\": [0, 0.5, 0]}"),
+      parseScene(sceneOfFinger("{\"shape\": {\"type\": \"ellipsoid\", \"semi_axes\": [0.009, 0.008, 0.007]}, \"position\": [0, 0, 1],"
+                               "\"stiffness\": {\"normal\": 2000, \"tangential\": 800}, \"modulus\": 1e5, \"twist_stiffness\": 0.3,"
+                               "\"method\": \"penalty\", \"arm\": {\"mass\": 0.06, \"damping\": 0.4}, \"rotation\": [0, 0.5, 0]}"),
                  "test");
   const grasp::FingerModel& f = scene.fingers.front().model;
   ASSERT_TRUE(f.shape && f.arm);
@@ -275,7 +275,7 @@ TEST(SceneFingers, TipsPadsAndCouplingsAreRead) {
 }
 
 TEST(SceneFingers, ContradictionsAreNamed) {
-  const auto message = [](const std::string& finger) { return messageFor(sceneWithFinger(finger)); };
+  const auto message = [](const std::string& finger) { return messageFor(sceneOfFinger(finger)); };
   EXPECT_NE(message("{\"position\": [0, 0, 1], \"radius\": 0.01, \"shape\": {\"type\": \"sphere\", \"radius\": 0.01}}").find("says again"),
             std::string::npos);
   EXPECT_NE(message("{\"position\": [0, 0, 1], \"patch_radius\": 0.005, \"modulus\": 1e5}").find("Keep one"), std::string::npos);
