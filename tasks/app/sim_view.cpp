@@ -96,6 +96,10 @@ WatchResult watchScene(Simulation& simulation, const ViewOptions& options, bool 
   SceneCycle cycle(simulation, channel, hand ? &*hand : nullptr);
   ServoOptions servo;
   servo.rate = 1 / simulation.scene().options.h;
+  if (!(servo.rate >= 100 && servo.rate <= 4000)) {
+    throw InputError(fmt::format("{}: ticks of {} s can't be watched in real time, ticks of 0.25 to 10 ms can. Take --screenshot FILE.png.",
+                                 simulation.scene().file, simulation.scene().options.h));
+  }
   const ServoReport report =
       runWatched({cycle, simulation.model(), start, channel, hand ? &*hand : nullptr, true}, servo, options, interrupted);
   return {report, cycle.lift()};

@@ -1,5 +1,5 @@
 // keys: what the viewer's keys and mouse do: one table, from which the viewer reads them, the help overlay and docs/keys.md are made
-// (`pincer keys > docs/keys.md`). Keys are those of MuJoCo's viewer wherever it has one for the purpose.
+// (`pincer keys`). Keys are those of MuJoCo's viewer wherever it has one for the purpose.
 #pragma once
 #include <optional>
 #include <span>

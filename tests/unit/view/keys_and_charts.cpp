@@ -15,7 +15,7 @@ TEST(ViewerKeys, AreTheOnesInTheDocumentation) {
   std::ifstream file(PINCER_SOURCE_DIR "/docs/keys.md");
   std::stringstream text;
   text << file.rdbuf();
-  EXPECT_EQ(text.str(), keysMarkdown()) << "Make it again: pincer keys > docs/keys.md";
+  EXPECT_EQ(text.str(), keysMarkdown()) << "`pincer keys` prints it";
 }
 
 TEST(ViewerKeys, EachMeansOneThing) {
