@@ -63,7 +63,7 @@ struct StudyHooks {
   std::set<std::int64_t> finished;                     // trials that needn't be done again
   std::function<void(const TrialProgress&)> progress;  // before the first and after every trial
   std::function<void(const ServoReport&)> served;      // what the servo says of each, the interrupted one included
-  TrialHost host;                                      // who watches, and whose hands they are
+  TrialHost host = {};                                 // who watches, and whose hands they are
 };
 
 // Every trial, with simulated participants unless `hooks.host` brings other hands. An interrupted trial leaves no row. Returns the number of

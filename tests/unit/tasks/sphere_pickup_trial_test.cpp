@@ -5,6 +5,7 @@
 
 #include "tasks/experiments/manipulation_study.h"
 #include "tasks/experiments/pickup_trial.h"
+#include "tasks/experiments/simulated_trial.h"
 #include "tasks/participants/scripted_pickup.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/memory_sink.h"

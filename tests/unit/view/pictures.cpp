@@ -69,7 +69,7 @@ Stage grooveStage() {
 
 Stage pinchStage() {
   engine::WorldBuilder builder{engine::WorldOptions{}};
-  builder.addBody({.name = "dish", .shape = contact::Dish{0.15}, .dynamic = false});
+  builder.addBody({.name = "dish", .shape = contact::Dish{0.15}, .dynamic = false, .material = {}});
   builder.addBody(
       {.name = "ball", .shape = contact::Sphere{0.02}, .mass = 0.075, .material = {.mu_s = 0.6, .mu_d = 0.5, .torsion_radius = 3e-3}});
   std::vector<grasp::FingerModel> fingers(2);
@@ -180,7 +180,7 @@ TEST(Pictures, SmoothSurfaceIsRounderThanTheFacets) {
   const auto surface = devices::openOffscreen(kSmall);
   engine::WorldBuilder builder{engine::WorldOptions{}};
   const auto mesh = contact::SmoothMesh::build(contact::icosphere(0.02, 0));
-  builder.addBody({.name = "icosahedron", .shape = contact::Mesh{mesh}, .mass = 0.1});
+  builder.addBody({.name = "icosahedron", .shape = contact::Mesh{mesh}, .mass = 0.1, .material = {}});
   Stage stage(grasp::buildGrasp(std::move(builder), {}), {{}}, {});
   stage.press({}, {}, 0);
   stage.snapshot.X_WB[0] = Pose();
