@@ -15,8 +15,8 @@ namespace pincer::tasks {
 namespace {
 
 // The program's table of contents, in the order in which --help shows it.
-constexpr std::array kCommands = {addRunCommand,    addReportCommand, addExportCommand, addSimCommand,  addPlanCommand,
-                                  addVerifyCommand, addStressCommand, addBenchCommand,  addMeshCommand, addDevicesCommand};
+constexpr std::array kCommands = {addRunCommand,    addReportCommand, addExportCommand, addReplayCommand, addSimCommand,    addPlanCommand,
+                                  addVerifyCommand, addStressCommand, addBenchCommand,  addMeshCommand,   addDevicesCommand};
 
 constexpr const char* kExamples = R"(
 Examples:

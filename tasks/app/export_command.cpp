@@ -6,6 +6,7 @@
 
 #include "tasks/app/app.h"
 #include "tasks/app/commands.h"
+#include "tasks/session/bids_export.h"
 #include "tasks/session/csv_export.h"
 
 namespace pincer::tasks {
@@ -18,12 +19,16 @@ Example:
   pincer export out/first/session.db --trial 3 --every 10 --out trial3)";
 
 struct ExportArguments {
-  std::string session, directory;
+  std::string session, directory, bids;
   SampleFilter filter;
 };
 
 int exportSession(const ExportArguments& arguments) {
   const SessionReader session(arguments.session);
+  if (!arguments.bids.empty()) {
+    for (const std::string& file : exportBids(session, arguments.bids)) fmt::print("{}\n", file);
+    return kExitOk;
+  }
   const std::string beside = (std::filesystem::path(arguments.session).parent_path() / "csv").string();
   for (const std::string& file : exportCsv(session, arguments.directory.empty() ? beside : arguments.directory, arguments.filter)) {
     fmt::print("{}\n", file);
@@ -39,6 +44,7 @@ void addExportCommand(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("export", "A session as CSV tables");
   command->add_option("session", arguments->session, "Session file")->required();
   command->add_option("--out", arguments->directory, "Directory for the tables (default: csv beside the session)");
+  command->add_option("--bids", arguments->bids, "The trials as a BIDS data set in this directory, in place of CSV tables");
   command->add_option("--trial", arguments->filter.trial, "Samples of this trial only");
   command->add_option("--every", arguments->filter.stride, "Every n-th sample only")->check(CLI::PositiveNumber)->capture_default_str();
   command->footer(kExportExample);

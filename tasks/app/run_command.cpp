@@ -8,7 +8,9 @@ namespace pincer::tasks {
 namespace {
 
 // The experiments, in the order in which --help shows them.
-constexpr std::array kRunTasks = {addSpherePickupTask, addSmoothnessTask, addShapeTask, addLocalisationTask, addBacklashTask, addDelayTask};
+constexpr std::array kRunTasks = {addManipulationTask, addSpherePickupTask, addCylinderAlignmentTask,
+                                  addSmoothnessTask,   addShapeTask,        addLocalisationTask,
+                                  addBacklashTask,     addDelayTask,        addFindingsTask};
 
 constexpr const char* kRunExample = R"(
 A simulated participant on simulated arms and contact location displays does the experiment; trials, events and samples are kept in

@@ -8,7 +8,10 @@ class App;
 
 namespace pincer::tasks {
 
+void addManipulationTask(CLI::App& run, int& exit_code);
 void addSpherePickupTask(CLI::App& run, int& exit_code);
+void addCylinderAlignmentTask(CLI::App& run, int& exit_code);
+void addFindingsTask(CLI::App& run, int& exit_code);
 // In run_studies.cpp:
 void addSmoothnessTask(CLI::App& run, int& exit_code);
 void addBacklashTask(CLI::App& run, int& exit_code);

@@ -43,7 +43,7 @@ void validate(const CylinderAlignmentOptions& o) {
   requireCylinder("friction", o.friction, 0.05, 5, "", "A static friction coefficient; skin on plastic has about 0.6.");
   requireCylinder("dynamic_ratio", o.dynamic_ratio, 0.01, 1, "", "Dynamic friction is at most static friction; 0.85 is the usual ratio.");
   requireCylinder("torsion_radius", o.torsion_radius, 0, 0.02, " m", "It is in metres; a fingertip has 0.0033, a point contact 0.");
-  requireCylinder("pivot_damping", o.pivot_damping, 0, 0.1, " N m s/rad", "The usual pivot has 0.001.");
+  requireCylinder("pivot_damping", o.pivot_damping, 0, 0.1, " N m s/rad", "The usual pivot has 0.01.");
   requireCylinder("table_friction", o.table_friction, 0, 5, "", "A friction coefficient; the usual table has 0.5.");
   requireCylinder("start_min", o.start_min, 0, std::numbers::pi, " rad", "It is in radians; 0.7854, 45 degrees, is usual.");
   requireCylinder("start_max", o.start_max, o.start_min, 3.1416, " rad", "It is in radians, at least start_min; 3.1416 is usual.");

@@ -27,7 +27,7 @@ struct CylinderAlignmentOptions {
   double dynamic_ratio = 0.85;      // mu_d / mu_s [-], 0.01 .. 1
   double torsion_radius = 3.3e-3;   // of the soft fingertip's patch [m], 0 .. 0.02
   bool pivot = true;                // false: free on a table
-  double pivot_damping = 1e-3;      // [N m s/rad], 0 .. 0.1
+  double pivot_damping = 0.01;      // [N m s/rad], 0 .. 0.1
   double table_friction = 0.5;      // mu of the table under a free cylinder [-], 0 .. 5
   HandSetup hand;
   double start_min = 0.7854, start_max = 3.1416;  // of |theta - theta*| [rad], 0 .. pi

@@ -61,6 +61,7 @@ HandScene makeHandScene(const HandSetup& setup, engine::WorldBuilder world, std:
   scene.model.grasp = grasp::buildGrasp(std::move(world), fingers);
   scene.starts = std::move(starts);
   scene.cues.place_W = place_W;
+  scene.cues.surface_stiffness = setup.coupling_stiffness;
   scene.cues.half_width = half_width;
   return scene;
 }

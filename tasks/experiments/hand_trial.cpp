@@ -145,6 +145,10 @@ void HandTrial::record(const std::vector<FingerInputs>& samples, double now, std
   sink_.sample(sample);
 }
 
+void HandTrial::parkTactors() {
+  for (FingerMount& mount : scene_.model.mounts) mount.display_tactile = false;
+}
+
 void HandTrial::cutForces(devices::Trip cause) {
   for (MountState& mount : state_.mounts) devices::trip(mount.gate, cause);
   for (FingerOutputs& output : scratch_.outputs) output.f_D.setZero();

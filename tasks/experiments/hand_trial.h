@@ -41,6 +41,8 @@ class HandTrial {
   const TickScratch& scratch() const { return scratch_; }
   double simulatedTime() const { return last_; }  // [s]
 
+  // The tactors stay where they are, whatever the condition says. Before the first step.
+  void parkTactors();
   // Zero force, latched.
   void cutForces(devices::Trip cause);
   // Hands events, readings and the trial's row to the sink. Once, after the last step.

@@ -31,9 +31,14 @@ struct SensingLimits {
   double force_sd = 0.10;              // of a felt magnitude, relative [-] (design; no source checked yet)
   double force_floor = 0.1;            // a lighter touch isn't felt [N] (choice)
   double force_lag = 0.02;             // time constant of felt force [s] (choice)
-  double reflex_time = 0.07;           // from a loss of force to its effect [s] (design; no source checked yet)
-  double reading_time = 0.35;          // a deliberate reading [s] (choice)
-  double reaction_time = 0.25;         // to a tone [s] (choice)
+  double span_sd =
+      1.06e-3;  // of a felt fingertip against the other, per axis of a reading [m]: 1.5 mm over sqrt 2, the difference limen of
+                // finger span at 40 mm (N. I. Durlach et al., Percept. Psychophys. 46(1), 1989; cited from memory)
+  double target_shared_sd = 0.14;  // of where the monitor is felt to be, constant in a person [rad], 8 degrees (choice)
+  double target_trial_sd = 0.09;   // likewise, constant in a trial [rad], 5 degrees (choice)
+  double reflex_time = 0.07;       // from a loss of force to its effect [s] (design; no source checked yet)
+  double reading_time = 0.35;      // a deliberate reading [s] (choice)
+  double reaction_time = 0.25;     // to a tone [s] (choice)
 };
 
 // One participant's constants.

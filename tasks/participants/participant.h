@@ -48,13 +48,14 @@ struct FingerCue {
 struct TrialCues {
   std::uint64_t seed = 0;  // of everything that varies from trial to trial within the participant
   std::array<FingerCue, kHandFingers> fingers;
-  Vec3 place_W = Vec3::Zero();  // where the object is to be pinched [m]
-  double half_width = 0.02;     // of the object between the fingers [m]
-  double flat_distance = 0;     // of a cylinder's flat from its axis [m]; 0: it has none
-  double target_angle = 0;      // where the flat is to face, about W's z axis [rad]
-  double mass = 0.075;          // of the object [kg]
-  double lift_height = 0.050;   // to lift it at least so high [m]
-  double dish_radius = 0.15;    // of curvature of the dish that the object lies in, its lowest point at W's origin [m]
+  Vec3 place_W = Vec3::Zero();      // where the object is to be pinched [m]
+  double half_width = 0.02;         // of the object between the fingers [m]
+  double surface_stiffness = 1000;  // how far what is touched gives way: force over depth [N/m]
+  double flat_distance = 0;         // of a cylinder's flat from its axis [m]; 0: it has none
+  double target_angle = 0;          // where the flat is to face, about W's z axis [rad]
+  double mass = 0.075;              // of the object [kg]
+  double lift_height = 0.050;       // to lift it at least so high [m]
+  double dish_radius = 0.15;        // of curvature of the dish that the object lies in, its lowest point at W's origin [m]
 };
 
 // What the participant is doing; for records and for the judge, who counts as squeezes only what was meant to lift.

@@ -2,17 +2,32 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace pincer::tasks {
 namespace {
 
 constexpr double kNotHeard = -1;
+constexpr double kNothingRead = std::numeric_limits<double>::quiet_NaN();
+
+PlaceModel placeModelOf(const TrialCues& cues, const SensingLimits& limits, double gravity) {
+  constexpr double kBothFingers = 0.7071;  // the mean of two independent readings
+  const double radius = cues.fingers[0].tip_radius;
+  PlaceModel model;
+  model.lever = radius + cues.half_width;
+  model.weight = cues.mass * gravity;
+  model.placement_sd = std::max(limits.placement_sd, 1e-3);
+  model.place_sd = std::max(kBothFingers * model.lever * std::hypot(limits.tactor_sd / radius, limits.orientation_sd), 5e-4);
+  model.place_gain = limits.tactor_bias;
+  model.push_sd = std::max(kBothFingers * limits.direction_sd, 0.02);
+  return model;
+}
 
 }  // namespace
 
 ScriptedPickup::ScriptedPickup(std::uint64_t seed, const ScriptedPickupOptions& options, const SensingLimits& limits,
-                               const HandRanges& ranges)
-    : options_(options), limits_(limits), body_(drawBody(ranges, seed)), random_(seed) {}
+                               const HandRanges& ranges, bool rational)
+    : options_(options), limits_(limits), body_(drawBody(ranges, seed)), random_(seed), rational_(rational) {}
 
 void ScriptedPickup::begin(const TrialCues& cues) {
   cues_ = cues;
@@ -21,7 +36,8 @@ void ScriptedPickup::begin(const TrialCues& cues) {
   touch_.begin(limits_, cues, sense_);
   const Vec3 span_W = cues.fingers[1].home_W - cues.fingers[0].home_W;
   axis_W_ = span_W.normalized();
-  home_ = {0.5 * (cues.fingers[0].home_W + cues.fingers[1].home_W), 0.5 * span_W.norm()};
+  side_W_ = Vec3::UnitZ().cross(axis_W_);
+  home_ = {0.5 * (cues.fingers[0].home_W + cues.fingers[1].home_W), 0.5 * span_W.norm(), 0};
   posture_ = home_;
   believed_W_ = cues.place_W;
   step_W_.setZero();
@@ -29,6 +45,7 @@ void ScriptedPickup::begin(const TrialCues& cues) {
   shifts_ = 0;
   now_ = dt_ = contact_time_ = 0;
   heard_ = kNotHeard;
+  if (rational_) belief_.begin(placeModelOf(cues, limits_, options_.gravity), random_);
   enter(HandPhase::kListen);
 }
 
@@ -36,6 +53,7 @@ HandAction ScriptedPickup::act(const Percept& percept) {
   dt_ = std::max(percept.time - now_, 0.0);
   now_ = percept.time;
   cue_ = percept.cue;
+  reading_.reset();
   touch_.feel(percept);
   if (cue_ == Cue::kSuccess || cue_ == Cue::kEnd) enterReach(home_, HandPhase::kReturn);
   switch (phase_) {
@@ -68,6 +86,7 @@ HandAction ScriptedPickup::act(const Percept& percept) {
   HandAction action;
   for (int i = 0; i < kHandFingers; ++i) action.pulls[static_cast<std::size_t>(i)] = pullOf(i);
   action.intent.phase = phase_;
+  action.intent.reading = reading_;
   action.intent.wants_lift = phase_ == HandPhase::kSqueeze || phase_ == HandPhase::kLift || phase_ == HandPhase::kHold;
   return action;
 }
@@ -101,15 +120,51 @@ void ScriptedPickup::close() {
 void ScriptedPickup::read() {
   if (now_ < entered_ + limits_.reading_time) return;
   const auto offset_W = touch_.readPlace(random_);
-  const bool worth_a_shift = offset_W && offset_W->norm() > options_.shift_threshold;
-  if (worth_a_shift && shifts_ < options_.max_shifts) {
-    ++shifts_;
-    believe(believed_W_ + step_W_ + options_.shift_gain * *offset_W);
-    step_W_.setZero();
-    return enterReach(besideThePinch(), HandPhase::kReach);
-  }
+  rational_ ? readRationally(offset_W) : readSimply(offset_W);
+  if (phase_ != HandPhase::kRead) return;
   felt_factor_ = 1 + limits_.force_sd * random_.normal();
   enter(HandPhase::kSqueeze);
+}
+
+void ScriptedPickup::readSimply(const std::optional<Vec3>& offset_W) {
+  const Vec3 percept_W = offset_W.value_or(Vec3::Constant(kNothingRead));
+  const bool shift = offset_W && offset_W->norm() > options_.shift_threshold && shifts_ < options_.max_shifts;
+  say("place", percept_W, offset_W ? Vec3(options_.shift_gain * percept_W) : Vec3::Zero(), shift ? "shift" : "squeeze");
+  if (shift) shiftBy(options_.shift_gain * *offset_W);
+}
+
+// The mean push of both fingers, the thumb's turned round, tilts from the pinch line by what friction leaves over.
+void ScriptedPickup::readRationally(const std::optional<Vec3>& offset_W) {
+  const auto first_W = touch_.readPush(0, random_), second_W = touch_.readPush(1, random_);
+  if (offset_W) belief_.placeRead(across(*offset_W), random_);
+  if (first_W && second_W) belief_.pushRead(0.5 * (across(*first_W) + across(*second_W)), random_);
+  const Vec2 shift = belief_.bestShift(wanted_grip_, options_.farthest_shift, random_);
+  const bool shifts = shifts_ < options_.max_shifts && pays(shift);
+  say("place", offset_W.value_or(Vec3::Constant(kNothingRead)), along(belief_.offset()), shifts ? "shift" : "squeeze");
+  if (!shifts) return;
+  belief_.moved(shift);
+  shiftBy(along(shift));
+}
+
+// Expected failures are (1 - P)/P when every attempt holds with chance P; each costs a squeeze, half a lift and back, the reflex, and the
+// way to the next attempt.
+bool ScriptedPickup::pays(const Vec2& shift) const {
+  const double there = belief_.holds(shift, wanted_grip_), here = belief_.holds(Vec2::Zero(), wanted_grip_);
+  const double shift_time =
+      (options_.clearance + shift.norm()) / body_.speed + options_.clearance / options_.close_speed + limits_.reading_time;
+  const double failure_time = wanted_grip_ / options_.squeeze_rate + cues_.lift_height / body_.speed + limits_.reflex_time + shift_time;
+  return ((1 - here) / here - (1 - there) / there) * failure_time > shift_time;
+}
+
+void ScriptedPickup::shiftBy(const Vec3& shift_W) {
+  ++shifts_;
+  believe(believed_W_ + step_W_ + shift_W);
+  step_W_.setZero();
+  enterReach(besideThePinch(), HandPhase::kReach);
+}
+
+void ScriptedPickup::say(const char* kind, const Vec3& percept, const Vec3& estimate, const char* decision) {
+  reading_ = HandReading{kind, percept, estimate, decision};
 }
 
 void ScriptedPickup::squeeze() {
@@ -117,6 +172,7 @@ void ScriptedPickup::squeeze() {
   const double stiffness = 0.5 * (body_.hands[0].stiffness + body_.hands[1].stiffness);
   posture_.half = std::max(posture_.half - options_.squeeze_rate / stiffness * dt_, 0.0);
   if (felt_factor_ * touch_.grip() < wanted_grip_ && posture_.half > 0) return;  // at 0 the hand can't close any further
+  say("grip", Vec3(felt_factor_ * touch_.grip(), 0, 0), Vec3(wanted_grip_, 0, 0), "lift");
   raise(cues_.lift_height + options_.lift_margin);
 }
 
@@ -146,8 +202,13 @@ void ScriptedPickup::raise(double height) { enterReach({posture_.centre_W + heig
 
 bool ScriptedPickup::lostIt() {
   if (touch_.lossTime() < limits_.reflex_time) return false;
+  if (rational_) belief_.failed(wanted_grip_, random_);
   wanted_grip_ = std::min(wanted_grip_ * options_.grip_growth, options_.grip_max);
-  retry(options_.random_shift_sd);
+  if (!rational_) return retry(options_.random_shift_sd), true;
+  const Vec2 shift = belief_.bestShift(wanted_grip_, options_.farthest_shift, random_);
+  belief_.moved(shift);
+  shiftBy(along(shift));
+  shifts_ = 0;
   return true;
 }
 

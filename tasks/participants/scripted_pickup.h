@@ -1,4 +1,4 @@
-// scripted_pickup: a participant who picks up an object between index finger and thumb, without seeing it. The "simple" strategy:
+// scripted_pickup: a participant who picks up an object between index finger and thumb, without seeing it.
 //
 //   listen - reach - close - read - (shift: reach) - squeeze - lift - hold - return - rest
 //                ^-------------------- force lost, or nothing found --------'
@@ -12,11 +12,15 @@
 // A loss of force for longer than the reflex time means that the object got away (slipped out, dropped, or was expelled): open, go down,
 // grip 1.3 times as hard, a random step away from where the object is believed to be. What is believed changes by readings, by the dish and by
 // the first touch alone, never by a random step. The same plan in every condition; no parameter knows an outcome.
+// That is the "simple" strategy. The "rational" one keeps a belief over the offset of its pinch and over the friction (place_belief.h): it
+// shifts when the gain in the chance to hold, times the time that a failure costs, pays for the time that a shift takes, both from its own
+// speed; a failure is evidence too, and the next pinch is where the belief says that it holds best. Grip grows 1.3 times alike.
 //
 // The hand pulls each fingertip towards a place (its equilibrium); grip comes from equilibria inside the object.
 #pragma once
 #include "tasks/participants/body.h"
 #include "tasks/participants/participant.h"
+#include "tasks/participants/place_belief.h"
 #include "tasks/participants/random.h"
 #include "tasks/participants/reach.h"
 #include "tasks/participants/touch.h"
@@ -49,7 +53,7 @@ class ScriptedPickup final : public Participant {
  public:
   // `seed` makes the participant: hands and speed. What varies between trials comes from the trial's own seed.
   explicit ScriptedPickup(std::uint64_t seed, const ScriptedPickupOptions& options = {}, const SensingLimits& limits = {},
-                          const HandRanges& ranges = {});
+                          const HandRanges& ranges = {}, bool rational = false);
 
   void begin(const TrialCues& cues) override;
   HandAction act(const Percept& percept) override;
@@ -62,6 +66,14 @@ class ScriptedPickup final : public Participant {
   void squeeze();
   void lift();
   void hold();
+
+  void readSimply(const std::optional<Vec3>& offset_W);
+  void readRationally(const std::optional<Vec3>& offset_W);
+  bool pays(const Vec2& shift) const;
+  void shiftBy(const Vec3& shift_W);
+  void say(const char* kind, const Vec3& percept, const Vec3& estimate, const char* decision);
+  Vec2 across(const Vec3& v_W) const { return {v_W.dot(side_W_), v_W.z()}; }
+  Vec3 along(const Vec2& v) const { return v.x() * side_W_ + v.y() * Vec3::UnitZ(); }
 
   void enter(HandPhase phase);
   void enterReach(const Posture& goal, HandPhase phase);
@@ -82,6 +94,9 @@ class ScriptedPickup final : public Participant {
   TrialCues cues_;
   BodySense sense_;
   Touch touch_;
+  bool rational_;
+  PlaceBelief belief_;
+  std::optional<HandReading> reading_;
 
   HandPhase phase_ = HandPhase::kListen;
   Cue cue_ = Cue::kNone;
@@ -90,6 +105,7 @@ class ScriptedPickup final : public Participant {
   double heard_ = 0;                // when the start tone sounded [s], negative before
   double contact_time_ = 0;         // how long both fingers have felt something [s]
   Vec3 axis_W_ = Vec3::UnitX();     // of the pinch, from finger 0 to finger 1
+  Vec3 side_W_ = Vec3::UnitY();     // across it, level
   Vec3 believed_W_ = Vec3::Zero();  // place of the object's centre [m]
   Vec3 step_W_ = Vec3::Zero();      // random step from there to where the pinch is tried [m]
   Posture home_, posture_;          // of the equilibria

@@ -62,18 +62,40 @@ std::optional<Vec3> Touch::readPlace(Random& random) const {
   return Vec3(0.5 * (*first + *second));
 }
 
-std::optional<Vec3> Touch::readPlace(int finger, Random& random) const {
+// The noise is drawn in any case: that of later readings doesn't depend on the condition.
+std::optional<Vec2> Touch::readPad(int finger, Random& random) const {
   const auto k = static_cast<std::size_t>(finger);
-  const Vec2 noise =
-      limits_.tactor_sd * random.normal2();  // drawn in any case: the noise of later readings doesn't depend on the condition
+  const Vec2 noise = limits_.tactor_sd * random.normal2();
   const auto& place = percept_.fingers[k].tactile.place_L;
   if (!moved_[k] || !place) return std::nullopt;
-  const FingerCue& cue = cues_.fingers[k];
-  const Vec2 felt_L = limits_.tactor_bias * *place + noise;
-  const double length = felt_L.norm();
+  return Vec2(limits_.tactor_bias * *place + noise);
+}
+
+std::optional<Vec3> Touch::readPlace(int finger, Random& random) const {
+  const auto felt_L = readPad(finger, random);
+  if (!felt_L) return std::nullopt;
+  const FingerCue& cue = cues_.fingers[static_cast<std::size_t>(finger)];
+  const double length = felt_L->norm();
   if (length == 0) return Vec3::Zero().eval();
   const double along = (cue.tip_radius + cues_.half_width) * std::sin(length / cue.tip_radius) / length;
-  return Vec3(along * (felt_L.x() * padAxis_W(finger, cue.distal_F) + felt_L.y() * padAxis_W(finger, cue.radial_F)));
+  return Vec3(along * (felt_L->x() * padAxis_W(finger, cue.distal_F) + felt_L->y() * padAxis_W(finger, cue.radial_F)));
+}
+
+std::optional<Vec3> Touch::readContact(int finger, Random& random) const {
+  const auto felt_L = readPad(finger, random);
+  if (!felt_L) return std::nullopt;
+  const FingerCue& cue = cues_.fingers[static_cast<std::size_t>(finger)];
+  const double length = felt_L->norm();
+  const double angle = length / cue.tip_radius, across = length > 0 ? std::sin(angle) / length : 0;
+  return Vec3(std::cos(angle) * padAxis_W(finger, cue.pad_normal_F) +
+              across * (felt_L->x() * padAxis_W(finger, cue.distal_F) + felt_L->y() * padAxis_W(finger, cue.radial_F)));
+}
+
+std::optional<Vec3> Touch::readPush(int finger, Random& random) const {
+  const Quat noise = drawRotation(limits_.direction_sd, random);
+  const Vec3& push_W = push_W_[static_cast<std::size_t>(finger)];
+  if (push_W.norm() <= limits_.force_floor) return std::nullopt;
+  return Vec3(noise * push_W.normalized());
 }
 
 }  // namespace pincer::tasks

@@ -26,14 +26,20 @@ class Touch {
 
   bool feels(int finger) const { return force(finger) > limits_.force_floor; }
   bool feelsBoth() const { return feels(0) && feels(1); }
-  double force(int finger) const { return force_[static_cast<std::size_t>(finger)]; }  // [N]
-  double grip() const { return 0.5 * (force_[0] + force_[1]); }                        // [N]
+  double force(int finger) const { return force_[static_cast<std::size_t>(finger)]; }         // [N]
+  double grip() const { return 0.5 * (force_[0] + force_[1]); }                               // [N]
+  double push(int finger) const { return push_W_[static_cast<std::size_t>(finger)].norm(); }  // whatever its direction [N]
   // How long at least one finger has felt nothing [s].
   double lossTime() const { return loss_time_; }
 
   // Reads the direction of the push on a finger that has felt one for the reflex time, and again every reading time. Returns a finger whose
   // push seems to come from below rather than against its pad.
   std::optional<int> pushedFromBelow(Random& random);
+  // A deliberate reading of the direction of the push on a finger that feels one: unit, W.
+  std::optional<Vec3> readPush(int finger, Random& random) const;
+  // A deliberate reading of where on its pad a finger is touched: direction from the fingertip's centre to the contact, unit, W. Absent
+  // unless its tactor has moved since the trial began.
+  std::optional<Vec3> readContact(int finger, Random& random) const;
   // Where the body believes a fingertip's centre is [m].
   Vec3 feltTip_W(int finger) const;
 
@@ -43,6 +49,7 @@ class Touch {
 
  private:
   Vec3 padAxis_W(int finger, const Vec3& axis_F) const;
+  std::optional<Vec2> readPad(int finger, Random& random) const;  // felt place on the pad [m]
   std::optional<Vec3> readPlace(int finger, Random& random) const;
 
   SensingLimits limits_;

@@ -35,6 +35,12 @@ Figure tactorFigure(const TrialTrace& trace);
 // "trial 7 (participant 0, µₛ 0.45)".
 std::string trialWords(const TrialRecord& trial);
 
+// Error and time of alignment, each trial as a dot, one column per condition, means beside them.
+Figure alignmentFigure(const SessionSummary& summary, const std::vector<TrialRecord>& trials);
+
+// Over a trial of alignment: events, direction of the flat from its target, grip forces. `trace` must hold a sample.
+Figure turnFigure(const TrialTrace& trace);
+
 // How long the ticks took: histogram and percentiles. Nothing if no tick was timed.
 std::optional<Figure> tickFigure(const SessionReader& session);
 

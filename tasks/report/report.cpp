@@ -11,12 +11,22 @@ namespace {
 
 std::vector<Picture> wantedPictures(const SessionReader& session, const SessionSummary& summary, const std::vector<TrialRecord>& trials) {
   std::vector<Picture> pictures;
-  if (!trials.empty()) {
-    pictures.push_back({measureFigure(summary, trials, kSqueezes), "", ""});
-    pictures.push_back({measureFigure(summary, trials, kTime), "", ""});
+  std::vector<TrialRecord> pickups, alignments;
+  for (const TrialRecord& t : trials) {
+    if (t.training == 0) (t.task == "cylinder-alignment" ? alignments : pickups).push_back(t);
+  }
+  if (!alignments.empty()) pictures.push_back({alignmentFigure(summary, alignments), "", ""});
+  if (!pickups.empty()) {
+    pictures.push_back({measureFigure(summary, pickups, kSqueezes), "", ""});
+    pictures.push_back({measureFigure(summary, pickups, kTime), "", ""});
   }
   for (const std::string& condition : summary.conditions) {
-    const auto trial = representativeTrial(trials, condition);
+    const auto alignment = representativeTrial(alignments, condition);  // none squeezes: the first
+    if (alignment) {
+      const TrialTrace trace = traceOf(session, *alignment);
+      if (!trace.samples.empty()) pictures.push_back({turnFigure(trace), "", std::to_string(alignment->trial)});
+    }
+    const auto trial = representativeTrial(pickups, condition);
     if (!trial) continue;
     const TrialTrace trace = traceOf(session, *trial);
     if (trace.samples.empty()) continue;  // recorded without samples

@@ -81,6 +81,16 @@ std::string alignedRow(const std::vector<std::string>& fields, const std::vector
   return line + "\n";
 }
 
+std::string alignedRows(const std::vector<std::vector<std::string>>& rows) {
+  std::vector<std::size_t> widths(rows[0].size(), 0);
+  for (const auto& row : rows) {
+    for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], width(row[c]));
+  }
+  std::string text;
+  for (const auto& row : rows) text += alignedRow(row, widths);
+  return text;
+}
+
 }  // namespace
 
 std::string conditionLabel(const std::string& condition) {
@@ -90,23 +100,45 @@ std::string conditionLabel(const std::string& condition) {
 }
 
 SessionSummary summariseSession(const SessionReader& session) {
-  SessionSummary s{session.path(), session.info(), session.state(), session.startedUtc(), session.warning(), 0, 0, {}, {}, {}};
-  const std::vector<TrialRecord> trials = session.trials();
+  SessionSummary s{session.path(), session.info(), session.state(), session.startedUtc(), session.warning(), 0, 0, {}, {}, {}, {}};
+  const std::vector<TrialRecord> all = session.trials();
+  const auto trials = select(all, [](const TrialRecord& t) { return t.task == "sphere-pickup" && t.training == 0; });
   std::set<std::int64_t> participants;
   std::set<std::string> conditions;
   std::set<double> frictions;
-  for (const TrialRecord& t : trials) {
+  for (const TrialRecord& t : all) {
     participants.insert(t.participant);
     conditions.insert(t.condition);
-    frictions.insert(t.mu_s);
   }
+  for (const TrialRecord& t : trials) frictions.insert(t.mu_s);
   s.participants = static_cast<std::int64_t>(participants.size());
-  s.trials = static_cast<std::int64_t>(trials.size());
+  s.trials = static_cast<std::int64_t>(all.size());
   s.conditions.assign(conditions.begin(), conditions.end());
   s.frictions.assign(frictions.begin(), frictions.end());
   sortConditions(s.conditions);
-  for (const std::string& c : s.conditions) addCells(s, c, select(trials, [&](const TrialRecord& t) { return t.condition == c; }));
+  for (const std::string& c : s.conditions) {
+    const auto of_condition = select(trials, [&](const TrialRecord& t) { return t.condition == c; });
+    if (!of_condition.empty()) addCells(s, c, of_condition);
+  }
+  s.pairs = pairedRows(all);
   return s;
+}
+
+std::vector<std::string> pairHeads() {
+  return {"over the participants", "force only", "CLD + force", "difference", "d_z", "p (t)", "p (Wilcoxon)"};
+}
+
+std::vector<std::string> pairTexts(const PairedRow& row) {
+  const FindingMeasure& m = findingMeasures()[row.measure];
+  const auto p_text = [&](double p) { return row.test.n < 2 ? std::string("–") : p < 1e-4 ? "< 0.0001" : fmt::format("{:.4f}", p); };
+  const bool known = row.test.n > 1 && row.test.effect == row.test.effect;
+  return {fmt::format("{}{}", m.label, *m.unit ? fmt::format(" [{}]", m.unit) : ""),
+          show(row.force, false),
+          show(row.cld, false),
+          show(row.test.difference, false),
+          known ? fmt::format("{:.2f}", row.test.effect) : "–",
+          p_text(row.test.p_t),
+          p_text(row.test.p_wilcoxon)};
 }
 
 std::vector<std::string> tableHeads() {
@@ -136,15 +168,17 @@ std::string tableNote(const SessionSummary& s) {
 }
 
 std::string formatTable(const SessionSummary& summary) {
-  std::vector<std::vector<std::string>> rows{tableHeads()};
-  for (const CellSummary& cell : summary.cells) rows.push_back(tableRow(cell));
-  std::vector<std::size_t> widths(rows[0].size(), 0);
-  for (const auto& row : rows) {
-    for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], width(row[c]));
-  }
   std::string text;
-  for (const auto& row : rows) text += alignedRow(row, widths);
-  text += tableNote(summary) + "\n";
+  if (!summary.cells.empty()) {
+    std::vector<std::vector<std::string>> rows{tableHeads()};
+    for (const CellSummary& cell : summary.cells) rows.push_back(tableRow(cell));
+    text += alignedRows(rows) + tableNote(summary) + "\n";
+  }
+  if (!summary.pairs.empty()) {
+    std::vector<std::vector<std::string>> rows{pairHeads()};
+    for (const PairedRow& row : summary.pairs) rows.push_back(pairTexts(row));
+    text += "\n" + alignedRows(rows);
+  }
   if (!summary.warning.empty()) text += summary.warning + "\n";
   return text;
 }

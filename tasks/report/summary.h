@@ -1,4 +1,4 @@
-// summary: what a session found, per condition and friction.
+// summary: what a session found, per condition and friction. Training doesn't count.
 //
 // Mean and 95 % confidence interval of each measure (statistics.h). The unit is the trial with one participant, and the participant's mean
 // with several: trials of one person aren't independent. A trial that ended in a fault is counted but left out of the means. A time-out
@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "tasks/report/statistics.h"
+#include "tasks/report/person_means.h"
 #include "tasks/session/session_store.h"
 
 namespace pincer::tasks {
@@ -46,7 +46,8 @@ struct SessionSummary {
   std::int64_t participants = 0, trials = 0;
   std::vector<std::string> conditions;  // "force" first, then by name
   std::vector<double> frictions;        // mu_s, rising
-  std::vector<CellSummary> cells;       // per condition: each friction, then all
+  std::vector<CellSummary> cells;       // of sphere pickup, per condition: each friction, then all
+  std::vector<PairedRow> pairs;         // of both tasks, over the participants
 };
 
 SessionSummary summariseSession(const SessionReader& session);
@@ -58,6 +59,10 @@ std::string conditionLabel(const std::string& condition);
 std::vector<std::string> tableHeads();
 std::vector<std::string> tableRow(const CellSummary& cell);
 std::string tableNote(const SessionSummary& summary);  // how to read the intervals and marks, one or two sentences
+
+// The comparison of the conditions: heads, and one text per column of a row.
+std::vector<std::string> pairHeads();
+std::vector<std::string> pairTexts(const PairedRow& row);
 
 // For a terminal: aligned columns, UTF-8, no colour.
 std::string formatTable(const SessionSummary& summary);

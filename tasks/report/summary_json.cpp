@@ -28,6 +28,20 @@ std::string summaryJson(const SessionSummary& s) {
             {"warning", s.warning},      {"started_utc", s.started_utc}, {"participants", s.participants},
             {"trials", s.trials},        {"cells", Json::array()}};
   for (const CellSummary& cell : s.cells) json["cells"].push_back(asJson(cell));
+  json["pairs"] = Json::array();
+  for (const PairedRow& row : s.pairs) {
+    const FindingMeasure& m = findingMeasures()[row.measure];
+    json["pairs"].push_back({{"measure", m.key},
+                             {"unit", m.unit},
+                             {"force", row.force.mean},
+                             {"cld", row.cld.mean},
+                             {"n", row.test.n},
+                             {"difference", row.test.difference.mean},
+                             {"ci95_half_width", row.test.difference.half_width},
+                             {"d_z", row.test.effect},
+                             {"p_t", row.test.p_t},
+                             {"p_wilcoxon", row.test.p_wilcoxon}});
+  }
   return json.dump(2, ' ', false, Json::error_handler_t::replace);  // a name may hold bytes that are no UTF-8
 }
 

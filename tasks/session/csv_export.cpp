@@ -59,8 +59,8 @@ void writeSamples(const SessionReader& session, const SampleFilter& filter, cons
 
 std::vector<std::string> exportCsv(const SessionReader& session, const std::string& directory, const SampleFilter& filter) {
   makeDirectory(directory);
-  const std::vector<std::string> paths{directory + "/session.csv", directory + "/trial.csv", directory + "/sample.csv",
-                                       directory + "/event.csv", directory + "/response.csv", directory + "/reading.csv"};
+  const std::vector<std::string> paths{directory + "/session.csv", directory + "/trial.csv",    directory + "/sample.csv",
+                                       directory + "/event.csv",   directory + "/response.csv", directory + "/reading.csv"};
   writeAtomically(paths[0], sessionCsv(session));
   writeAtomically(paths[1], asCsv(session.trials()));
   writeSamples(session, filter, paths[2]);

@@ -32,6 +32,8 @@ class SessionWriter {
  public:
   // Makes a new file; refuses to overwrite one. Leaves nothing behind if it throws.
   static SessionWriter create(const std::string& path, const SessionInfo& info, const SessionOptions& options = {});
+  // Goes on with a session that was killed or aborted: its finished trials stay, what it holds of an unfinished one is removed.
+  static SessionWriter resume(const std::string& path, const SessionOptions& options = {});
   SessionWriter(SessionWriter&&) noexcept;
   SessionWriter& operator=(SessionWriter&&) = delete;
   ~SessionWriter();  // without close(): state "aborted: ..."

@@ -88,6 +88,18 @@ class SessionWriter::Impl {
  public:
   using FinishedTrial = std::variant<TrialRecord, ResponseRecord>;
 
+  // Of an existing session.
+  Impl(const std::string& path, const SessionOptions& options)
+      : options_(options), ring_(options.ring_capacity), database_(path, Database::Mode::kWrite) {
+    database_.text("PRAGMA journal_mode = WAL");
+    database_.run(fmt::format("PRAGMA wal_autocheckpoint = {}; PRAGMA synchronous = NORMAL", kCheckpointPages));
+    for (const char* table : {"sample", "event", "reading"}) {
+      database_.run(fmt::format("DELETE FROM {} WHERE trial NOT IN (SELECT trial FROM trial)", table));
+    }
+    database_.run(fmt::format("UPDATE session SET state = '{}'", kStateRunning));
+    statements_.emplace(database_);
+    thread_ = std::thread([this] { work(); });
+  }
   Impl(const std::string& path, const SessionInfo& info, const SessionOptions& options)
       : options_(options), ring_(options.ring_capacity), database_(path, Database::Mode::kWrite) {
     makeTables(database_, options);
@@ -278,6 +290,11 @@ SessionWriter SessionWriter::create(const std::string& path, const SessionInfo& 
     removeSession(path);
     throw;
   }
+}
+
+SessionWriter SessionWriter::resume(const std::string& path, const SessionOptions& options) {
+  { const SessionReader checked(path); }  // says what is wrong with a file that is no session
+  return SessionWriter(std::make_unique<Impl>(path, options));
 }
 
 SessionWriter::SessionWriter(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}

@@ -3,7 +3,8 @@
 #include <cmath>
 #include <cstring>
 
-#include "tasks/experiments/pickup_run.h"
+#include "tasks/experiments/manipulation_study.h"
+#include "tasks/experiments/pickup_trial.h"
 #include "tasks/participants/scripted_pickup.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/memory_sink.h"
@@ -29,11 +30,11 @@ struct PickupRun {
   PickupObject object = makePickupObject(options);
   ScriptedPickup participant;
   tests::MemorySink sink{kTicks};
-  SimulatedPickup cycle;
+  SimulatedTrial cycle;
   std::atomic<bool> interrupted{false};
 
   explicit PickupRun(const PickupTrialSpec& spec, const SensingLimits& limits = exactSenses())
-      : participant(1, {}, limits), cycle(options, object, spec, participant, sink) {}
+      : participant(1, {}, limits), cycle(std::make_unique<PickupTrial>(options, object, spec, sink), participant) {}
   const TrialRecord& run() {
     runServo({}, cycle, interrupted);
     cycle.finish();
@@ -137,26 +138,48 @@ TEST(SpherePickupTrial, MeasuresTheClearanceOfASphereLiftedStraightUp) {
   }
 }
 
-TEST(SpherePickupStudy, RunsEveryTrialAndReportsProgress) {
-  SpherePickupOptions options;
-  options.frictions = {0.9};
-  options.repetitions = 1;
-  options.timeout = 8;
+ManipulationStudy shortStudyOfBoth() {
+  ManipulationStudy study;
+  study.participants = 1;
+  study.training_pickups = study.training_alignments = 0;
+  study.pickup.frictions = {0.9};
+  study.pickup.repetitions = study.alignment.repetitions = 1;
+  study.pickup.timeout = study.alignment.timeout = 8;
+  return study;
+}
+
+TEST(ManipulationStudy, RunsBothTasksInOneConditionThenInTheOtherAndReportsProgress) {
   tests::MemorySink sink;
   std::vector<std::size_t> done;
   const std::atomic<bool> interrupted{false};
-  EXPECT_EQ(runPickupStudy(options, {}, sink, interrupted, [&](const PickupProgress& progress) { done.push_back(progress.done); }), 2u);
-  EXPECT_EQ(done, (std::vector<std::size_t>{0, 1, 2}));
-  ASSERT_EQ(sink.trials.size(), 2u);
-  EXPECT_EQ(sink.trials[0].condition, "force");
-  EXPECT_EQ(sink.trials[1].condition, "cld+force");
+  const auto progress = [&](const TrialProgress& at) { done.push_back(at.done); };
+  EXPECT_EQ(runManipulationStudy(shortStudyOfBoth(), {}, sink, interrupted, {{}, progress, {}}), 4u);
+  EXPECT_EQ(done, (std::vector<std::size_t>{0, 1, 2, 3, 4}));
+  ASSERT_EQ(sink.trials.size(), 4u);
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(sink.trials[i].condition, i < 2 ? "force" : "cld+force");
+    EXPECT_EQ(sink.trials[i].task, i % 2 == 0 ? "sphere-pickup" : "cylinder-alignment");
+  }
 }
 
-TEST(SpherePickupStudy, LeavesNoRowOfAnInterruptedTrial) {
+TEST(ManipulationStudy, LeavesNoRowOfAnInterruptedTrial) {
   tests::MemorySink sink;
   const std::atomic<bool> interrupted{true};
-  EXPECT_EQ(runPickupStudy({}, {}, sink, interrupted), 0u);
+  EXPECT_EQ(runManipulationStudy({}, {}, sink, interrupted), 0u);
   EXPECT_TRUE(sink.trials.empty());
+}
+
+// What is done is left alone, and the rest comes out as if nothing had happened.
+TEST(ManipulationStudy, GoesOnWhereItWasStopped) {
+  const ManipulationStudy study = shortStudyOfBoth();
+  const std::atomic<bool> interrupted{false};
+  tests::MemorySink whole, rest;
+  runManipulationStudy(study, {}, whole, interrupted);
+  EXPECT_EQ(runManipulationStudy(study, {}, rest, interrupted, {{0, 2}, {}, {}}), 4u);
+  ASSERT_EQ(rest.trials.size(), 2u);
+  EXPECT_EQ(rest.trials[0].trial, 1);
+  EXPECT_EQ(rest.trials[0].error, whole.trials[1].error);
+  EXPECT_EQ(rest.trials[1].duration, whole.trials[3].duration);
 }
 
 }  // namespace

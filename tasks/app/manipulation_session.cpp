@@ -1,0 +1,100 @@
+#include "tasks/app/manipulation_session.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "contact/error.h"
+#include "tasks/app/json_writer.h"
+#include "tasks/experiments/manipulation_file.h"
+#include "tasks/session/session_store.h"
+
+namespace pincer::tasks {
+namespace {
+
+class StudySessionSink final : public RecordSink {
+ public:
+  // Keeps every `stride`-th tick.
+  StudySessionSink(SessionWriter& writer, std::int64_t stride) : writer_(writer), stride_(stride) {}
+  bool wantsSample(std::int64_t tick) const override { return tick % stride_ == 0; }
+  void sample(const SampleRecord& sample) override { writer_.pushSample(sample); }  // a lost one is counted by the store
+  void event(const EventRecord& event) override { writer_.addEvent(event); }
+  void reading(const ReadingRecord& reading) override { writer_.addReading(reading); }
+  void trial(const TrialRecord& trial) override { writer_.finishTrial(trial); }
+
+ private:
+  SessionWriter& writer_;
+  const std::int64_t stride_;
+};
+
+std::string devicesJson(const ManipulationSessionOptions& o) {
+  JsonWriter json;
+  json.beginObject().key("arms").value("simulated").key("tactile_displays").value("simulated").key("rate").value(o.servo.rate);
+  return json.key("sample_rate").value(o.sample_rate).key("real_time").value(o.servo.real_time).endObject().text();
+}
+
+SessionInfo sessionInfo(const ManipulationSessionOptions& o) {
+  SessionInfo info;
+  info.task = taskName(o.study);
+  info.seed = o.study.seed;
+  info.version = PINCER_VERSION;
+  info.build = "compiler " __VERSION__;
+  info.protocol_json = studyFile(o.study);
+  info.devices_json = devicesJson(o);
+  info.participants_json = describe(o.study.people);
+  info.participants_hash = hashOf(o.study.people);
+  return info;
+}
+
+ManipulationSessionResult runInto(SessionWriter& writer, const ManipulationSessionOptions& options, StudyHooks hooks,
+                                  const std::atomic<bool>& interrupted) {
+  StudySessionSink sink(writer, std::lround(options.servo.rate) / options.sample_rate);
+  ManipulationSessionResult result;
+  hooks.served = [&](const ServoReport& trial) { result.servo.add(trial); };
+  result.trials = runManipulationStudy(options.study, options.servo, sink, interrupted, hooks);
+  result.interrupted = result.servo.interrupted;
+  result.interrupted ? writer.abort("interrupted by the user") : writer.close();
+  return result;
+}
+
+SessionOptions storeOptions(const ServoOptions& servo) {
+  SessionOptions store;
+  store.block_when_full = !servo.real_time;
+  return store;
+}
+
+}  // namespace
+
+void validate(const ManipulationSessionOptions& options) {
+  validate(options.study);
+  const int rate = options.sample_rate;
+  if (rate >= 1 && rate <= 1000 && std::fmod(options.servo.rate, rate) == 0) return;
+  throw InputError(
+      fmt::format("run: sample_rate = {} is out of range: an integer in [1, 1000] Hz that divides the {:g} ticks of a "
+                  "second. Take for example 1000, 500, 200 or 100.",
+                  rate, options.servo.rate));
+}
+
+ManipulationSessionResult runManipulationSession(const ManipulationSessionOptions& options, const std::string& path,
+                                                 const std::atomic<bool>& interrupted, const TrialProgressLine& progress) {
+  validate(options);
+  SessionWriter writer = SessionWriter::create(path, sessionInfo(options), storeOptions(options.servo));
+  return runInto(writer, options, {{}, progress, {}}, interrupted);
+}
+
+ManipulationSessionResult resumeManipulationSession(const ServoOptions& servo, int sample_rate, const std::string& path,
+                                                    const std::atomic<bool>& interrupted, const TrialProgressLine& progress) {
+  ManipulationSessionOptions options;
+  StudyHooks hooks{{}, progress, {}};
+  {
+    const SessionReader session(path);
+    if (session.complete()) throw InputError(path + ": the session is complete; there is nothing to go on with.");
+    options = {parseStudyFile(session.info().protocol_json, path + ": protocol"), servo, sample_rate};
+    for (const TrialRecord& trial : session.trials()) hooks.finished.insert(trial.trial);
+  }
+  validate(options);
+  SessionWriter writer = SessionWriter::resume(path, storeOptions(servo));
+  return runInto(writer, options, hooks, interrupted);
+}
+
+}  // namespace pincer::tasks

@@ -1,0 +1,157 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <memory>
+
+#include "tasks/app/app.h"
+#include "tasks/app/interrupt.h"
+#include "tasks/app/manipulation_session.h"
+#include "tasks/app/progress.h"
+#include "tasks/app/run_options.h"
+#include "tasks/app/run_tasks.h"
+#include "tasks/app/servo_text.h"
+#include "tasks/experiments/manipulation_file.h"
+#include "tasks/experiments/pickup_object.h"
+#include "tasks/report/report.h"
+#include "tasks/session/atomic_file.h"
+
+namespace pincer::tasks {
+namespace {
+
+constexpr const char* kCylinderExample = R"(
+Index finger and thumb find the flat of an upright cylinder and turn it towards the monitor, with and without contact location displays.
+
+Example:
+  pincer run cylinder-alignment --repetitions 3 --seed 7 --out out/first)";
+
+constexpr const char* kManipulationExample = R"(
+The whole study: 12 participants, both tasks in one condition, then both in the other, training before each. A session that was interrupted or
+killed goes on with --resume.
+
+Examples:
+  pincer run manipulation --seed 1 --out out/study
+  pincer run manipulation --write-study study.json      every parameter, with what it means
+  pincer run manipulation --study study.json --out out/study
+  pincer run manipulation --resume --out out/study)";
+
+struct ManipulationArguments {
+  RunOptions run;
+  std::string condition = "both", strategy, study_file, write_study;
+  bool resume = false, free_body = false;
+  ManipulationStudy study;
+};
+
+ManipulationSessionOptions optionsOf(const ManipulationArguments& arguments) {
+  ManipulationSessionOptions options{arguments.study, arguments.run.servo, arguments.run.sample_rate};
+  if (!arguments.study_file.empty()) options.study = readStudyFile(arguments.study_file);
+  if (arguments.condition != "both") options.study.conditions = {pickupConditionOf(arguments.condition)};
+  if (!arguments.strategy.empty()) options.study.people.strategy = arguments.strategy == "simple" ? Strategy::kSimple : Strategy::kRational;
+  if (arguments.free_body) options.study.alignment.pivot = false;
+  return options;
+}
+
+std::int64_t faultsOfStudy(const SessionSummary& summary) {
+  std::int64_t faults = 0;
+  for (const CellSummary& cell : summary.cells) faults += cell.allFrictions() ? cell.faults : 0;
+  return faults;
+}
+
+int showStudy(const ManipulationArguments& arguments, const std::string& directory, const ManipulationSessionResult& result) {
+  const SessionReader session(directory + "/session.db");
+  const SessionSummary summary = summariseSession(session);
+  fmt::print("{}\n", arguments.run.json ? summaryJson(summary) : formatTable(summary));
+  const auto say = [&](const std::string& line) { fmt::print(arguments.run.json ? stderr : stdout, "{}\n", line); };
+  const ServoOptions& servo = arguments.run.servo;
+  if (servo.real_time) say(servoText(result.servo, 1 / servo.rate));
+  say(fmt::format("Session: {}", session.path()));
+  if (!servo.real_time && result.servo.wall > 0) {
+    const double simulated = static_cast<double>(result.servo.ticks) / servo.rate;
+    say(fmt::format("Simulated {:.0f} s in {:.1f} s: {:.0f} times real time", simulated, result.servo.wall, simulated / result.servo.wall));
+  }
+  if (result.interrupted) {
+    say(fmt::format("Interrupted after {} trials; they are safe. Go on: the same command with --resume --out {}", result.trials,
+                    directory));
+    return kExitInterrupted;
+  }
+  if (arguments.run.report) say(fmt::format("Report: {}", writeReport(session, directory + "/report.html").html));
+  const std::int64_t faults = faultsOfStudy(summary);
+  if (faults > 0) say(fmt::format("Trials that ended in a fault: {}; their events say why: pincer export {}", faults, session.path()));
+  return faults > 0 ? kExitCheckFailed : kExitOk;
+}
+
+int runManipulation(const ManipulationArguments& arguments) {
+  const std::atomic<bool>& interrupted = interruptFlag();
+  std::unique_ptr<Progress> line;
+  const auto progress = [&](const TrialProgress& at) {
+    if (!line) line = std::make_unique<Progress>("trials", static_cast<std::int64_t>(at.total));
+    line->update(static_cast<std::int64_t>(at.done));
+  };
+  const auto finish = [&](const std::string& directory, const ManipulationSessionResult& result) {
+    line.reset();
+    return showStudy(arguments, directory, result);
+  };
+  if (arguments.resume) {
+    if (arguments.run.out.empty()) throw InputError("run: --resume needs --out DIR, the directory of the session to go on with.");
+    return finish(arguments.run.out, resumeManipulationSession(arguments.run.servo, arguments.run.sample_rate,
+                                                               arguments.run.out + "/session.db", interrupted, progress));
+  }
+  const ManipulationSessionOptions options = optionsOf(arguments);
+  validate(options);
+  if (!arguments.write_study.empty()) {
+    writeAtomically(arguments.write_study, studyFile(options.study));
+    fmt::print("Study: {}\n", arguments.write_study);
+    return kExitOk;
+  }
+  makePickupObject(options.study.pickup);  // bad options and objects are named before anything is written
+  const std::string directory = outputDirectory(arguments.run, taskName(options.study));
+  makeDirectory(directory);
+  return finish(directory, runManipulationSession(options, directory + "/session.db", interrupted, progress));
+}
+
+void addAlignmentOptions(CLI::App& command, ManipulationArguments& arguments) {
+  CylinderAlignmentOptions& alignment = arguments.study.alignment;
+  command.add_option("--repetitions", alignment.repetitions, "Trials per condition")->capture_default_str();
+  command.add_option("--friction", alignment.friction, "Static friction of the cylinder")->capture_default_str();
+  command.add_flag("--free-body", arguments.free_body, "The cylinder stands free on a table in place of a pivot");
+}
+
+// What every command asks; then `example`, and the callback.
+CLI::App* addManipulationCommand(CLI::App& run, const char* name, const char* what, const char* example,
+                                 const std::shared_ptr<ManipulationArguments>& arguments, int& exit_code) {
+  CLI::App* command = run.add_subcommand(name, what);
+  command->add_option("--condition", arguments->condition, "What the fingers feel")
+      ->check(CLI::IsMember({"force", "cld+force", "both"}))
+      ->capture_default_str();
+  command->add_option("--participants", arguments->study.participants, "How many simulated participants")->capture_default_str();
+  command->add_option("--strategy", arguments->strategy, "Of simulated participants (default: rational)")
+      ->check(CLI::IsMember({"rational", "simple"}));
+  command->add_option("--seed", arguments->study.seed, "Of all that varies; the same seed gives the same session")->capture_default_str();
+  command->add_flag("--resume", arguments->resume, "Go on with the interrupted or killed session in --out");
+  addRunOptions(*command, arguments->run);
+  command->footer(example);
+  command->callback([arguments, &exit_code] { exit_code = runManipulation(*arguments); });
+  return command;
+}
+
+}  // namespace
+
+void addCylinderAlignmentTask(CLI::App& run, int& exit_code) {
+  auto arguments = std::make_shared<ManipulationArguments>();
+  arguments->study.pickup_task = false;
+  arguments->study.participants = 1;
+  arguments->study.training_alignments = 0;
+  addAlignmentOptions(*addManipulationCommand(run, "cylinder-alignment", "Find the flat of a cylinder and turn it to the monitor",
+                                              kCylinderExample, arguments, exit_code),
+                      *arguments);
+}
+
+void addManipulationTask(CLI::App& run, int& exit_code) {
+  auto arguments = std::make_shared<ManipulationArguments>();
+  CLI::App* command = addManipulationCommand(run, "manipulation", "The published study: both tasks, 12 participants, training",
+                                             kManipulationExample, arguments, exit_code);
+  command->add_option("--study", arguments->study_file, "Every parameter from this study file; counts over other options");
+  command->add_option("--write-study", arguments->write_study, "Writes the study file and does nothing else");
+}
+
+}  // namespace pincer::tasks

@@ -1,0 +1,73 @@
+// manipulation_study: sphere pickup and cylinder alignment as one study (A. J. Doxon, dissertation, University of Utah, 2014).
+//
+// 12 participants; both tasks in one condition, then both in the other; every other participant begins with the second condition. Training
+// before each task in each condition. Every trial's seed follows from the study's, the participant's, the condition and the place in it, so
+// that any trial can be done again alone. How many trials of training there are, and which task comes first, is ours.
+#pragma once
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "tasks/experiments/cylinder_alignment.h"
+#include "tasks/experiments/pickup_object.h"
+#include "tasks/experiments/simulated_trial.h"
+#include "tasks/experiments/sphere_pickup.h"
+#include "tasks/participants/participant_model.h"
+
+namespace pincer::tasks {
+
+struct ManipulationStudy {
+  int participants = 12;  // 1 .. 1000
+  std::uint64_t seed = 1;
+  std::vector<PickupCondition> conditions{PickupCondition::kForce, PickupCondition::kCldForce};
+  bool pickup_task = true, alignment_task = true;
+  int training_pickups = 2, training_alignments = 1;  // per condition, 0 .. 100
+  SpherePickupOptions pickup;                         // its participants, conditions and seed don't count here
+  CylinderAlignmentOptions alignment;                 // likewise
+  ParticipantModel people;
+  bool frozen_tactor = false;  // the tactors stay parked in every condition (a control)
+};
+
+// Throws InputError naming the first value out of range, its range and the remedy.
+void validate(const ManipulationStudy& study);
+
+// "sphere-pickup", "cylinder-alignment", or "manipulation" for both.
+std::string taskName(const ManipulationStudy& study);
+
+struct ManipulationTrial {
+  HandTask task = HandTask::kPickup;
+  PickupTrialSpec pickup;       // of the one task
+  CylinderTrialSpec alignment;  // or of the other
+
+  std::int64_t trial() const { return task == HandTask::kPickup ? pickup.trial : alignment.trial; }
+  std::int64_t participant() const { return task == HandTask::kPickup ? pickup.participant : alignment.participant; }
+  PickupCondition condition() const { return task == HandTask::kPickup ? pickup.condition : alignment.condition; }
+};
+
+// Every trial, in the order of its doing. Throws as validate().
+std::vector<ManipulationTrial> manipulationTrials(const ManipulationStudy& study);
+
+// The trial, not begun. `object`: what is picked up (makePickupObject).
+std::unique_ptr<HandTrial> makeTrial(const ManipulationStudy& study, const PickupObject& object, const ManipulationTrial& trial,
+                                     RecordSink& sink);
+std::unique_ptr<Participant> makeParticipant(const ManipulationStudy& study, const ManipulationTrial& trial);
+
+struct TrialProgress {
+  std::size_t done = 0, total = 0;  // trials
+};
+
+struct StudyHooks {
+  std::set<std::int64_t> finished;                     // trials that needn't be done again
+  std::function<void(const TrialProgress&)> progress;  // before the first and after every trial
+  std::function<void(const ServoReport&)> served;      // what the servo says of each, the interrupted one included
+};
+
+// Every trial with simulated participants. An interrupted trial leaves no row. Returns the number of trials finished, those of
+// `hooks.finished` included. Throws InputError for bad options or a bad object.
+std::size_t runManipulationStudy(const ManipulationStudy& study, const ServoOptions& servo, RecordSink& sink,
+                                 const std::atomic<bool>& interrupted, const StudyHooks& hooks = {});
+
+}  // namespace pincer::tasks

@@ -1,0 +1,203 @@
+#include "tasks/findings/findings.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <exception>
+#include <mutex>
+#include <thread>
+
+namespace pincer::tasks {
+namespace {
+
+constexpr double kSignificant = 0.05;
+constexpr double kRate = 1000;  // [Hz]
+
+// Keeps the rows alone: no sample is made.
+class RowSink final : public RecordSink {
+ public:
+  bool wantsSample(std::int64_t) const override { return false; }
+  void sample(const SampleRecord&) override {}
+  void event(const EventRecord&) override {}
+  void reading(const ReadingRecord&) override {}
+  void trial(const TrialRecord& trial) override { rows.push_back(trial); }
+  std::vector<TrialRecord> rows;
+};
+
+ManipulationStudy studyOf(const FindingsOptions& options, const FindingsVariant& variant, int experiment) {
+  ManipulationStudy study;
+  study.participants = options.participants;
+  study.seed = seedFor(options.seed, static_cast<std::uint64_t>(experiment));
+  study.training_pickups = study.training_alignments = 0;
+  study.pickup.repetitions = options.pickups;
+  study.alignment.repetitions = options.alignments;
+  variant.change(study);
+  return study;
+}
+
+// One participant of one experiment of one variant.
+struct Job {
+  std::size_t variant = 0;
+  int experiment = 0;
+  std::int64_t person = 0;
+};
+
+class Workshop {
+ public:
+  Workshop(const FindingsOptions& options, std::vector<const FindingsVariant*> variants, const std::atomic<bool>& interrupted,
+           const std::function<void(std::int64_t, std::int64_t)>& progress)
+      : options_(options), variants_(std::move(variants)), interrupted_(interrupted), progress_(progress), object_(makePickupObject({})) {
+    for (std::size_t v = 0; v < variants_.size(); ++v) {
+      const int experiments = experimentsOf(v);
+      means_.emplace_back(static_cast<std::size_t>(experiments), std::vector<PersonMeans>(static_cast<std::size_t>(options.participants)));
+      for (int e = 0; e < experiments; ++e) {
+        for (int p = 0; p < options.participants; ++p) jobs_.push_back({v, e, p});
+      }
+    }
+  }
+
+  void run() {
+    std::vector<std::thread> threads;
+    for (int t = 0; t < options_.threads; ++t) threads.emplace_back([this] { work(); });
+    for (std::thread& thread : threads) thread.join();
+    if (failure_) std::rethrow_exception(failure_);
+  }
+
+  int experimentsOf(std::size_t v) const {
+    return variants_[v] == &findingsVariants().front() ? options_.experiments : options_.control_experiments;
+  }
+  const std::vector<std::vector<PersonMeans>>& means(std::size_t variant) const { return means_[variant]; }
+  double simulated() const { return simulated_; }
+
+ private:
+  void work() {
+    try {
+      for (std::size_t k = next_++; k < jobs_.size() && !interrupted_; k = next_++) finish(jobs_[k], meansOf(jobs_[k]));
+    } catch (...) {
+      const std::lock_guard lock(mutex_);
+      if (!failure_) failure_ = std::current_exception();
+      next_ = jobs_.size();
+    }
+  }
+
+  PersonMeans meansOf(const Job& job) {
+    const ManipulationStudy study = studyOf(options_, *variants_[job.variant], job.experiment);
+    RowSink sink;
+    double simulated = 0;
+    for (const ManipulationTrial& trial : manipulationTrials(study)) {
+      if (trial.participant() != job.person) continue;
+      const std::unique_ptr<Participant> participant = makeParticipant(study, trial);
+      SimulatedTrial cycle(makeTrial(study, object_, trial, sink), *participant);
+      for (std::int64_t tick = 0; cycle.tick(static_cast<double>(tick) / kRate) && !interrupted_;) ++tick;
+      cycle.finish();
+      simulated += cycle.trial().simulatedTime();
+    }
+    const std::lock_guard lock(mutex_);
+    simulated_ += simulated;
+    return personMeans(sink.rows);
+  }
+
+  void finish(const Job& job, PersonMeans means) {
+    const std::lock_guard lock(mutex_);
+    means_[job.variant][static_cast<std::size_t>(job.experiment)][static_cast<std::size_t>(job.person)] = std::move(means);
+    ++done_;
+    if (progress_) progress_(done_, static_cast<std::int64_t>(jobs_.size()));
+  }
+
+  const FindingsOptions& options_;
+  std::vector<const FindingsVariant*> variants_;
+  const std::atomic<bool>& interrupted_;
+  const std::function<void(std::int64_t, std::int64_t)>& progress_;
+  const PickupObject object_;
+  std::vector<Job> jobs_;
+  std::atomic<std::size_t> next_{0};
+  std::mutex mutex_;  // guards the rest
+  std::vector<std::vector<std::vector<PersonMeans>>> means_;
+  double simulated_ = 0;
+  std::int64_t done_ = 0;
+  std::exception_ptr failure_;
+};
+
+FindingResult summarise(const std::vector<std::vector<PersonMeans>>& experiments, std::size_t measure) {
+  FindingResult result;
+  std::vector<double> force, cld, difference, effect;
+  for (const auto& people : experiments) {
+    std::vector<double> a, b;
+    for (const PersonMeans& person : people) {
+      a.push_back(person.force[measure]);
+      b.push_back(person.cld[measure]);
+    }
+    const PairedTest test = comparePairs(a, b);
+    if (test.n == 0) continue;
+    ++result.experiments;
+    force.push_back(estimateMean(a).mean);
+    cld.push_back(estimateMean(b).mean);
+    difference.push_back(test.difference.mean);
+    if (std::isfinite(test.effect)) effect.push_back(test.effect);
+    const bool significant = test.p_t < kSignificant, less = test.difference.mean<0, more = test.difference.mean> 0;
+    result.significant_t += significant;
+    result.significant_w += test.p_wilcoxon < kSignificant;
+    result.less += less;
+    result.more += more;
+    result.significant_less += significant && less;
+    result.significant_more += significant && more;
+  }
+  result.force = estimateMean(force);
+  result.cld = estimateMean(cld);
+  result.difference = estimateMean(difference);
+  result.effect = estimateMean(effect);
+  return result;
+}
+
+void requireSizes(const FindingsOptions& o) {
+  const auto require = [](const char* name, int value, int low, int high) {
+    if (value >= low && value <= high) return;
+    throw InputError(fmt::format("findings: {} = {} is out of range [{}, {}].", name, value, low, high));
+  };
+  require("experiments", o.experiments, 2, 1000);
+  require("control_experiments", o.control_experiments, 2, 1000);
+  require("participants", o.participants, 2, 60);
+  require("pickups", o.pickups, 1, 100);
+  require("alignments", o.alignments, 1, 100);
+  require("threads", o.threads, 1, 256);
+}
+
+}  // namespace
+
+FindingsResult runFindings(const FindingsOptions& options, const std::atomic<bool>& interrupted,
+                           const std::function<void(std::int64_t, std::int64_t)>& progress) {
+  requireSizes(options);
+  std::vector<const FindingsVariant*> chosen;
+  for (const FindingsVariant& variant : findingsVariants()) {
+    if (std::string_view(variant.name).find(options.only) != std::string_view::npos) chosen.push_back(&variant);
+  }
+  if (chosen.empty()) throw InputError(fmt::format("findings: no variant's name holds \"{}\".", options.only));
+  FindingsResult result{options, studyOf(options, findingsVariants().front(), 0), {}, 0, 0, false};
+  const auto start = std::chrono::steady_clock::now();
+  Workshop workshop(options, chosen, interrupted, progress);
+  workshop.run();
+  result.wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  result.simulated = workshop.simulated();
+  result.interrupted = interrupted;
+  if (result.interrupted) return result;
+  for (std::size_t v = 0; v < chosen.size(); ++v) {
+    VariantResult variant{chosen[v]->name, chosen[v]->what, hashOf(studyOf(options, *chosen[v], 0).people), {}};
+    for (std::size_t m = 0; m < findingMeasures().size(); ++m) variant.findings.push_back(summarise(workshop.means(v), m));
+    result.variants.push_back(std::move(variant));
+  }
+  return result;
+}
+
+std::string verdictOn(const FindingMeasure& measure, const FindingResult& r) {
+  if (measure.expected == PublishedEffect::kNone) return "-";
+  if (measure.expected == PublishedEffect::kSame) {
+    return wilsonInterval(r.significant_t, r.experiments).first <= kSignificant ? "follows" : "does not follow";
+  }
+  const bool less = measure.expected == PublishedEffect::kLess;
+  if (wilsonInterval(less ? r.significant_less : r.significant_more, r.experiments).first > 0.5) return "follows";
+  const double sign = less ? -1 : 1;
+  return sign * r.difference.mean - r.difference.half_width > 0 ? "in the same direction only" : "does not follow";
+}
+
+}  // namespace pincer::tasks

@@ -1,0 +1,257 @@
+#include "tasks/participants/scripted_alignment.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace pincer::tasks {
+namespace {
+
+constexpr double kSilence = -1;      // no tone heard
+constexpr int kFirstProbes = 3;      // from one end of the hand's reach to the other
+constexpr int kSimpleTurns = 2;      // of the simple strategy
+constexpr double kSimpleSd = 0.3;    // what the simple strategy holds its direction to be known to [rad]
+constexpr double kLongestReach = 2;  // a reach of the pinch ends there at the latest, its sizes being small [s]
+constexpr double kNothingFelt = std::numeric_limits<double>::quiet_NaN();
+
+double wrapToPi(double angle) { return std::remainder(angle, 2 * std::numbers::pi); }
+double aboutZ(const Vec3& v_W) { return std::atan2(v_W.y(), v_W.x()); }
+
+FlatModel flatModelOf(const TrialCues& cues, const SensingLimits& limits) {
+  FlatModel model;
+  model.radius = cues.half_width;
+  model.flat_distance = cues.flat_distance;
+  model.tip_radius = cues.fingers[0].tip_radius;
+  model.placement_sd = std::max(limits.placement_sd, 1e-4);
+  model.placement_between_sd = std::max(limits.placement_between_sd, 1e-4);
+  model.span_sd = std::max(limits.span_sd, 3e-4);
+  const double cone = 0.31;  // SD of a direction anywhere within a friction cone of 31 degrees [rad]
+  model.push_sd = std::hypot(limits.direction_sd, cone);
+  model.place_sd = std::max(std::hypot(limits.tactor_sd / model.tip_radius, limits.orientation_sd), 0.02);
+  model.place_gain = limits.tactor_bias;
+  return model;
+}
+
+}  // namespace
+
+ScriptedAlignment::ScriptedAlignment(std::uint64_t seed, bool simple, const ScriptedAlignmentOptions& options, const SensingLimits& limits,
+                                     const HandRanges& ranges)
+    : simple_(simple), options_(options), limits_(limits), body_(drawBody(ranges, seed)), random_(seed) {
+  Random person(seedFor(seed, 0x6d6f6e69746f72));  // "monitor": not the stream that made the hands
+  target_shared_ = limits.target_shared_sd * person.normal();
+}
+
+void ScriptedAlignment::begin(const TrialCues& cues) {
+  cues_ = cues;
+  random_ = Random(cues.seed);
+  sense_ = drawBodySense(limits_, random_);
+  touch_.begin(limits_, cues, sense_);
+  belief_.begin(flatModelOf(cues, limits_), random_);
+  target_ = cues.target_angle + target_shared_ + limits_.target_trial_sd * random_.normal();
+  const Vec3 span_W = cues.fingers[1].home_W - cues.fingers[0].home_W;
+  axis_W_ = span_W.normalized();
+  home_ = {0.5 * (cues.fingers[0].home_W + cues.fingers[1].home_W), 0.5 * span_W.norm(), 0};
+  posture_ = home_;
+  now_ = dt_ = contact_time_ = 0;
+  heard_ = kSilence;
+  opening_ = answers_ = turning_ = false;
+  probes_ = turns_ = 0;
+  simple_best_ = std::numeric_limits<double>::infinity();
+  enter(HandPhase::kListen);
+}
+
+HandAction ScriptedAlignment::act(const Percept& percept) {
+  dt_ = std::max(percept.time - now_, 0.0);
+  now_ = percept.time;
+  cue_ = percept.cue;
+  reading_.reset();
+  touch_.feel(percept);
+  if (cue_ == Cue::kSuccess || cue_ == Cue::kEnd) {
+    opening_ = false;
+    enterReach(home_, HandPhase::kReturn);
+  }
+  switch (phase_) {
+    case HandPhase::kListen:
+      listen();
+      break;
+    case HandPhase::kReach:
+    case HandPhase::kReturn:
+      goAlong();
+      break;
+    case HandPhase::kClose:
+      close();
+      break;
+    case HandPhase::kRead:
+      read();
+      break;
+    case HandPhase::kSqueeze:
+      squeeze();
+      break;
+    case HandPhase::kTurn:
+      turn();
+      break;
+    case HandPhase::kLift:  // of the other task
+    case HandPhase::kHold:
+    case HandPhase::kRest:
+      break;
+  }
+  HandAction action;
+  for (int i = 0; i < kHandFingers; ++i) action.pulls[static_cast<std::size_t>(i)] = pullOf(i);
+  action.intent = {phase_, false, answers_, reading_};
+  return action;
+}
+
+void ScriptedAlignment::listen() {
+  if (cue_ == Cue::kStart) heard_ = now_;
+  if (heard_ != kSilence && now_ >= heard_ + limits_.reaction_time) probe(-options_.reach_angle, "first");
+}
+
+void ScriptedAlignment::goAlong() {
+  posture_ = reach_.at(now_);
+  if (!reach_.over(now_)) return;
+  if (opening_) {
+    opening_ = false;
+    return enterReach({centre_W(), openHalf(), next_angle_}, HandPhase::kReach);
+  }
+  enter(phase_ == HandPhase::kReach ? HandPhase::kClose : HandPhase::kRest);
+}
+
+// Inwards; a finger that touches alone waits for the other.
+void ScriptedAlignment::close() {
+  const double step = options_.close_speed * dt_;
+  posture_.half = std::max(posture_.half - step, 0.5 * cues_.fingers[0].tip_radius);
+  if (touch_.feels(0) != touch_.feels(1)) {
+    const Vec3 u_W(std::cos(posture_.angle), std::sin(posture_.angle), 0);
+    posture_.centre_W += (touch_.feels(0) ? -step : step) * u_W;
+  }
+  contact_time_ = touch_.feelsBoth() ? contact_time_ + dt_ : 0;
+  if (contact_time_ >= options_.contact_time) return enter(turning_ ? HandPhase::kSqueeze : HandPhase::kRead);
+  if (now_ > entered_ + options_.patience) openThenReach(posture_.angle);
+}
+
+void ScriptedAlignment::read() {
+  if (now_ < entered_ + limits_.reading_time) return;
+  ++probes_;
+  observe();
+  decide();
+}
+
+void ScriptedAlignment::observe() {
+  std::array<FlatPercept, 2> pinch;
+  std::array<double, 2> push{kNothingFelt, kNothingFelt}, place{kNothingFelt, kNothingFelt};
+  for (int i = 0; i < kHandFingers; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const Vec3 noise = limits_.span_sd * random_.normal3();
+    const Vec3 tip_W = touch_.feltTip_W(i) + noise - cues_.place_W;
+    pinch[k].p_felt = tip_W.head<2>();
+    pinch[k].pressed = touch_.push(i) / cues_.surface_stiffness;
+    pinch[k].pad = i == 0 ? aboutZ(-axis_W_) : aboutZ(axis_W_);
+    if (const auto felt = touch_.readPush(i, random_)) pinch[k].push = push[k] = aboutZ(*felt);
+    if (const auto felt = touch_.readContact(i, random_)) pinch[k].place = place[k] = aboutZ(-*felt);
+    const double direction = pinch[k].place.value_or(aboutZ(tip_W));
+    if (pinch[k].p_felt.norm() >= simple_best_) continue;
+    simple_best_ = pinch[k].p_felt.norm();
+    simple_direction_ = direction;
+  }
+  belief_.observe(pinch, random_);
+  belief_.turned(0, options_.probe_sd, random_);
+  const std::size_t finger = pinch[0].p_felt.norm() < pinch[1].p_felt.norm() ? 0 : 1;  // the one that is more likely on the flat
+  reading_ = HandReading{"flat", Vec3(place[finger], push[finger], 0), Vec3(believedDirection(), believedSpread(), 0), ""};
+}
+
+double ScriptedAlignment::believedDirection() const { return simple_ ? simple_direction_ : belief_.direction(); }
+double ScriptedAlignment::believedSpread() const { return simple_ ? kSimpleSd : belief_.spread(); }
+
+void ScriptedAlignment::decide() {
+  if (probes_ < kFirstProbes) return probe((probes_ - 1) * options_.reach_angle, "sweep");
+  const double spread = believedSpread();
+  const bool known = simple_ || spread <= options_.sure || probes_ >= options_.most_probes;
+  if (!known) return probe(anglesFacing(believedDirection()), "unsure");
+  const double missing = wrapToPi(target_ - believedDirection());
+  const int most_turns = simple_ ? kSimpleTurns : options_.most_turns;
+  if (std::abs(missing) <= std::max(options_.close_enough, simple_ ? 0.0 : spread) || turns_ >= most_turns) {
+    reading_->decision = "answer";
+    answers_ = true;
+    return enter(HandPhase::kRest);
+  }
+  reading_->decision = "turn";
+  turning_ = true;
+  turn_by_ = std::clamp(missing, -2 * options_.reach_angle, 2 * options_.reach_angle);
+  openThenReach(-0.5 * turn_by_);
+}
+
+// The angle of the pinch that brings a finger nearest to where a normal of direction `direction` points.
+double ScriptedAlignment::anglesFacing(double direction) {
+  const double thumb = wrapToPi(direction), index = wrapToPi(direction - std::numbers::pi);
+  const double nearer = std::abs(thumb) < std::abs(index) ? thumb : index;
+  const double spread_out = options_.reach_angle * random_.uniform(-0.4, 0.4);  // not twice the same pinch
+  return std::clamp(nearer + spread_out, -options_.reach_angle, options_.reach_angle);
+}
+
+void ScriptedAlignment::probe(double angle, const char* why) {
+  if (reading_) reading_->decision = why;
+  turning_ = false;
+  openThenReach(angle);
+}
+
+void ScriptedAlignment::squeeze() {
+  const double stiffness = 0.5 * (body_.hands[0].stiffness + body_.hands[1].stiffness);
+  posture_.half = std::max(posture_.half - options_.squeeze_rate / stiffness * dt_, 0.0);
+  if (touch_.grip() < options_.turn_grip && posture_.half > 0 && now_ < entered_ + options_.patience) return;
+  Posture goal = posture_;
+  goal.angle += turn_by_;
+  const double way = (cues_.half_width + cues_.fingers[0].tip_radius) * std::abs(turn_by_);
+  reach_ = {posture_, goal, now_, way / body_.speed};
+  enter(HandPhase::kTurn);
+}
+
+void ScriptedAlignment::turn() {
+  posture_ = reach_.at(now_);
+  if (!reach_.over(now_)) return;
+  ++turns_;
+  probes_ = 0;
+  belief_.turned(turn_by_, options_.turn_error * std::abs(turn_by_), random_);
+  simple_direction_ += turn_by_;
+  simple_best_ = std::numeric_limits<double>::infinity();
+  probe(-options_.reach_angle, "turned");
+}
+
+void ScriptedAlignment::enter(HandPhase phase) {
+  phase_ = phase;
+  entered_ = now_;
+  contact_time_ = 0;
+}
+
+void ScriptedAlignment::enterReach(const Posture& goal, HandPhase phase) {
+  reach_ = reach(posture_, goal, now_, body_.speed);
+  if (phase == HandPhase::kReach && heard_ != kSilence && opening_) reach_.duration = std::min(reach_.duration, kLongestReach);
+  enter(phase);
+}
+
+void ScriptedAlignment::openThenReach(double angle) {
+  next_angle_ = angle;
+  opening_ = true;
+  enterReach({posture_.centre_W, openHalf(), posture_.angle}, HandPhase::kReach);
+}
+
+Vec3 ScriptedAlignment::centre_W() const {
+  if (simple_) return cues_.place_W;
+  const Vec2 axis = belief_.axis();
+  return cues_.place_W + Vec3(axis.x(), axis.y(), 0);
+}
+
+double ScriptedAlignment::openHalf() const { return cues_.fingers[0].tip_radius + cues_.half_width + options_.clearance; }
+
+devices::HandPull ScriptedAlignment::pullOf(int finger) const {
+  const auto k = static_cast<std::size_t>(finger);
+  const double side = finger == 0 ? -1 : 1;
+  const Vec3 misplacement_W = minimumJerk(now_, options_.settle_time) * sense_.misplacement_W[k];
+  const Vec3 u_W = Eigen::AngleAxisd(posture_.angle, Vec3::UnitZ()) * axis_W_;
+  const Vec3 felt_W = posture_.centre_W + side * posture_.half * u_W;
+  devices::HandPull pull = body_.hands[k];
+  pull.p_D = cues_.fingers[k].q_WD.conjugate() * (felt_W + misplacement_W - cues_.fingers[k].p_WD);
+  return pull;
+}
+
+}  // namespace pincer::tasks

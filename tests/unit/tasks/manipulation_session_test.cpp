@@ -1,0 +1,149 @@
+// Study files, resuming, replaying and exporting a manipulation study.
+#include "tasks/app/manipulation_session.h"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <filesystem>
+
+#include "contact/error.h"
+#include "tasks/app/replay.h"
+#include "tasks/experiments/manipulation_file.h"
+#include "tasks/session/bids_export.h"
+#include "tasks/session/database.h"
+#include "tests/support/temporary_directory.h"
+
+namespace pincer::tasks {
+namespace {
+
+const std::atomic<bool> kGoOn{false};
+
+ManipulationSessionOptions quickSession(int repetitions) {
+  ManipulationSessionOptions options;
+  options.study.participants = 1;
+  options.study.alignment_task = false;
+  options.study.training_pickups = 0;
+  options.study.conditions = {PickupCondition::kCldForce};
+  options.study.pickup.frictions = {0.9};
+  options.study.pickup.repetitions = repetitions;
+  options.study.pickup.timeout = 2;
+  return options;
+}
+
+TEST(ManipulationFile, ReadsWhatItWrites) {
+  ManipulationStudy study;
+  study.seed = 77;
+  study.people.strategy = Strategy::kSimple;
+  study.people.limits.tactor_sd = 1.25e-3;
+  study.alignment.pivot = false;
+  study.pickup.frictions = {0.4, 0.8};
+  study.conditions = {PickupCondition::kCldForce};
+  const std::string text = studyFile(study);
+  EXPECT_EQ(studyFile(parseStudyFile(text, "study.json")), text);
+  EXPECT_EQ(hashOf(parseStudyFile(text, "study.json").people), hashOf(study.people));
+  EXPECT_NE(hashOf(study.people), hashOf(ParticipantModel{}));
+}
+
+TEST(ManipulationFile, HasThePublishedDesignWhereItIsSilent) {
+  EXPECT_EQ(studyFile(parseStudyFile(R"({"version": 1})", "study.json")), studyFile({}));
+}
+
+TEST(ManipulationFile, NamesWhatIsWrong) {
+  const auto said = [](const char* text) {
+    try {
+      parseStudyFile(text, "study.json");
+      return std::string();
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+  };
+  EXPECT_NE(said(R"({"version": 1, "participant": 3})").find("participants"), std::string::npos);  // did you mean
+  EXPECT_NE(said("{\"version\": 1,\n\"sphere_pickup\": {\"mass\": \"heavy\"}}").find("study.json:2"), std::string::npos);
+  EXPECT_NE(said(R"({"version": 1, "people": {"force_floor": -1}})").find("force_floor = -1"), std::string::npos);
+  EXPECT_NE(said(R"({"version": 2})").find("version"), std::string::npos);
+}
+
+// A session that goes on after an interrupt is the session that was never interrupted.
+TEST(ManipulationSession, GoesOnToTheSameEnd) {
+  const tests::TemporaryDirectory directory;
+  const auto options = quickSession(3);
+  std::atomic<bool> interrupted{false};
+  runManipulationSession(options, directory / "part.db", interrupted, [&](const TrialProgress& at) { interrupted = at.done == 1; });
+  EXPECT_EQ(SessionReader(directory / "part.db").trials().size(), 1u);
+  EXPECT_EQ(resumeManipulationSession({}, 200, directory / "part.db", kGoOn, {}).trials, 3u);
+  runManipulationSession(options, directory / "whole.db", kGoOn, {});
+  const SessionReader part(directory / "part.db"), whole(directory / "whole.db");
+  EXPECT_TRUE(part.complete());
+  ASSERT_EQ(part.trials().size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(part.trials()[i].trial, whole.trials()[i].trial);
+    EXPECT_EQ(part.trials()[i].duration, whole.trials()[i].duration);
+  }
+  EXPECT_EQ(part.events().size(), whole.events().size());
+  EXPECT_THROW(resumeManipulationSession({}, 200, directory / "part.db", kGoOn, {}), InputError);
+}
+
+// Killed at moments that the clock chooses; each time what had been reported as finished is there, and the session goes on.
+TEST(ManipulationSession, LosesNoFinishedTrialWhenKilled) {
+  const tests::TemporaryDirectory directory;
+  const std::string path = directory / "killed.db";
+  int reported[2];
+  ASSERT_EQ(pipe(reported), 0);
+  const pid_t child = fork();
+  if (child == 0) {
+    try {
+      runManipulationSession(quickSession(200), path, kGoOn, [&](const TrialProgress& at) {
+        const char done = static_cast<char>(at.done);
+        if (write(reported[1], &done, 1) != 1) _exit(1);
+      });
+    } catch (...) {
+    }
+    _exit(0);
+  }
+  close(reported[1]);
+  char done = 0;
+  for (int i = 0; i < 4; ++i) ASSERT_EQ(read(reported[0], &done, 1), 1);
+  kill(child, SIGKILL);
+  int status = 0;
+  waitpid(child, &status, 0);
+  while (read(reported[0], &done, 1) == 1) {
+  }
+  close(reported[0]);
+  const SessionReader session(path);
+  EXPECT_FALSE(session.complete());
+  EXPECT_GE(session.trials().size(), static_cast<std::size_t>(done));
+  EXPECT_GE(done, 3);
+}
+
+TEST(Replay, IsTheSameToTheBitAndNamesTheFirstDifference) {
+  const tests::TemporaryDirectory directory;
+  auto options = quickSession(2);
+  options.sample_rate = 1000;
+  runManipulationSession(options, directory / "s.db", kGoOn, {});
+  const ReplayResult same = replaySession(SessionReader(directory / "s.db"), {}, kGoOn);
+  EXPECT_FALSE(same.first) << same.first->what;
+  EXPECT_EQ(same.trials, 2);
+  EXPECT_GT(same.samples, 2000);
+  Database(directory / "s.db", Database::Mode::kWrite)
+      .run("UPDATE sample SET f1_gap_m = f1_gap_m + 1e-15 WHERE trial = 1 AND tick >= 1234");
+  const ReplayResult changed = replaySession(SessionReader(directory / "s.db"), {}, kGoOn);
+  ASSERT_TRUE(changed.first);
+  EXPECT_EQ(changed.first->trial, 1);
+  EXPECT_EQ(changed.first->tick, 1234);
+  EXPECT_NE(changed.first->what.find("f1_gap_m"), std::string::npos) << changed.first->what;
+}
+
+TEST(BidsExport, LaysOutOneTableWithASidecarPerPersonAndTask) {
+  const tests::TemporaryDirectory directory;
+  runManipulationSession(quickSession(1), directory / "s.db", kGoOn, {});
+  const auto paths = exportBids(SessionReader(directory / "s.db"), directory / "bids");
+  EXPECT_EQ(paths.size(), 5u);
+  EXPECT_TRUE(std::filesystem::exists(directory / "bids/sub-01/beh/sub-01_task-spherepickup_beh.tsv"));
+  EXPECT_TRUE(std::filesystem::exists(directory / "bids/sub-01/beh/sub-01_task-spherepickup_beh.json"));
+  EXPECT_TRUE(std::filesystem::exists(directory / "bids/dataset_description.json"));
+}
+
+}  // namespace
+}  // namespace pincer::tasks
