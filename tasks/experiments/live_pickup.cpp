@@ -9,7 +9,9 @@ namespace pincer::tasks {
 
 LivePickup::LivePickup(const SpherePickupOptions& options, const PickupObject& object, const PickupTrialSpec& spec, HandDevices& devices,
                        RecordSink& sink)
-    : trial_(options, object, spec, sink), hands_(trial_.scene(), devices) {}
+    : trial_(options, object, spec, sink), hands_(trial_.scene(), devices) {
+  trial_.keepPassive();
+}
 
 bool LivePickup::tick(double now) {
   if (cut_) trial_.cutForces(devices::Trip::kMissedDeadline);
