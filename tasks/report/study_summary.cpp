@@ -14,6 +14,7 @@
 namespace pincer::tasks {
 namespace {
 
+constexpr double kSettled = 0.62;  // share of right answers [-]
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 struct StudyKind {
@@ -138,9 +139,12 @@ std::string estimateText(const Estimate& e, double scale, int digits) {
   return fmt::format("{:.{}f} ± {:.{}f}", scale * e.mean, digits, scale * e.half_width, digits);
 }
 
+// A staircase that settles is answered right in 70.7 % of its trials and more; at chance it has only begun to rise from where it started.
+bool unsettled(const StudyCondition& c) { return c.averaged > 0 && c.right.n > 0 && c.right.mean < kSettled; }
+
 // Whether the published figure lies in pincer's interval; where not, how far off the mean is.
 std::string verdict(const StudyCondition& c) {
-  if (std::isnan(c.published) || c.headline.n < 2) return "–";
+  if (std::isnan(c.published) || c.headline.n < 2 || unsettled(c)) return "–";
   if (std::abs(c.headline.mean - c.published) <= c.headline.half_width) return "yes";
   return fmt::format("no, {:.2g} times", c.headline.mean / c.published);
 }
@@ -187,7 +191,7 @@ std::vector<std::string> studyTableHeads(const StudySummary& s) {
 std::vector<std::string> studyTableRow(const StudySummary& s, const StudyCondition& c) {
   const int digits = s.headline.unit == "ms" || s.headline.unit == "%" ? 1 : 2;
   return {c.name == c.label ? c.name : c.name + ": " + c.label,
-          estimateText(c.headline, s.headline.scale, digits),
+          (unsettled(c) ? "≥ " : "") + estimateText(c.headline, s.headline.scale, digits),
           std::isnan(c.published) ? "–" : fmt::format("{:.3g}", s.headline.scale * c.published),
           verdict(c),
           std::to_string(c.people.size()),
@@ -212,6 +216,11 @@ std::string studyNote(const StudySummary& s) {
   for (const StudyCondition& c : s.conditions) {
     unanswered += c.unanswered;
     for (const StudyPerson& person : c.people) lost += std::isnan(person.headline);
+  }
+  if (std::any_of(s.conditions.begin(), s.conditions.end(), unsettled)) {
+    note += fmt::format(
+        " ≥ marks conditions with fewer than {:.0f} % right answers: their staircases ended before they had risen to a threshold.",
+        100 * kSettled);
   }
   if (lost > 0) note += fmt::format(" {} staircases found no threshold and are left out.", lost);
   if (unanswered > 0) note += fmt::format(" {} trials ended without an answer.", unanswered);
