@@ -93,6 +93,7 @@ Figure staircaseFigure(const StudySummary& s, const std::vector<ResponseRecord>&
                   fmt::format("set multiplot layout {},{}\n", rows, columns);
   for (std::size_t k = 0; k < s.conditions.size(); ++k) {
     const StudyCondition& c = s.conditions[k];
+    if (c.trials == 0) continue;  // gnuplot refuses a plot of nothing
     figure.script += fmt::format("set title {} offset 0,-0.5\nset xlabel 'trial'\nset ylabel '{} [{}]'\n", gnuplotString(c.name), "level",
                                  s.headline.unit);
     figure.script += fmt::format(

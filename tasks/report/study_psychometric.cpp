@@ -75,6 +75,7 @@ Figure psychometricFigure(const StudySummary& s, const std::vector<ResponseRecor
   std::string panels, words;
   for (std::size_t k = 0; k < s.conditions.size(); ++k) {
     const std::vector<LevelCount> counts = countsOf(s.conditions[k], responses, axis);
+    if (counts.empty()) continue;  // gnuplot refuses a plot of nothing
     for (const LevelCount& c : counts)
       points.row(s.conditions[k].name, k, s.headline.scale * axis.level(c.level), static_cast<double>(c.right) / c.trials, c.trials);
     std::optional<PsychometricFit> fit;
