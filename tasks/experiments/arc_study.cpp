@@ -59,7 +59,7 @@ StaircaseRule delayRule() {
           .most_trials = 200};
 }
 
-std::shared_ptr<const contact::Curve> curve(const contact::Polyline& polyline, SurfaceVariant variant) {
+std::shared_ptr<const contact::Curve> sharedCurve(const contact::Polyline& polyline, SurfaceVariant variant) {
   return std::make_shared<const contact::Curve>(polyline, variant);
 }
 
@@ -209,8 +209,8 @@ ArcInterval ArcExperiment::intervalOf(const ArcCondition& condition, double leve
   const contact::Polyline polyline =
       condition.edge ? blade() : contact::arcPolygon(study_.arc_radius, turned ? level : study_.reference_turn, sweep);
   ArcInterval interval;
-  interval.shown.force = curve(polyline, turned ? condition.force : SurfaceVariant::smooth);
-  if (condition.tactile) interval.shown.tactile = curve(polyline, turned ? *condition.tactile : SurfaceVariant::smooth);
+  interval.shown.force = sharedCurve(polyline, turned ? condition.force : SurfaceVariant::smooth);
+  if (condition.tactile) interval.shown.tactile = sharedCurve(polyline, turned ? *condition.tactile : SurfaceVariant::smooth);
   interval.shown.largest_place = condition.travel_share * study_.tactor_reach;
   if (study_.quantity == ArcQuantity::kBacklash) interval.transmission.backlash = level;
   if (study_.quantity == ArcQuantity::kDelay) interval.transmission.delay = static_cast<int>(std::lround(1000 * level));

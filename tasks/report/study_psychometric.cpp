@@ -48,7 +48,7 @@ void addCurve(CsvTable& curve, const std::string& name, std::size_t k, const Psy
   curve.endRow();  // an empty line breaks gnuplot's
 }
 
-std::string panel(const StudySummary& s, std::size_t k, const std::optional<PsychometricFit>& fit, const LevelAxis& axis) {
+std::string levelPanel(const StudySummary& s, std::size_t k, const std::optional<PsychometricFit>& fit, const LevelAxis& axis) {
   std::string script = fmt::format("set title {} offset 0,-0.5\nset xlabel 'level [{}]'\nset ylabel 'right answers [-]'\n",
                                    gnuplotString(s.conditions[k].name), s.headline.unit);
   script +=
@@ -88,7 +88,7 @@ Figure psychometricFigure(const StudySummary& s, const std::vector<ResponseRecor
       words += fmt::format("{}{}: {:.3g} [{:.3g}, {:.3g}]", words.empty() ? "" : "; ", s.conditions[k].name, shown(fit->threshold),
                            shown(fit->interval.low), shown(fit->interval.high));
     }
-    panels += panel(s, k, fit, axis);
+    panels += levelPanel(s, k, fit, axis);
   }
   figure.name = "psychometric";
   figure.title = "Psychometric functions";

@@ -15,7 +15,7 @@ namespace pincer::tasks {
 namespace {
 
 constexpr double kSettled = 0.62;  // share of right answers [-]
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoFigure = std::numeric_limits<double>::quiet_NaN();
 
 struct StudyKind {
   const char *task, *name, *unit;
@@ -45,7 +45,7 @@ std::vector<StudyCondition> conditionsOf(const JsonValue& study, const std::vect
       const JsonValue* rule = c.find("staircase");
       conditions.push_back({c.at("name").text(),
                             c.at("label").text(),
-                            numberOr(c, "published", kUnknown),
+                            numberOr(c, "published", kNoFigure),
                             rule ? static_cast<int>(numberOr(*rule, "averaged", 0)) : 0,
                             0,
                             0,
@@ -64,7 +64,7 @@ std::vector<StudyCondition> conditionsOf(const JsonValue& study, const std::vect
     if (known) continue;
     StudyCondition condition;
     condition.name = condition.label = r.condition;
-    condition.published = numberOr(study, "published_error", kUnknown);
+    condition.published = numberOr(study, "published_error", kNoFigure);
     conditions.push_back(std::move(condition));
   }
   return conditions;
@@ -81,7 +81,7 @@ double meanOf(const std::vector<const ResponseRecord*>& trials, double (*of)(con
     sum += value;
     ++n;
   }
-  return n > 0 ? sum / n : kUnknown;
+  return n > 0 ? sum / n : kNoFigure;
 }
 
 Estimate overPeople(const People& people, double (*of)(const ResponseRecord&)) {
@@ -97,7 +97,7 @@ double thresholdOf(const std::vector<const ResponseRecord*>& trials, int average
   std::vector<double> reversals;
   for (const ResponseRecord* r : trials)
     if (r->reversal) reversals.push_back(r->level);
-  if (static_cast<int>(reversals.size()) < averaged) return kUnknown;
+  if (static_cast<int>(reversals.size()) < averaged) return kNoFigure;
   double sum = 0;
   for (auto level = reversals.end() - averaged; level != reversals.end(); ++level) sum += *level;
   return sum / averaged;
@@ -143,15 +143,15 @@ std::string estimateText(const Estimate& e, double scale, int digits) {
 bool unsettled(const StudyCondition& c) { return c.averaged > 0 && c.right.n > 0 && c.right.mean < kSettled; }
 
 // Whether the published figure lies in pincer's interval; where not, how far off the mean is.
-std::string verdict(const StudyCondition& c) {
+std::string followsText(const StudyCondition& c) {
   if (std::isnan(c.published) || c.headline.n < 2 || unsettled(c)) return "–";
   if (std::abs(c.headline.mean - c.published) <= c.headline.half_width) return "yes";
   return fmt::format("no, {:.2g} times", c.headline.mean / c.published);
 }
 
 void estimateJson(JsonWriter& json, const char* key, const Estimate& e) {
-  json.key(key).beginObject().key("n").value(e.n).key("mean").value(e.n > 0 ? e.mean : kUnknown);
-  json.key("ci95_half_width").value(e.n > 1 ? e.half_width : kUnknown).endObject();
+  json.key(key).beginObject().key("n").value(e.n).key("mean").value(e.n > 0 ? e.mean : kNoFigure);
+  json.key("ci95_half_width").value(e.n > 1 ? e.half_width : kNoFigure).endObject();
 }
 
 // Characters, not bytes: units and dashes aren't ASCII.
@@ -193,7 +193,7 @@ std::vector<std::string> studyTableRow(const StudySummary& s, const StudyConditi
   return {c.name == c.label ? c.name : c.name + ": " + c.label,
           (unsettled(c) ? "≥ " : "") + estimateText(c.headline, s.headline.scale, digits),
           std::isnan(c.published) ? "–" : fmt::format("{:.3g}", s.headline.scale * c.published),
-          verdict(c),
+          followsText(c),
           std::to_string(c.people.size()),
           std::to_string(c.trials),
           estimateText(c.right, 100, 1),
