@@ -11,9 +11,12 @@ namespace {
 
 constexpr double kDone = 1e-8;         // of the surface's length: a residual that needs no further step
 constexpr double kNear = 4e-5;         // of it: a residual from which Newton's next step, squaring it, need not be looked at again
+constexpr double kAlong = 1e-9;        // of a step: what leads so little across an edge leads along it
 constexpr int kMaxSteps = 20;          // within faces
 constexpr int kMaxCrossings = 200;     // of edges, at most one per step of a walk over fine triangles
 constexpr int kMaxFeatureVisits = 12;  // of edges and of vertices, each
+
+double longest(const std::array<double, 3>& db) { return std::max({std::abs(db[0]), std::abs(db[1]), std::abs(db[2])}); }
 
 // The last step, if it stays within the face: its end is so near that the patch is as good as linear.
 bool finish(const PatchPoint& x, const FaceStep& step, const Vec3& C, ShellContact& contact) {
@@ -126,7 +129,7 @@ void ShellWalk::move(const std::array<double, 3>& db) {
   int leaving = -1;  // the coordinate that reaches 0 first
   for (int i = 0; i < 3; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    if (foot_.b[k] + db[k] >= 0) continue;
+    if (foot_.b[k] + db[k] >= 0 || db[k] >= -kAlong * longest(db)) continue;
     const double until = foot_.b[k] / -db[k];
     if (until >= part) continue;
     part = until;
@@ -212,7 +215,8 @@ bool ShellWalk::leaveVertexIntoFace(const CellCorner& at) {
     const auto c = static_cast<std::size_t>(face.corner);
     foot.b[c] = 1;
     const FaceStep step = faceStep(evaluate(net_.cell(face.triangle, cache_).patch, foot.b[1], foot.b[2]), C_, StepKind::alongResidual);
-    if (step.db[(c + 1) % 3] < 0 || step.db[(c + 2) % 3] < 0 || step.residual <= largest) return;
+    const double least = -kAlong * longest(step.db);
+    if (step.db[(c + 1) % 3] < least || step.db[(c + 2) % 3] < least || step.residual <= largest) return;
     largest = step.residual;
     best = foot;
   });

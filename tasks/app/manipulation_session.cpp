@@ -12,10 +12,10 @@
 namespace pincer::tasks {
 namespace {
 
-class SessionSink final : public RecordSink {
+class StudySessionSink final : public RecordSink {
  public:
   // Keeps every `stride`-th tick.
-  SessionSink(SessionWriter& writer, std::int64_t stride) : writer_(writer), stride_(stride) {}
+  StudySessionSink(SessionWriter& writer, std::int64_t stride) : writer_(writer), stride_(stride) {}
   bool wantsSample(std::int64_t tick) const override { return tick % stride_ == 0; }
   void sample(const SampleRecord& sample) override { writer_.pushSample(sample); }  // a lost one is counted by the store
   void event(const EventRecord& event) override { writer_.addEvent(event); }
@@ -54,7 +54,7 @@ SessionInfo sessionInfo(const ManipulationSessionOptions& o) {
 
 ManipulationSessionResult runInto(SessionWriter& writer, const ManipulationSessionOptions& options, StudyHooks hooks,
                                   const std::atomic<bool>& interrupted) {
-  SessionSink sink(writer, std::lround(options.servo.rate) / options.sample_rate);
+  StudySessionSink sink(writer, std::lround(options.servo.rate) / options.sample_rate);
   ManipulationSessionResult result;
   hooks.host = options.host;
   hooks.served = [&](const ServoReport& trial) { result.servo.add(trial); };

@@ -89,13 +89,13 @@ ManipulationSessionOptions optionsOf(const ManipulationArguments& arguments) {
   return options;
 }
 
-std::int64_t faultsIn(const SessionSummary& summary) {
+std::int64_t faultsOfStudy(const SessionSummary& summary) {
   std::int64_t faults = 0;
   for (const CellSummary& cell : summary.cells) faults += cell.allFrictions() ? cell.faults : 0;
   return faults;
 }
 
-int show(const ManipulationArguments& arguments, const std::string& directory, const ManipulationSessionResult& result) {
+int showStudy(const ManipulationArguments& arguments, const std::string& directory, const ManipulationSessionResult& result) {
   const SessionReader session(directory + "/session.db");
   const SessionSummary summary = summariseSession(session);
   fmt::print("{}\n", arguments.run.json ? summaryJson(summary) : formatTable(summary));
@@ -113,7 +113,7 @@ int show(const ManipulationArguments& arguments, const std::string& directory, c
     return kExitInterrupted;
   }
   if (arguments.run.report) say(fmt::format("Report: {}", writeReport(session, directory + "/report.html").html));
-  const std::int64_t faults = faultsIn(summary);
+  const std::int64_t faults = faultsOfStudy(summary);
   if (faults > 0) say(fmt::format("Trials that ended in a fault: {}; their events say why: pincer export {}", faults, session.path()));
   return faults > 0 ? kExitCheckFailed : kExitOk;
 }
@@ -135,7 +135,7 @@ Stage setStage(const ManipulationArguments& arguments, ManipulationSessionOption
   if (stage.window) options.host = stage.window->host();
   if (choice != "sim") options.devices = choice;
   if (stage.devices) {
-    options.host.hands = [devices = stage.devices.get()](const HandTrial& trial) { return std::make_unique<LiveHands>(trial, *devices); };
+    options.host.hands = [devices = stage.devices.get()](HandTrial& trial) { return std::make_unique<LiveHands>(trial, *devices); };
     options.host.arm = [asked = arguments.devices](const std::string& why) { return operatorArms(asked, why); };
   }
   return stage;
@@ -150,7 +150,7 @@ int runManipulation(const ManipulationArguments& arguments) {
   };
   const auto finish = [&](const std::string& directory, const ManipulationSessionResult& result) {
     line.reset();
-    return show(arguments, directory, result);
+    return showStudy(arguments, directory, result);
   };
   if (arguments.resume) {
     if (arguments.run.out.empty()) throw InputError("run: --resume needs --out DIR, the directory of the session to go on with.");

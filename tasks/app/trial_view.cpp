@@ -84,7 +84,7 @@ class WindowStage final : public TrialStage {
   TrialHost host() override {
     TrialHost host;
     if (mouse_) {
-      host.hands = [this](const HandTrial& trial) {
+      host.hands = [this](HandTrial& trial) {
         auto hands = std::make_unique<MouseHands>(trial.scene());
         hand_ = &hands->hand();
         return hands;

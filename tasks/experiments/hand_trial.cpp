@@ -149,6 +149,11 @@ void HandTrial::parkTactors() {
   for (FingerMount& mount : scene_.model.mounts) mount.display_tactile = false;
 }
 
+void HandTrial::keepPassive() {
+  scene_.model.passivity.on = true;
+  state_.passivity = grasp::PassivityState(scene_.model.mounts.size());
+}
+
 void HandTrial::cutForces(devices::Trip cause) {
   for (MountState& mount : state_.mounts) devices::trip(mount.gate, cause);
   for (FingerOutputs& output : scratch_.outputs) output.f_D.setZero();

@@ -45,6 +45,8 @@ class HandTrial {
   void parkTactors();
   // Zero force, latched.
   void cutForces(devices::Trip cause);
+  // Passivity at the fingers from now on (grasp/passivity): for arms with motors.
+  void keepPassive();
   // Hands events, readings and the trial's row to the sink. Once, after the last step.
   void finish();
 

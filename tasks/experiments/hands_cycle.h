@@ -38,7 +38,7 @@ class HandsCycle final : public ServoCycle {
 
 // Somebody who watches, or whose hands do the trials. Empty functions: nobody does, and simulated participants do them.
 struct TrialHost {
-  std::function<std::unique_ptr<Hands>(const HandTrial& trial)> hands;
+  std::function<std::unique_ptr<Hands>(HandTrial& trial)> hands;
   std::function<ServoReport(HandsCycle& cycle, std::size_t trial, std::size_t trials)> serve;
   // Asks the operator whether forces may come on: before the first trial, and before the one after a fault. False ends the session.
   std::function<bool(const std::string& why)> arm;

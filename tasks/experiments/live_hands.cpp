@@ -6,8 +6,9 @@
 
 namespace pincer::tasks {
 
-LiveHands::LiveHands(const HandTrial& trial, HandDevices& devices)
+LiveHands::LiveHands(HandTrial& trial, HandDevices& devices)
     : trial_(trial), devices_(devices), q_DF_(trial.scene().q_DF.begin(), trial.scene().q_DF.end()), samples_(kHandFingers) {
+  trial.keepPassive();
   const HandScene& scene = trial.scene();
   for (int i = 0; i < kHandFingers; ++i) {
     const Pose& X_WD = scene.model.mounts[static_cast<std::size_t>(i)].X_WD;

@@ -12,8 +12,8 @@ namespace pincer::tasks {
 
 class LiveHands final : public Hands {
  public:
-  // Both must outlive it. Arms the devices: only after the operator said so.
-  LiveHands(const HandTrial& trial, HandDevices& devices);
+  // Both must outlive it. Arms the devices, only after the operator said so, and has the trial keep their user's fingers passive (grasp/passivity).
+  LiveHands(HandTrial& trial, HandDevices& devices);
   ~LiveHands() override;  // zero force
   LiveHands(const LiveHands&) = delete;
   LiveHands& operator=(const LiveHands&) = delete;

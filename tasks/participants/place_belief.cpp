@@ -11,9 +11,9 @@ constexpr double kAngleSoftness = 0.1;    // [rad]
 constexpr double kGripSoftness = 0.15;    // [-]
 constexpr double kCopyOffsetSd = 0.5e-3;  // noise on a copied hypothesis [m]
 constexpr int kCandidates = 8;            // shifts that are weighed besides the mean
-constexpr double kLeast = 0.02;           // of the chance that a model of the world is simply wrong
+constexpr double kLeastChance = 0.02;     // of the chance that a model of the world is simply wrong
 
-double normalCdf(double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); }
+double gaussianShare(double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); }
 
 }  // namespace
 
@@ -31,9 +31,9 @@ void PlaceBelief::begin(const PlaceModel& model, Random& random) {
 
 double PlaceBelief::holds(const Hypothesis& h, const Vec2& shift, double grip) const {
   const double tilt = std::asin(std::min((h.o - shift).norm() / model_.lever, 1.0));
-  const double opposed = normalCdf((std::atan(h.mu) - tilt) / kAngleSoftness);
-  const double firm = normalCdf((2 * h.mu * grip / model_.weight - 1) / kGripSoftness);
-  return std::clamp(opposed * firm, kLeast, 1 - kLeast);
+  const double opposed = gaussianShare((std::atan(h.mu) - tilt) / kAngleSoftness);
+  const double firm = gaussianShare((2 * h.mu * grip / model_.weight - 1) / kGripSoftness);
+  return std::clamp(opposed * firm, kLeastChance, 1 - kLeastChance);
 }
 
 double PlaceBelief::holds(const Vec2& shift, double grip) const {

@@ -62,7 +62,7 @@ std::vector<Record> stressClass(StressClass kind, const StressOptions& options, 
   constexpr int kThreadsEvery = 20;
   std::vector<Record> failures;
   std::vector<double> tick_times, capped_times, untimed;
-  int ticks = 0, flagged = 0, differing = 0;
+  int ticks = 0, flagged = 0, differing = 0, capped = 0, capped_failed = 0;
   const auto note = [&failures](const std::string& fault) {
     constexpr std::size_t kShown = 8;
     if (!fault.empty() && failures.size() < kShown)
@@ -79,7 +79,8 @@ std::vector<Record> stressClass(StressClass kind, const StressOptions& options, 
     if (i % kThreadsEvery == 0) differing += runWorld(kind, seed, 2, 0, untimed).hash != result.hash;
     note(result.fault);
     if (i % kCappedEvery != 0) continue;
-    if (std::string fault = runWorld(kind, seed, 1, kCap, capped_times).fault; !fault.empty()) note("capped: " + fault);
+    ++capped;
+    capped_failed += !runWorld(kind, seed, 1, kCap, capped_times).fault.empty();
   }
   double failed = 0;
   for (const Record& record : failures) failed += record.value;
@@ -88,6 +89,7 @@ std::vector<Record> stressClass(StressClass kind, const StressOptions& options, 
                                  unbounded("flagged ticks", ticks > 0 ? 100.0 * flagged / ticks : 0, "%")};
   for (const auto& [name, q] : {std::pair("median", 0.5), std::pair("p99", 0.99), std::pair("p99.9", 0.999), std::pair("longest", 1.0)})
     records.push_back(unbounded(fmt::format("tick, {}", name), quantileOf(tick_times, q), "us"));
+  records.push_back(unbounded(fmt::format("failures in {} worlds capped at {:.0f} us", capped, 1e6 * kCap), capped_failed, "-"));
   for (const auto& [name, q] : {std::pair("p99.9", 0.999), std::pair("longest", 1.0)})
     records.push_back(unbounded(fmt::format("tick, {}, capped at {:.0f} us", name, 1e6 * kCap), quantileOf(capped_times, q), "us"));
   records.insert(records.end(), failures.begin(), failures.end());

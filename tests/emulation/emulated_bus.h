@@ -2,6 +2,7 @@
 // tells of plugs; usbfs_interpose answers for their nodes in /dev.
 #pragma once
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <string>
 #include <thread>
@@ -34,7 +35,8 @@ class EmulatedBus {
 
   // All devices' time; in steps of the caller's, or as the wall clock goes, every millisecond.
   void advance(double dt);
-  void runInRealTime();
+  // `each`: called after every step.
+  void runInRealTime(std::function<void()> each = {});
   void stopRealTime();
 
  private:

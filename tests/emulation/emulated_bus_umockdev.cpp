@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <stdexcept>
+#include <utility>
 
 #include "tests/emulation/emulated_bus.h"
 #include "tests/emulation/usbfs_interpose.h"
@@ -100,9 +101,9 @@ void EmulatedBus::advance(double dt) {
   }
 }
 
-void EmulatedBus::runInRealTime() {
+void EmulatedBus::runInRealTime(std::function<void()> each) {
   running_ = true;
-  thread_ = std::thread([this] {
+  thread_ = std::thread([this, each = std::move(each)] {
     const sched_param priority{.sched_priority = 81};  // a device doesn't wait for this computer, if that is permitted
     pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority);
     using Time = std::chrono::steady_clock;
@@ -114,6 +115,7 @@ void EmulatedBus::runInRealTime() {
       due = std::max(due, now - std::chrono::milliseconds(5));
       advance(std::chrono::duration<double>(now - last).count());
       last = now;
+      if (each) each();
     }
   });
 }

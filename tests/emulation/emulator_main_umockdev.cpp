@@ -6,6 +6,7 @@
 // --unplug: pulls the first arm out after so many seconds and plugs it in again half a second later.
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sched.h>
 #include <sys/ioctl.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -123,7 +124,7 @@ class Emulator {
     for (int i = 0; i < options.displays; ++i) displays_.push_back(std::make_shared<DisplayFirmware>(fmt::format("CLD{}", i + 1)));
     for (const auto& arm : arms_) ports_.push_back(newPort(arm));
     for (const auto& display : displays_) ports_.push_back(newPort(display));
-    for (const auto& port : ports_) plug(*port);
+    for (const auto& port : ports_) plug(*port, false);
     if (options.hand && options.arms == 2 && options.displays == 2) hand_ = std::make_unique<EmulatedHand>(arms_, displays_);
   }
   ~Emulator() {
@@ -157,7 +158,7 @@ class Emulator {
     umockdev_testbed_remove_device(testbed_, ("/sys" + port.path).c_str());
     umockdev_testbed_detach_ioctl(testbed_, port.node.c_str(), nullptr);
   }
-  void plugAgain(std::size_t i) { plug(*ports_[i]); }
+  void plugAgain(std::size_t i) { plug(*ports_[i], true); }
 
  private:
   std::unique_ptr<Port> newPort(std::shared_ptr<Firmware> firmware) {
@@ -166,7 +167,8 @@ class Emulator {
     port->path = fmt::format("/devices/pci0000:00/0000:00:14.0/usb1/1-{}", ports_.size() + 1);
     return port;
   }
-  void plug(Port& port) {
+  // `tells`: somebody is listening for plugs.
+  void plug(Port& port, bool tells) {
     const int address = next_address_++;
     port.node = fmt::format("/dev/bus/usb/001/{:03}", address);
     {
@@ -184,7 +186,7 @@ class Emulator {
         port.path, address, address, address, address, kDescriptors);
     require(umockdev_testbed_add_from_string(testbed_, description.c_str(), nullptr) != 0, "device");
     makeFifo(port);
-    umockdev_testbed_uevent(testbed_, ("/sys" + port.path).c_str(), "add");
+    if (tells) umockdev_testbed_uevent(testbed_, ("/sys" + port.path).c_str(), "add");
   }
   void makeFifo(Port& port) {
     g_autofree char* root = umockdev_testbed_get_root_dir(testbed_);
@@ -245,9 +247,13 @@ int run(int argc, char** argv) {
     fmt::print(stderr, "device_emulator [--arms N] [--displays N] [--hand] [--unplug SECONDS] PROGRAM ARGUMENTS...\n");
     return 2;
   }
+  // A device doesn't wait for this computer: its threads go first, if that is permitted.
+  const sched_param first{.sched_priority = 82}, usual{.sched_priority = 0};
+  sched_setscheduler(0, SCHED_FIFO, &first);
   Emulator emulator(options);
   const pid_t child = fork();
   if (child == 0) {
+    sched_setscheduler(0, SCHED_OTHER, &usual);
     setenv("LD_PRELOAD", "libumockdev-preload.so.0", 1);
     execvp(options.program[0], options.program);
     _exit(127);

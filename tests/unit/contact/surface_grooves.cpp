@@ -220,6 +220,25 @@ TEST(SurfaceGrooves, WhatIsSkippedWouldHaveFoundNothing) {
   }
 }
 
+// Around a torus' tube in the plane of a row of edges: where the tube turns from convex to saddle the walk once stayed at a vertex of that
+// row, for each face beside it saw the way out, along the edge between them, by round-off in the other.
+TEST(SurfaceGrooves, AWayAlongARowOfEdgesIsFollowedThroughASaddle) {
+  constexpr double kTube = 0.012, kDepth = 0.002;
+  Tip tip(torus(0.03, kTube, 24, 12));
+  double longest_step = 0;
+  Vec3 last = Vec3::Zero();
+  for (int i = 0; i < 1200; ++i) {
+    const double a = 0.0056 * i;
+    const SurfaceContacts found = tip.at(Vec3(0.03, 0, 0) + (kTube + kFinger - kDepth) * Vec3(std::cos(a), 0, std::sin(a)));
+    ASSERT_EQ(found.count, 1) << i;
+    ASSERT_EQ(tip.tracker.status, 0u) << i;
+    ASSERT_NEAR(found.main().phi, -kDepth, 3e-5) << i;  // segments of 30 degrees leave the torus by 20 um
+    if (i > 0) longest_step = std::max(longest_step, (found.main().p_BS - last).norm());
+    last = found.main().p_BS;
+  }
+  EXPECT_LT(longest_step, 1.2 * 0.0056 * kTube);
+}
+
 // More places than a query tries, twice in one query: the inside of a coarse bowl whose contact has been lost. It once wrote past its list.
 TEST(SurfaceGrooves, ManyMinimaAtOnceAreNoHarm) {
   TriangleMesh bowl = noisy(geodesicSphere(0.0081, 12), 1e-4, 3);
