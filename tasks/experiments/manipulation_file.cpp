@@ -18,7 +18,7 @@ constexpr std::array<std::string_view, 2> kConditionNames = {"force", "cld+force
 constexpr std::array<std::string_view, 2> kTaskNames = {"sphere-pickup", "cylinder-alignment"};
 constexpr std::array<std::string_view, 2> kStrategyNames = {"rational", "simple"};
 constexpr std::array<std::string_view, 10> kManipulationKeys = {
-    "version", "participants", "seed", "conditions", "tasks", "training", "sphere_pickup", "cylinder_alignment", "people"};
+    "version", "participants", "seed", "conditions", "tasks", "training", "sphere_pickup", "cylinder_alignment", "people", "frozen_tactor"};
 
 // visit(key, value, what it means): numbers, whole numbers and truths. Ranges are checked by validate().
 template <class Options, class Visit>

@@ -57,6 +57,9 @@ const std::vector<Shorter> kShorter = {
     {std::regex("^(pincer run findings.*)$"), "$1 --help"},
     {std::regex("^(pincer run (smoothness|shape|repeated|backlash|delay)-.*)$"), "$1 --print-study"},
     {std::regex("^(pincer run .*)--participants [0-9]+(.*)$"), "$1--participants 1$2"},
+    {std::regex("^(pincer run (manipulation|[a-z]+-(discrimination|identification|localisation|alignment)|sphere-pickup)( "
+                "--(seed|out|participants).*)?)$"),
+     "$1 --help"},
 };
 
 std::string shortened(std::string command) {
