@@ -36,7 +36,7 @@ struct SolverOptions {
   double budget = 0;
 };
 
-// Multiplications in a second, of iterations as they are counted (contact_equations.h); measured by `pincer bench engine --only solve`.
+// Multiplications in a second, of iterations as they are counted (contact_equations.h); an estimate for the machine of the README, not measured by a command yet.
 constexpr double kOperationsPerSecond = 1e9;
 constexpr std::int64_t kNoLimit = std::numeric_limits<std::int64_t>::max() / 2;
 

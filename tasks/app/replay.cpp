@@ -22,7 +22,8 @@ std::vector<std::pair<std::string, std::string>> comparable(const Record& record
     const std::string column = name.text();
     if (column == "tick_us" || column == "tick_median_us" || column == "tick_p999_us") return;
     if constexpr (std::is_floating_point_v<Field>) {
-      values.emplace_back(column, field != field ? std::string("nan") : fmt::format("{}", field));
+      values.emplace_back(column,
+                          field != field ? std::string("nan") : fmt::format("{}", field + 0));  // the store has one zero, -0 + 0 as well
     } else {
       values.emplace_back(column, fmt::format("{}", field));
     }

@@ -51,7 +51,8 @@ struct Shorter {
   std::string instead;
 };
 const std::vector<Shorter> kShorter = {
-    {std::regex("^(pincer bench .*) --peers"), "$1"},  // other engines aren't built in
+    {std::regex("^(pincer .*--view.*)$"), "$1 --help"},  // there may be no display
+    {std::regex("^(pincer bench .*) --peers"), "$1"},    // other engines aren't built in
     {std::regex("^(pincer (bench|verify|stress)( .*)?)$"), "$1 --list"},
     {std::regex("^(pincer run sphere-pickup --object .*)$"), "$1 --repetitions 1 --friction 0.9 --condition cld+force"},
     {std::regex("^(pincer run findings.*)$"), "$1 --help"},
