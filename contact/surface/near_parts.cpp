@@ -28,7 +28,7 @@ bool isAlongAny(const FacingTest& cone, const SurfaceLook& look) {
   return std::any_of(look.n.begin(), look.n.end(), [&](const Vec3& n) { return cone.isAround(n, kHalfApart, kSine); });
 }
 
-// Where too many parts matter at once (near the middle of a bowl): those where the flat mesh is nearest among its neighbours, for now only.
+// Where too many parts matter at once (near the middle of a bowl): those where the flat mesh is nearest among its neighbours, vouched for at this place alone.
 void keepMinima(const SurfaceNet& net, const SurfaceSearch& search, NearParts& found) {
   found.look.horizon = 0;
   search.visitParts(
