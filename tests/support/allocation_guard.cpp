@@ -3,18 +3,9 @@
 #include <cerrno>
 #include <cstddef>
 
-// gcc says that it sanitizes by a macro, clang by a feature.
-#if defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define PINCER_IS_SANITIZED
-#endif
-#endif
+#include "tests/support/effort.h"
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || defined(PINCER_IS_SANITIZED)
-#define PINCER_COUNTS_ALLOCATIONS 0
-#else
-#define PINCER_COUNTS_ALLOCATIONS 1
-#endif
+#define PINCER_COUNTS_ALLOCATIONS !PINCER_SANITIZED
 
 namespace pincer::tests {
 namespace {

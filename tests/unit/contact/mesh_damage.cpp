@@ -1,15 +1,15 @@
 // Damaged files of every format: each is refused with an InputError that names the file, or is a valid mesh; nothing else may happen.
-// A few thousand per format; with PINCER_LONG_TESTS set, 100 000.
+// A few thousand per format; with PINCER_LONG_TESTS set, a hundred thousand.
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <cstring>
 
 #include "contact/mesh/generated_meshes.h"
 #include "contact/mesh/mesh_reader.h"
 #include "contact/mesh/mesh_report.h"
 #include "contact/mesh/mesh_writer.h"
+#include "tests/support/effort.h"
 #include "tests/support/random_numbers.h"
 
 namespace pincer::contact {
@@ -137,7 +137,7 @@ void expectValid(const TriangleMesh& mesh, std::size_t bytes, bool may_be_degene
   if (in_range && distinct) inspect(mesh);
 }
 
-int budget() { return std::getenv("PINCER_LONG_TESTS") ? 100'000 : 3'000; }
+int budget() { return tests::draws(3'000, 33); }
 
 TEST(MeshDamage, IsRefusedByNameOrHarmless) {
   for (const Sound& sound : soundFiles()) {

@@ -13,6 +13,7 @@
 #include "contact/shape/separation.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/constants.h"
+#include "tests/support/effort.h"
 #include "tests/support/pairs.h"
 #include "tests/support/random_numbers.h"
 #include "tests/support/random_poses.h"
@@ -59,7 +60,7 @@ TEST(ConvexPairs, ApartTheGapIsTheDistanceOfTheSurfaces) {
   for (const NamedShape& a : solids()) {
     const SampledSurface surface(a.shape);
     for (const NamedShape& b : solids()) {
-      for (int i = 0; i < 3; ++i) {
+      for (int i = 0; i < tests::draws(3); ++i) {
         const Pose X_BA = around(random, a.shape, b.shape, random.uniform(0.0005, 0.01));
         const double oracle = surface.minimum([&](const Vec3& p_A) { return nearest(b.shape, X_BA * p_A); });
         // The oracle zooms into one basin per patch; the slack is for the rare corner between two.

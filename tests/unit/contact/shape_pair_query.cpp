@@ -10,6 +10,7 @@
 #include "contact/shape/finger_query.h"
 #include "contact/shape/pair_query.h"
 #include "tests/support/constants.h"
+#include "tests/support/effort.h"
 #include "tests/support/pairs.h"
 #include "tests/support/sampled_surface.h"
 
@@ -58,7 +59,7 @@ TEST(PairQuery, DeepestPointIsTheOracles) {
   for (const NamedShape& support : supports()) {
     for (const NamedShape& solid : sampleConvexSolids()) {
       const SampledSurface surface(solid.shape);
-      for (int i = 0; i < 40; ++i) {
+      for (int i = 0; i < tests::draws(40); ++i) {
         const Pose X_BA = nearSupport(random);
         const double oracle = surface.minimum([&](const Vec3& p_A) { return gapOn(support.shape, X_BA * p_A); });
         const PairPoints points = collide(solid.shape, X_BA, support.shape, Pose{});

@@ -9,6 +9,7 @@
 #include "contact/mesh/generated_meshes.h"
 #include "contact/surface/smooth_mesh.h"
 #include "tests/support/constants.h"
+#include "tests/support/effort.h"
 #include "tests/support/notched_blocks.h"
 #include "tests/support/random_numbers.h"
 
@@ -245,7 +246,7 @@ TEST(SurfaceGrooves, ManyMinimaAtOnceAreNoHarm) {
   for (auto& t : bowl.triangles) std::swap(t[1], t[2]);
   Tip tip(bowl);
   RandomNumbers random(2);
-  for (int i = 0; i < 3000; ++i) {
+  for (int i = 0; i < tests::draws(3000); ++i) {
     const SurfaceContacts contacts = tip.at(2e-4 * Vec3{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)});
     ASSERT_GE(contacts.count, 1);
     ASSERT_TRUE(pushOf(contacts).allFinite());

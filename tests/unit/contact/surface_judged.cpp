@@ -1,11 +1,10 @@
 // Every answer of the query judged by brute force (tests/support/shell_oracle.h), on tame meshes and on hostile ones.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-
 #include "contact/mesh/generated_meshes.h"
 #include "contact/surface/smooth_mesh.h"
 #include "tests/support/constants.h"
+#include "tests/support/effort.h"
 #include "tests/support/random_numbers.h"
 #include "tests/support/random_poses.h"
 #include "tests/support/shell_oracle.h"
@@ -18,7 +17,7 @@ using tests::kFinger;
 using tests::RandomNumbers;
 using tests::ShellOracle;
 
-int budget(int queries) { return std::getenv("PINCER_LONG_TESTS") ? 50 * queries : queries; }
+int budget(int queries) { return tests::draws(queries, 50); }
 
 struct Verdicts {
   int queries = 0, held = 0, wrong = 0;

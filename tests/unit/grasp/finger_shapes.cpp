@@ -10,6 +10,7 @@
 #include "contact/shape/polytope.h"
 #include "contact/surface/smooth_mesh.h"
 #include "tests/support/constants.h"
+#include "tests/support/effort.h"
 #include "tests/support/error_of.h"
 #include "tests/support/random_poses.h"
 #include "tests/support/worlds.h"
@@ -108,7 +109,7 @@ TEST(FingerShape, TouchesWhereBruteForceFindsIt) {
   int queries = 0, count = 0;
   for (const FingerShape& finger : allTips()) {
     for (const Shape& shape : smoothBodies()) {
-      for (int i = 0; i < 4; ++i) {
+      for (int i = 0; i < tests::draws(4); ++i) {
         const bool plane = std::holds_alternative<HalfSpace>(shape);
         const Vec3 d = plane ? Vec3::UnitZ() : tests::direction(random);
         Pose X_BF{tests::rotation(random), (plane ? 0.012 : 0.045) * d};

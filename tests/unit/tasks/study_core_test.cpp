@@ -6,6 +6,7 @@
 #include "tasks/bench/study_bench.h"
 #include "tasks/study/counterbalance.h"
 #include "tasks/study/known_observer.h"
+#include "tests/support/effort.h"
 
 namespace pincer::tasks {
 namespace {
@@ -103,7 +104,7 @@ TEST(StudyBench, KeepsItsPromises) {
 }
 
 TEST(StudyBench, IntervalsHoldTheThresholdAsOftenAsTheySay) {
-  const int observers = std::getenv("PINCER_LONG_TESTS") ? 2000 : 200;
+  const int observers = tests::draws(200, 10);
   for (const Measurement& m : studyMeasurements({.observers = observers})) {
     if (m.name != "constant-stimuli/logistic") continue;
     MeasureContext context;
