@@ -5,17 +5,15 @@
 
 #include "tests/support/effort.h"
 
-#define PINCER_COUNTS_ALLOCATIONS !PINCER_SANITIZED
-
 namespace pincer::tests {
 namespace {
 thread_local std::int64_t count = 0;
 }
 
 std::int64_t allocationCount() { return count; }
-bool allocationsAreCounted() { return PINCER_COUNTS_ALLOCATIONS != 0; }
+bool allocationsAreCounted() { return !PINCER_SANITIZED; }
 
-#if PINCER_COUNTS_ALLOCATIONS
+#if !PINCER_SANITIZED
 namespace {
 void countOne() { ++count; }
 }  // namespace
