@@ -61,6 +61,7 @@ void forEachParameter(Model& m, Visit&& visit) {
   visit("pickup_random_shift_sd", p.random_shift_sd, 0.0, 0.05, "m");
   visit("pickup_search_shift_sd", p.search_shift_sd, 0.0, 0.05, "m");
   visit("pickup_farthest_shift", p.farthest_shift, 0.0, 0.05, "m");
+  visit("pickup_object_rolls_sd", p.object_rolls_sd, 0.0, 0.05, "m");
   visit("pickup_expected_mu", p.expected_mu, 0.05, 5.0, "");
   visit("pickup_grip_safety", p.grip_safety, 0.5, 10.0, "");
   visit("pickup_grip_growth", p.grip_growth, 1.0, 3.0, "");

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "tasks/participants/weighing.h"
+
 namespace pincer::tasks {
 namespace {
 
@@ -64,28 +66,8 @@ Vec2 PlaceBelief::bestShift(double grip, double farthest, Random& random) const 
 template <class LogLikelihood>
 void PlaceBelief::update(LogLikelihood logLikelihood, Random& random) {
   for (std::size_t k = 0; k < kHypotheses; ++k) logs_[k] = logLikelihood(hypotheses_[k]);
-  const double best = *std::max_element(logs_.begin(), logs_.end());
-  double sum = 0, squares = 0;
-  for (std::size_t k = 0; k < kHypotheses; ++k) sum += hypotheses_[k].weight *= std::exp(logs_[k] - best);
-  for (Hypothesis& h : hypotheses_) {
-    h.weight /= sum;
-    squares += h.weight * h.weight;
-  }
-  if (squares * static_cast<double>(kHypotheses) > 2) resample(random);
-}
-
-void PlaceBelief::resample(Random& random) {
-  const double step = 1.0 / static_cast<double>(kHypotheses);
-  double at = step * random.uniform(), passed = hypotheses_[0].weight;
-  std::size_t source = 0;
-  for (Hypothesis& copy : copies_) {
-    while (at > passed && source + 1 < kHypotheses) passed += hypotheses_[++source].weight;
-    copy = hypotheses_[source];
-    copy.o += kCopyOffsetSd * random.normal2();
-    copy.weight = step;
-    at += step;
-  }
-  hypotheses_.swap(copies_);
+  if (weigh(hypotheses_, logs_) >= kEnoughShare) return;
+  resample(hypotheses_, copies_, random, [&](Hypothesis& copy) { copy.o += kCopyOffsetSd * random.normal2(); });
 }
 
 void PlaceBelief::placeRead(const Vec2& place, Random& random) {
@@ -109,6 +91,14 @@ void PlaceBelief::failed(double grip, Random& random) {
 
 void PlaceBelief::moved(const Vec2& shift) {
   for (Hypothesis& h : hypotheses_) h.o -= shift;
+}
+
+void PlaceBelief::letGo(Random& random) {
+  for (Hypothesis& h : hypotheses_) h.o.x() += model_.rolls_sd * random.normal();
+}
+
+void PlaceBelief::heightFound(Random& random) {
+  for (Hypothesis& h : hypotheses_) h.o.y() = model_.height_sd * random.normal();
 }
 
 }  // namespace pincer::tasks

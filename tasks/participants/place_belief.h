@@ -6,8 +6,10 @@
 //   push read   N(t + o/|o| max(0, asin(|o|/L) - atan mu); push_sd) per axis: t, the mean push's tilt from the pinch line. Inside the friction
 //               cone the push lies along the line of the contacts whatever the offset is, and tells nothing
 //   failed      1 - holds
+//   let go      o_1 += N(0; rolls_sd): the object rolls in its dish before it is pinched again
+//   height      o_2 = N(0; height_sd): a finger stood on the dish, and the pinch was put to where the object's middle is above it
 //
-// Bootstrap particle filter, as in flat_belief.h. The two softnesses, 0.1 rad and 0.15, are ours.
+// Bootstrap particle filter (weighing.h). The two softnesses, 0.1 rad and 0.15, are ours.
 #pragma once
 #include <vector>
 
@@ -23,6 +25,7 @@ struct PlaceModel {
   double mu_min = 0.25, mu_max = 1.0;          // evenly in the logarithm: what training has shown
   double place_sd = 4.2e-3, place_gain = 0.9;  // [m], [-]
   double push_sd = 0.25;                       // [rad]
+  double rolls_sd = 5e-3, height_sd = 4e-3;    // [m]
 };
 
 class PlaceBelief {
@@ -32,6 +35,8 @@ class PlaceBelief {
   void pushRead(const Vec2& tilt, Random& random);
   void failed(double grip, Random& random);
   void moved(const Vec2& shift);  // of the fingertips
+  void letGo(Random& random);
+  void heightFound(Random& random);
 
   Vec2 offset() const;                                                 // mean of o [m]
   double holds(const Vec2& shift, double grip) const;                  // expected, after a shift
@@ -47,7 +52,6 @@ class PlaceBelief {
   double holds(const Hypothesis& h, const Vec2& shift, double grip) const;
   template <class LogLikelihood>
   void update(LogLikelihood logLikelihood, Random& random);
-  void resample(Random& random);
 
   PlaceModel model_;
   std::vector<Hypothesis> hypotheses_, copies_;

@@ -10,15 +10,17 @@ namespace {
 constexpr double kNotHeard = -1;
 constexpr double kNothingRead = std::numeric_limits<double>::quiet_NaN();
 
-PlaceModel placeModelOf(const TrialCues& cues, const SensingLimits& limits, double gravity) {
+PlaceModel placeModelOf(const TrialCues& cues, const SensingLimits& limits, const ScriptedPickupOptions& options) {
   constexpr double kBothFingers = 0.7071;  // the mean of two independent readings
   const double radius = cues.fingers[0].tip_radius;
   PlaceModel model;
   model.lever = radius + cues.half_width;
-  model.weight = cues.mass * gravity;
+  model.weight = cues.mass * options.gravity;
   model.placement_sd = std::max(limits.placement_sd, 1e-3);
   model.place_sd = std::max(kBothFingers * model.lever * std::hypot(limits.tactor_sd / radius, limits.orientation_sd), 5e-4);
   model.place_gain = limits.tactor_bias;
+  model.rolls_sd = options.object_rolls_sd;
+  model.height_sd = std::max(limits.placement_between_sd, 1e-3);
   model.push_sd = std::max(kBothFingers * limits.direction_sd, 0.02);
   return model;
 }
@@ -45,7 +47,7 @@ void ScriptedPickup::begin(const TrialCues& cues) {
   shifts_ = 0;
   now_ = dt_ = contact_time_ = 0;
   heard_ = kNotHeard;
-  if (rational_) belief_.begin(placeModelOf(cues, limits_, options_.gravity), random_);
+  if (rational_) belief_.begin(placeModelOf(cues, limits_, options_), random_);
   enter(HandPhase::kListen);
 }
 
@@ -141,9 +143,7 @@ void ScriptedPickup::readRationally(const std::optional<Vec3>& offset_W) {
   const Vec2 shift = belief_.bestShift(wanted_grip_, options_.farthest_shift, random_);
   const bool shifts = shifts_ < options_.max_shifts && pays(shift);
   say("place", offset_W.value_or(Vec3::Constant(kNothingRead)), along(belief_.offset()), shifts ? "shift" : "squeeze");
-  if (!shifts) return;
-  belief_.moved(shift);
-  shiftBy(along(shift));
+  if (shifts) shiftBy(along(shift));
 }
 
 // Expected failures are (1 - P)/P when every attempt holds with chance P; each costs a squeeze, half a lift and back, the reflex, and the
@@ -158,8 +158,13 @@ bool ScriptedPickup::pays(const Vec2& shift) const {
 
 void ScriptedPickup::shiftBy(const Vec3& shift_W) {
   ++shifts_;
-  believe(believed_W_ + step_W_ + shift_W);
+  const Vec3 before_W = believed_W_ + step_W_;
+  believe(before_W + shift_W);
   step_W_.setZero();
+  if (rational_) {
+    belief_.moved(across(believed_W_ - before_W));  // not by `shift_W`: the hand goes no further than it can be wrong
+    belief_.letGo(random_);
+  }
   enterReach(besideThePinch(), HandPhase::kReach);
 }
 
@@ -205,9 +210,7 @@ bool ScriptedPickup::lostIt() {
   if (rational_) belief_.failed(wanted_grip_, random_);
   wanted_grip_ = std::min(wanted_grip_ * options_.grip_growth, options_.grip_max);
   if (!rational_) return retry(options_.random_shift_sd), true;
-  const Vec2 shift = belief_.bestShift(wanted_grip_, options_.farthest_shift, random_);
-  belief_.moved(shift);
-  shiftBy(along(shift));
+  shiftBy(along(belief_.bestShift(wanted_grip_, options_.farthest_shift, random_)));
   shifts_ = 0;
   return true;
 }
@@ -219,6 +222,7 @@ bool ScriptedPickup::standsOnDish() {
   const double error = felt_W.z() - heightOnDish((felt_W - posture_.centre_W).norm());
   if (std::abs(error) > options_.farthest_shift) return false;  // the dish can't be there: it is the object
   believe({believed_W_.x(), believed_W_.y(), cues_.place_W.z() + error});
+  if (rational_) belief_.heightFound(random_);
   step_W_.z() = std::max(step_W_.z(), 0.0);
   enterReach(besideThePinch(), HandPhase::kReach);
   return true;

@@ -38,6 +38,7 @@ struct ScriptedPickupOptions {
   double random_shift_sd = 5e-3;   // after a loss, per axis across the pinch [m]: as far as what is worth a shift (choice)
   double search_shift_sd = 14e-3;  // after nothing was found [m]: as far as the placement can be wrong (choice)
   double farthest_shift = 14e-3;   // from the place told, per axis [m]: twice the placement error's SD
+  double object_rolls_sd = 5e-3;   // of where the object lies in its dish after it was let go, across the pinch [m] (choice)
   double expected_mu = 0.52;       // before the first failure [-]: geometric mean of the frictions met in training, 0.3 .. 0.9
   double grip_safety = 2.0;        // wanted grip over m g / (2 expected_mu) [-] (choice)
   double grip_growth = 1.3;        // after a failure [-] (design)
