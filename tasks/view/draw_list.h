@@ -19,6 +19,7 @@ struct ViewVertex {
 struct ViewMesh {
   std::vector<ViewVertex> vertices;
   std::vector<std::uint32_t> triangles;  // three vertices each, counter-clockwise seen from outside
+  bool closed = false;  // all around: no triangle is ever seen from behind, and those that are turned away needn't be drawn
 };
 
 struct Paint {

@@ -44,6 +44,7 @@ class GlMesh {
  private:
   unsigned array_ = 0, vertices_ = 0, triangles_ = 0;
   int count_ = 0;
+  bool closed_ = false;
 };
 
 // A multisampled picture, and the plain one that it ends in.
@@ -54,7 +55,8 @@ class GlPicture {
   GlPicture(const GlPicture&) = delete;
   GlPicture& operator=(const GlPicture&) = delete;
 
-  void resize(int width, int height);
+  // `samples` per pixel, along the borders of things; 1: none are smoothed.
+  void resize(int width, int height, int samples);
   void begin() const;    // what is drawn goes to the multisampled one
   void resolve() const;  // to the plain one, which from now on is drawn to
   int width() const { return width_; }
@@ -63,7 +65,7 @@ class GlPicture {
 
  private:
   void release();
-  int width_ = 0, height_ = 0;
+  int width_ = 0, height_ = 0, samples_ = 0;
   unsigned sampled_ = 0, sampled_colour_ = 0, sampled_depth_ = 0, plain_ = 0, plain_colour_ = 0;
 };
 

@@ -11,7 +11,7 @@ class Painter {
   // `model` must outlive it.
   Painter(devices::Surface& surface, const grasp::GraspModel& model, const Snapshot& start);
 
-  void draw(const Snapshot& snapshot, const ViewChoice& choice);
+  void draw(const Snapshot& snapshot, const ViewChoice& choice, bool smooth_borders = true);
   Image picture() { return renderer_.picture(); }
   void show() { renderer_.show(); }
 

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include <algorithm>
+
 #include "tasks/view/overlay_parts.h"
 
 namespace pincer::tasks {
@@ -20,27 +22,21 @@ std::string statusWords(const Snapshot& snapshot) {
   return snapshot.asleep ? "at rest" : "";
 }
 
-void gestureRows(std::span<const MouseGesture> gestures) {
-  for (const MouseGesture& gesture : gestures) {
-    ImGui::TableNextRow();
-    ImGui::TableNextColumn();
-    textLine(gesture.name);
-    ImGui::TableNextColumn();
-    dimLine(gesture.effect);
+// A list of keys or gestures, and what each does beside it.
+template <class Rows>
+void helpList(const char* title, const Rows& rows) {
+  constexpr float kGap = 14;  // [pixels]
+  float widest = 0;
+  for (const auto& row : rows) widest = std::max(widest, ImGui::CalcTextSize(row.name).x);
+  ImGui::BeginGroup();
+  textLine(title);
+  for (const auto& row : rows) {
+    textLine(row.name);
+    ImGui::SameLine(widest + kGap);
+    dimLine(row.effect);
   }
+  ImGui::EndGroup();
 }
-
-void keyRows(const KeyGroup& group) {
-  for (const KeyBinding& key : group.keys) {
-    ImGui::TableNextRow();
-    ImGui::TableNextColumn();
-    textLine(key.name);
-    ImGui::TableNextColumn();
-    dimLine(key.effect);
-  }
-}
-
-bool beginRows(const char* name) { return ImGui::BeginTable(name, 2, ImGuiTableFlags_SizingFixedFit); }
 
 }  // namespace
 
@@ -101,23 +97,14 @@ void drawHealth(const OverlayText& text, int height) {
 void drawHelp(const OverlayText& text, int width, int height) {
   const OverlayPanel panel("help", 0.5 * width, 0.5 * height, 0.5, 0.5);
   const auto groups = keyGroups();
-  if (!ImGui::BeginTable("columns", 2, ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_PadOuterX)) return;
-  ImGui::TableNextColumn();
-  for (std::size_t i = 0; i < groups.size(); ++i) {
-    if (i == 2) ImGui::TableNextColumn();
-    if (i + 1 == groups.size() && !text.hands) continue;
-    textLine(groups[i].title);
-    if (beginRows(groups[i].title)) {
-      keyRows(groups[i]);
-      ImGui::EndTable();
-    }
-  }
-  textLine("Mouse");
-  if (beginRows("mouse")) {
-    gestureRows(text.hands ? handGestures() : cameraGestures());
-    ImGui::EndTable();
-  }
-  ImGui::EndTable();
+  ImGui::BeginGroup();
+  for (std::size_t i = 0; i < 2; ++i) helpList(groups[i].title, groups[i].keys);
+  ImGui::EndGroup();
+  ImGui::SameLine(0, 30);
+  ImGui::BeginGroup();
+  for (std::size_t i = 2; i < groups.size() - (text.hands ? 0 : 1); ++i) helpList(groups[i].title, groups[i].keys);
+  helpList("Mouse", text.hands ? handGestures() : cameraGestures());
+  ImGui::EndGroup();
 }
 
 void drawNotice(const OverlayText& text, int width, int height) {

@@ -45,7 +45,7 @@ void GlProgram::set(const char* name, const Eigen::Vector4f& value) { glUniform4
 void GlProgram::set(const char* name, const Eigen::Matrix3f& value) { glUniformMatrix3fv(place(name), 1, GL_FALSE, value.data()); }
 void GlProgram::set(const char* name, const Mat4f& value) { glUniformMatrix4fv(place(name), 1, GL_FALSE, value.data()); }
 
-GlMesh::GlMesh(const ViewMesh& mesh) : count_(static_cast<int>(mesh.triangles.size())) {
+GlMesh::GlMesh(const ViewMesh& mesh) : count_(static_cast<int>(mesh.triangles.size())), closed_(mesh.closed) {
   glGenVertexArrays(1, &array_);
   glGenBuffers(1, &vertices_);
   glGenBuffers(1, &triangles_);
@@ -68,6 +68,7 @@ GlMesh::~GlMesh() {
   glDeleteBuffers(1, &triangles_);
 }
 void GlMesh::draw() const {
+  closed_ ? glEnable(GL_CULL_FACE) : glDisable(GL_CULL_FACE);
   glBindVertexArray(array_);
   glDrawElements(GL_TRIANGLES, count_, GL_UNSIGNED_INT, nullptr);
 }

@@ -16,6 +16,7 @@ struct RenderOptions {
   bool shadows = true;
   Vec3 centre_W = Vec3::Zero();  // of what has sharp shadows [m]
   double radius = 0.15;          // of it [m]
+  bool smooth_borders = true;    // several samples per pixel there: twice the time without a graphics card
 };
 
 class Renderer {
@@ -28,6 +29,7 @@ class Renderer {
 
   int add(const ViewMesh& mesh);  // returns its place
   std::string graphics() const;   // who draws: "llvmpipe (LLVM 15, 256 bits)"
+  bool isSoftware() const;        // no graphics card does
   void draw(const DrawList& list, const Camera& camera, const RenderOptions& options);
   // What was drawn since, overlays included.
   Image picture();

@@ -9,8 +9,9 @@
 namespace pincer::tasks {
 namespace {
 
+constexpr int kSamples = 4;                                // per pixel, along borders
 constexpr int kShadowSide = 2048;                          // texels
-constexpr float kHiddenMarks = 0.3f;                       // share of a mark that shows through what hides it
+constexpr float kHiddenMarks = 0.5f;                       // share of a mark that shows through what hides it
 const Vec3 kSun_W = Vec3(-0.45, -0.55, 1.1).normalized();  // towards the sun
 
 // Everything within `radius` of the centre, seen from the sun.
@@ -58,6 +59,11 @@ int Renderer::add(const ViewMesh& mesh) {
 }
 
 std::string Renderer::graphics() const { return reinterpret_cast<const char*>(glGetString(GL_RENDERER)); }
+
+bool Renderer::isSoftware() const {
+  const std::string name = graphics();
+  return name.find("llvmpipe") != std::string::npos || name.find("softpipe") != std::string::npos || name.find("swr") != std::string::npos;
+}
 
 void Renderer::Gl::drawShadows(const DrawList& list, const RenderOptions& options) {
   shadow_map.begin();
@@ -127,10 +133,9 @@ void Renderer::Gl::drawTransparent(const DrawList& list, const Vec3& eye_W) {
 
 void Renderer::draw(const DrawList& list, const Camera& camera, const RenderOptions& options) {
   const devices::SurfaceSize size = gl_->surface.size();
-  gl_->picture.resize(size.width, size.height);
+  gl_->picture.resize(size.width, size.height, options.smooth_borders ? kSamples : 1);
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LEQUAL);
-  glDisable(GL_CULL_FACE);
   glDisable(GL_BLEND);
   glDisable(GL_SCISSOR_TEST);
   if (options.shadows) gl_->drawShadows(list, options);

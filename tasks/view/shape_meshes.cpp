@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact/mesh/mesh_pieces.h"
 #include "contact/shape/polytope.h"
 #include "contact/surface/smooth_mesh.h"
 #include "tasks/view/revolved.h"
@@ -160,11 +161,21 @@ ViewMesh smoothOf(const contact::SmoothMesh& surface) {
 
 }  // namespace
 
-ViewMesh shapeMesh(const contact::Shape& shape, MeshLook look, double extent) {
-  if (const auto* mesh = std::get_if<contact::Mesh>(&shape)) {
-    return look == MeshLook::kFacets ? facetsOf(*mesh->surface) : smoothOf(*mesh->surface);
-  }
-  if (std::holds_alternative<contact::HalfSpace>(shape)) return revolve({{0, 0, 0, 1}, {extent, 0, 0, 1}}, kRound);
+namespace {
+
+// Sheets, and pieces that face inwards, are seen from both sides.
+bool isClosed(const contact::TriangleMesh& mesh) {
+  const std::vector<contact::HalfEdge> half_edges = contact::sortedHalfEdges(mesh.triangles);
+  const contact::MeshPieces pieces = contact::findPieces(mesh, half_edges, contact::findTopology(mesh, half_edges));
+  return std::all_of(pieces.list.begin(), pieces.list.end(), [](const auto& piece) { return piece.closed && !piece.facesInwards(); });
+}
+
+ViewMesh closed(ViewMesh mesh) {
+  mesh.closed = true;
+  return mesh;
+}
+
+ViewMesh solidMesh(const contact::Shape& shape, double extent) {
   if (const auto* dish = std::get_if<contact::Dish>(&shape)) return bowlMesh(dish->radius, extent);
   if (const auto* sphere = std::get_if<contact::Sphere>(&shape)) return meshOf(*sphere);
   if (const auto* box = std::get_if<contact::Box>(&shape)) return meshOf(*box);
@@ -174,15 +185,26 @@ ViewMesh shapeMesh(const contact::Shape& shape, MeshLook look, double extent) {
   return meshOf(std::get<contact::Convex>(shape));
 }
 
-ViewMesh ballMesh() { return meshOf(contact::Sphere{1}); }
-ViewMesh rodMesh() { return revolve({{0, 1, 0, 1}, {1, 1, 0, 1}, {1, 1, 1, 0}, {1, 0, 1, 0}, {1, 0, 0, -1}, {0, 0, 0, -1}}, 24); }
+}  // namespace
+
+ViewMesh shapeMesh(const contact::Shape& shape, MeshLook look, double extent) {
+  if (std::holds_alternative<contact::HalfSpace>(shape)) return revolve({{0, 0, 0, 1}, {extent, 0, 0, 1}}, kRound);
+  const auto* mesh = std::get_if<contact::Mesh>(&shape);
+  if (!mesh) return closed(solidMesh(shape, extent));
+  ViewMesh drawn = look == MeshLook::kFacets ? facetsOf(*mesh->surface) : smoothOf(*mesh->surface);
+  drawn.closed = isClosed(mesh->surface->triangles());
+  return drawn;
+}
+
+ViewMesh ballMesh() { return closed(meshOf(contact::Sphere{1})); }
+ViewMesh rodMesh() { return closed(revolve({{0, 1, 0, 1}, {1, 1, 0, 1}, {1, 1, 1, 0}, {1, 0, 1, 0}, {1, 0, 0, -1}, {0, 0, 0, -1}}, 24)); }
 ViewMesh openConeMesh() {
   const double k = std::sqrt(0.5);
   return revolve({{1, 1, k, -k}, {0, 0, k, -k}}, 48);
 }
 ViewMesh arrowHeadMesh() {
   const double k = std::sqrt(0.5);
-  return revolve({{0, 1, k, k}, {1, 0, k, k}, {1, 0, 0, -1}, {0, 0, 0, -1}}, 32);
+  return closed(revolve({{0, 1, k, k}, {1, 0, k, k}, {1, 0, 0, -1}, {0, 0, 0, -1}}, 32));
 }
 
 // A ball at the tip, from there a slightly thicker round body; turned from z to -x.
@@ -202,7 +224,7 @@ ViewMesh fingerMesh(double length) {
     vertex.p = turn * vertex.p;
     vertex.n = turn * vertex.n;
   }
-  return mesh;
+  return closed(std::move(mesh));
 }
 
 ViewMesh padMesh(double angle) {

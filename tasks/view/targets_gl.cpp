@@ -7,21 +7,19 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr int kSamples = 4;  // per pixel, along the borders of things
-
 void requireComplete(const char* what) {
   if (glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE) return;
   throw devices::DisplayError(std::string("The graphics driver can't draw to ") + what +
                               ". Mesa's software driver can: set LIBGL_ALWAYS_SOFTWARE=1.");
 }
 
-unsigned sampledBuffer(GLenum format, GLenum attachment, int width, int height) {
+unsigned sampledBuffer(GLenum format, GLenum attachment, int width, int height, int samples) {
   unsigned buffer = 0;
   GLint most = 0;
   glGetIntegerv(GL_MAX_SAMPLES, &most);
   glGenRenderbuffers(1, &buffer);
   glBindRenderbuffer(GL_RENDERBUFFER, buffer);
-  glRenderbufferStorageMultisample(GL_RENDERBUFFER, std::min(kSamples, most), format, width, height);
+  glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples > 1 ? std::min(samples, most) : 0, format, width, height);
   glFramebufferRenderbuffer(GL_FRAMEBUFFER, attachment, GL_RENDERBUFFER, buffer);
   return buffer;
 }
@@ -38,15 +36,16 @@ void GlPicture::release() {
   glDeleteRenderbuffers(1, &plain_colour_);
 }
 
-void GlPicture::resize(int width, int height) {
-  if (width == width_ && height == height_) return;
+void GlPicture::resize(int width, int height, int samples) {
+  if (width == width_ && height == height_ && samples == samples_) return;
   if (width_ > 0) release();
   width_ = width;
   height_ = height;
+  samples_ = samples;
   glGenFramebuffers(1, &sampled_);
   glBindFramebuffer(GL_FRAMEBUFFER, sampled_);
-  sampled_colour_ = sampledBuffer(GL_RGBA8, GL_COLOR_ATTACHMENT0, width, height);
-  sampled_depth_ = sampledBuffer(GL_DEPTH_COMPONENT24, GL_DEPTH_ATTACHMENT, width, height);
+  sampled_colour_ = sampledBuffer(GL_RGBA8, GL_COLOR_ATTACHMENT0, width, height, samples);
+  sampled_depth_ = sampledBuffer(GL_DEPTH_COMPONENT24, GL_DEPTH_ATTACHMENT, width, height, samples);
   requireComplete("a multisampled picture");
   glGenFramebuffers(1, &plain_);
   glBindFramebuffer(GL_FRAMEBUFFER, plain_);

@@ -41,7 +41,9 @@ Viewer::Viewer(devices::Surface& surface, const grasp::GraspModel& model, const 
 bool Viewer::update() {
   for (const devices::InputEvent& event : surface_.poll()) handle(event);
   look();
-  draw();
+  // Without a graphics card, borders are smoothed only where there is time to see them: in what stands still, and what is kept.
+  draw(!painter_.renderer().isSoftware() || pace_.paused || !sequence_.empty());
+  if (!sequence_.empty()) savePictureOfSequence();
   painter_.show();
   const double now = viewerSeconds();
   if (last_picture_ > 0) pictures_per_second_ += 0.1 * (1 / std::max(now - last_picture_, 1e-6) - pictures_per_second_);
@@ -71,12 +73,16 @@ void Viewer::addToCharts(const Snapshot& snapshot) {
   charts_[next].add(snapshot.time, {1e6 * snapshot.tick_seconds});
 }
 
-void Viewer::draw() {
-  painter_.draw(shown(), choice_);
+Image Viewer::picture() {
+  draw(true);
+  return painter_.picture();
+}
+
+void Viewer::draw(bool at_best) {
+  painter_.draw(shown(), choice_, at_best);
   const devices::SurfaceSize size = surface_.size();
   const OverlayText text = overlayText();
   overlay_.draw(text, size.width, size.height);
-  if (!sequence_.empty()) savePictureOfSequence();
 }
 
 OverlayText Viewer::overlayText() const {
@@ -136,6 +142,6 @@ void Viewer::toggleSequence() {
   notice_until_ = viewerSeconds() + kNoticeTime;
 }
 
-void Viewer::savePictureOfSequence() { writePng(picture(), fmt::format("{}/{:06}.png", sequence_, ++sequence_count_)); }
+void Viewer::savePictureOfSequence() { writePng(painter_.picture(), fmt::format("{}/{:06}.png", sequence_, ++sequence_count_)); }
 
 }  // namespace pincer::tasks

@@ -31,15 +31,15 @@ class Viewer {
 
   // The parts of update():
   void handle(const devices::InputEvent& event);
-  void look();  // at the channel
-  Image picture() { return painter_.picture(); }
+  void look();      // at the channel
+  Image picture();  // of what is shown, at its best
   ViewChoice& choice() { return choice_; }
   Painter& painter() { return painter_; }
   const Histogram& lateness() const { return lateness_; }
   double pictures_per_second() const { return pictures_per_second_; }
 
  private:
-  void draw();
+  void draw(bool at_best);
   void act(ViewAction action);
   void actOnTime(ViewAction action);
   void actOnHand(ViewAction action);
