@@ -21,6 +21,7 @@ struct ArmCapabilities {
   double resolution = 0;                                                // of position at the tip [m]
   double stiffness_limit = 0;                                           // that the arm renders stably [N/m]
   double rate = 1000;                                                   // of samples [Hz]
+  std::optional<Vec3> peak_torque;                                      // of the joints [N m], of arms that tell
   Vec3 workspace_min_D = Vec3::Zero(), workspace_max_D = Vec3::Zero();  // [m]
 };
 

@@ -78,6 +78,7 @@ SimArm::SimArm(const SimArmSettings& settings) : settings_(settings) {
   capabilities_.continuous_force = 1.4;
   capabilities_.resolution = settings.encoder_step * l1;
   capabilities_.stiffness_limit = 3500;
+  capabilities_.peak_torque = peakTorque();
   capabilities_.workspace_min_D = kWorkspaceMin_D;
   capabilities_.workspace_max_D = kWorkspaceMax_D;
   setHand(HandPull{.p_D = settings.start_D});

@@ -19,6 +19,7 @@ constexpr int kTimeout = 1000;      // [ms]
 constexpr std::array<std::uint8_t, 3> kHello{0x0a, 0x43, 0x0d};
 constexpr std::array<std::uint8_t, 4> kHelloBack{0x0a, 0x44, 0x2c, 0x0d};
 constexpr double kCountsPerTorque = 10000;  // [1/(N m)], libnifalcon's
+constexpr double kMostCounts = 4096;        // of a torque
 constexpr int kLostAnswers = 50;            // in a row: the Falcon is gone
 
 }  // namespace
@@ -105,6 +106,7 @@ FalconArm::FalconArm(std::unique_ptr<FalconPort> port, std::vector<std::uint8_t>
   capabilities_.continuous_force = 4;
   capabilities_.resolution = 60e-6;
   capabilities_.stiffness_limit = 2000;
+  capabilities_.peak_torque = Vec3::Constant(kMostCounts / kCountsPerTorque);
   capabilities_.workspace_min_D = Vec3(-0.05, -0.05, -0.05);
   capabilities_.workspace_max_D = Vec3(0.05, 0.05, 0.05);
   thread_ = std::thread([this] { run(); });
@@ -156,7 +158,7 @@ Orders FalconArm::ordersNow(const Reading& last, bool homed) {
   const bool may = homed && last.valid && !stopped_.load(std::memory_order_acquire) && usb::monotonicNs() - wish.ns < kForceLife;
   if (!may) return orders;
   const Vec3 torque = last.J.transpose() * wish.f_D;
-  const double most = std::max(1.0, kCountsPerTorque / 4096 * torque.cwiseAbs().maxCoeff());  // one common scale
+  const double most = std::max(1.0, kCountsPerTorque / kMostCounts * torque.cwiseAbs().maxCoeff());  // one common scale
   for (std::size_t i = 0; i < 3; ++i) {
     orders.torques[i] = static_cast<int>(-kCountsPerTorque * torque[static_cast<Eigen::Index>(i)] / most);
   }

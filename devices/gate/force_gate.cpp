@@ -57,15 +57,28 @@ double heatAfter(const GateLimits& limits, double heat, const Vec3& f_D, double 
   return std::max(0.0, heat + (f_D.squaredNorm() - limits.continuous_force * limits.continuous_force) * dt);
 }
 
+// From the last force towards `f`, within what this tick may change and what the joints bear now.
+Vec3 slewed(const GateLimits& limits, const GateInput& in, const Vec3& last, const Vec3& f) {
+  const Vec3 start = withinTorque(limits, in.sample, last);
+  return start + shortened(f - start, std::max(0.0, limits.slew * in.dt - (start - last).norm()));
+}
+
 Vec3 shaped(const GateLimits& limits, const GateInput& in, const GateState& state) {
   Vec3 f = withinTorque(limits, in.sample, shortened(in.f_D, limits.peak_force));
   f *= ramp(limits, state.armed_for);
   f = shortened(f, thermalForce(limits, state.heat));
-  f = shortened(state.f_D + shortened(f - state.f_D, limits.slew * in.dt), limits.peak_force);
+  f = shortened(slewed(limits, in, state.f_D, f), limits.peak_force);
   return withinTorque(limits, in.sample, f);
 }
 
 }  // namespace
+
+GateLimits within(GateLimits limits, const ArmCapabilities& arm) {
+  if (arm.peak_force > 0) limits.peak_force = std::min(limits.peak_force, arm.peak_force);
+  if (arm.continuous_force > 0) limits.continuous_force = std::min(limits.continuous_force, arm.continuous_force);
+  if (arm.peak_torque) limits.peak_torque = limits.peak_torque ? limits.peak_torque->cwiseMin(*arm.peak_torque) : *arm.peak_torque;
+  return limits;
+}
 
 std::optional<std::string> problemWith(const GateLimits& limits) {
   const auto wrong = [](const char* field, double value, const char* range) {

@@ -6,11 +6,12 @@
 //   ramp       f min(1, t_armed / ramp_time)
 //   thermal    |f|^2 <= f_cont^2 + (H - heat) / tau,   d heat / dt = |f|^2 - f_cont^2, heat >= 0,   tau = thermal_time / 10,
 //              H = (f_peak^2 - f_cont^2) (thermal_time + tau): peak_force from cold lasts thermal_time, then sinks smoothly to f_cont
-//   slew       |f - f_last| <= slew dt
+//   slew       f = s + (f - s) min(1, (slew dt - |s - f_last|) / |f - s|),   s = f_last within the torques of now:   |f - f_last| <= slew dt
 //
 // in this order, behind the passivity controller of grasp/passivity (tasks/servo/tick.cpp). Slew comes last, because its bound is one on
-// what the motor gets: a stage behind it could break it. It can delay the thermal stage by peak_force / slew at most. Only the torque
-// bound is looked at once more behind it: where the arm moved so that the last force would overload a joint now, torque wins over slew.
+// what the motor gets: a stage behind it could break it. It can delay the thermal stage by peak_force / slew at most. It keeps to the torque
+// bound: both s and f do, and so does the straight line between them. Only where the arm moved so far within a tick that the last force
+// overloads a joint by more than the slew can take back, torque wins over slew.
 // The torque stage needs both `peak_torque` and a sample that knows its joints. The stages and their order are ours.
 #pragma once
 #include <cstdint>
@@ -33,6 +34,9 @@ struct GateLimits {
   double watchdog_time = 3e-3;           // oldest sample that is still trusted, longest time between two calls [s], > 0
   std::optional<Vec3> peak_torque = {};  // of the joints [N m], each > 0; absent: not limited
 };
+
+// `limits` made narrower by what the arm can do; what it doesn't tell (0, absent) stays as it is.
+GateLimits within(GateLimits limits, const ArmCapabilities& arm);
 
 // What is wrong with `limits`, as a sentence with field, value and range; absent if nothing is.
 std::optional<std::string> problemWith(const GateLimits& limits);

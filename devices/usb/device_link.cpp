@@ -72,6 +72,7 @@ void DeviceLink::received(const Frame& frame, std::int64_t now) {
       ++duplicates_;
       break;
     case FrameVerdict::kLate:
+      lost_ += order_.lost();
       ++late_;
       if (order_.refusedInARow() >= kBeganAnew) has_capabilities_ = false;
       break;

@@ -19,8 +19,9 @@ namespace pincer::devices::usb {
 
 // What came and went; read from any thread.
 struct LinkCounts {
-  std::int64_t accepted = 0, commands = 0;                   // frames from and to the device
-  std::int64_t bad = 0, duplicates = 0, late = 0, lost = 0;  // refused frames by cause; gaps in the sequence
+  std::int64_t accepted = 0, commands = 0;         // frames from and to the device
+  std::int64_t bad = 0, duplicates = 0, late = 0;  // refused frames by cause
+  std::int64_t lost = 0;                           // gaps in the sequence that no late frame has filled yet
   std::int64_t connects = 0, unplugs = 0;
   std::int64_t answers = 0;        // commands whose answer came
   std::int64_t round_trip_ns = 0;  // of the last of them, from the command to its answer

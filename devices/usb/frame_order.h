@@ -1,6 +1,7 @@
 // frame_order: which of the frames that arrive is newer than all before, and what of the sender's clock on ours.
 //
-//   step = sequence - last (as a signed 32-bit number): > 0 newer, step - 1 were lost;  0 a duplicate;  < 0 late
+//   step = sequence - last (as a signed 32-bit number): > 0 newer, step - 1 are missing;  0 or come before: a duplicate;  < 0 late
+//   missing and then late isn't lost: lost = gaps - late ones that filled them (of the last 64 frames)
 //   offset = min over the frames of (arrival - sender's time), growing by 50 ppm of the time passed;   sent = sender's time + offset
 //
 // The least offset belongs to the frame that travelled fastest: so the time given to a frame that was held up on its way is the time at
@@ -22,21 +23,38 @@ class FrameOrder {
     lost_ = 0;
     if (begun_ && step <= 0) {
       ++refused_in_a_row_;
-      return step == 0 ? FrameVerdict::kDuplicate : FrameVerdict::kLate;
+      return judgeOld(-static_cast<std::int64_t>(step));
     }
-    if (begun_) lost_ = step - 1;
+    lost_ = begun_ ? step - 1 : 0;
+    came_ = (begun_ && step < kWindow ? came_ << step : 0) | 1;
+    since_first_ = begun_ ? since_first_ + step : 0;
     begun_ = true;
     last_ = sequence;
     refused_in_a_row_ = 0;
     return FrameVerdict::kNewer;
   }
-  std::int32_t lost() const { return lost_; }  // just before the frame judged last
+  // How many more are lost since the frame judged last; -1: it had been counted, and is only late.
+  std::int32_t lost() const { return lost_; }
   // So many refused frames one after the other mean that the sender began anew.
   int refusedInARow() const { return refused_in_a_row_; }
 
  private:
+  static constexpr std::int64_t kWindow = 64;
+
+  // `back` frames behind the newest.
+  FrameVerdict judgeOld(std::int64_t back) {
+    if (back >= kWindow || back > since_first_) return FrameVerdict::kLate;
+    const std::uint64_t bit = std::uint64_t{1} << back;
+    if ((came_ & bit) != 0) return FrameVerdict::kDuplicate;
+    came_ |= bit;
+    lost_ = -1;
+    return FrameVerdict::kLate;
+  }
+
   bool begun_ = false;
+  std::uint64_t came_ = 0;  // bit i: the i-th before the newest
   std::uint32_t last_ = 0;
+  std::int64_t since_first_ = 0;  // from the first frame to the newest
   std::int32_t lost_ = 0;
   int refused_in_a_row_ = 0;
 };

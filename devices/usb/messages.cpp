@@ -8,6 +8,7 @@ namespace {
 constexpr double kNano = 1e-9, kMicro = 1e-6, kTick = 1e-4;          // [m], [N] or [m/s], [s]
 constexpr double kReach = 2, kForce = 100, kSpeed = 50, kPad = 0.1;  // [m], [N], [m/s], [m]
 constexpr double kGimbalStep = 1.0 / 16384;
+constexpr double kTorqueStep = 1e-4, kTorque = 6.5;  // [N m]
 
 enum ArmBit : std::uint8_t { kArmValid = 1, kArmLimp = 2, kArmVelocity = 4, kArmGimbal = 8, kArmSwitches = 16, kArmBits = 31 };
 enum DisplayBit : std::uint8_t { kDisplayValid = 1, kDisplayParked = 2, kDisplayPlace = 4, kDisplayBits = 7 };
@@ -72,7 +73,8 @@ Frame toFrame(const Identity& m) {
       .put(m.firmware)
       .put(m.rate)
       .putText(m.model, 16)
-      .putText(m.serial, 12);
+      .putText(m.serial, 12)
+      .put(static_cast<std::uint8_t>(m.linkage));
   return frame;
 }
 
@@ -90,6 +92,9 @@ std::optional<Identity> identityIn(const Frame& frame) {
   m.model = in.takeText(16);
   m.serial = in.takeText(12);
   in.require(!m.model.empty() && !m.serial.empty());
+  const auto linkage = in.take<std::uint8_t>();
+  in.require(linkage <= static_cast<std::uint8_t>(m.kind == DeviceKind::kArm ? Linkage::kPremium : Linkage::kNotTold));
+  m.linkage = static_cast<Linkage>(linkage);
   return whole(in, m);
 }
 
@@ -218,13 +223,17 @@ std::optional<Status> statusIn(const Frame& frame) {
 
 Frame toFrame(const ArmCapabilities& m) {
   Frame frame = frameOf(FrameType::kArmCapabilities);
+  const Vec3 torque = m.peak_torque.value_or(Vec3::Zero());
   PayloadWriter(frame.payload)
       .putScaled<std::uint32_t>(m.peak_force, kMicro, kForce)
       .putScaled<std::uint32_t>(m.continuous_force, kMicro, kForce)
       .putScaled<std::uint32_t>(m.resolution, kNano, kReach)
       .putScaled<std::uint32_t>(m.stiffness_limit, 1, 1e6)
       .putVector<3>(m.workspace_min_D, kNano, kReach)
-      .putVector<3>(m.workspace_max_D, kNano, kReach);
+      .putVector<3>(m.workspace_max_D, kNano, kReach)
+      .putScaled<std::uint16_t>(torque.x(), kTorqueStep, kTorque)
+      .putScaled<std::uint16_t>(torque.y(), kTorqueStep, kTorque)
+      .putScaled<std::uint16_t>(torque.z(), kTorqueStep, kTorque);
   return frame;
 }
 
@@ -238,6 +247,11 @@ std::optional<ArmCapabilities> armCapabilitiesIn(const Frame& frame) {
   m.stiffness_limit = in.takeScaled<std::uint32_t>(1, 1, 1e6);
   m.workspace_min_D = in.takeVector<3>(kNano, kReach);
   m.workspace_max_D = in.takeVector<3>(kNano, kReach);
+  Vec3 torque;
+  for (int i = 0; i < 3; ++i) torque[i] = in.takeScaled<std::uint16_t>(kTorqueStep, 0, kTorque);
+  const bool told = !torque.isZero(0);
+  in.require(!told || torque.minCoeff() > 0);
+  if (told) m.peak_torque = torque;
   in.require(m.continuous_force <= m.peak_force && (m.workspace_min_D.array() < m.workspace_max_D.array()).all());
   return whole(in, m);
 }

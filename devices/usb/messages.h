@@ -20,12 +20,16 @@ std::string nameOf(DeviceKind kind);  // "arm", "display"
 // Sounds or lights that pace a trial, for devices that have them.
 enum class Signal : std::uint8_t { kNone = 0, kStart = 1, kSuccess = 2, kEnd = 3 };
 
+// How an arm's joints move its tip, so that the torques of a force are known.
+enum class Linkage : std::uint8_t { kNotTold = 0, kPremium = 1 };  // kPremium: devices/arm/premium_kinematics.h
+
 struct Identity {
   DeviceKind kind = DeviceKind::kArm;
   std::uint16_t firmware = 1;  // version
   std::uint16_t rate = 1000;   // of state frames [Hz], 1 .. 8000
   std::string model;           // 1 .. 16 printable ASCII characters
   std::string serial;          // 1 .. 12
+  Linkage linkage = Linkage::kNotTold;
   bool operator==(const Identity&) const = default;
 };
 

@@ -1,5 +1,7 @@
 #include "devices/usb/usb_arm.h"
 
+#include "devices/arm/premium_kinematics.h"
+
 namespace pincer::devices::usb {
 
 std::string UsbArm::identity() const { return deviceIdentity().model + " " + deviceIdentity().serial; }
@@ -16,6 +18,9 @@ ArmSample UsbArm::sample() {
   sample.v_DF = state.v_DF;
   sample.q_DF = state.q_DF;
   if (state.switches) sample.switches = *state.switches;
+  if (deviceIdentity().linkage == Linkage::kPremium) {
+    if (const auto q = premium::inverse(state.p_DF)) sample.J = premium::jacobian(*q);
+  }
   return sample;
 }
 

@@ -19,7 +19,9 @@
 namespace pincer::devices::usb {
 namespace {
 
-constexpr int kInFlight = 2;        // transfers that wait for the device at any time
+// Transfers that wait for the device at any time: the kernel fills them while this program gets no processor, so that it loses no frame in
+// a pause of 64 ms of an arm that states its place 1,000 times a second.
+constexpr int kInFlight = 64;
 constexpr int kFailuresInARow = 8;  // after which a port is given up
 constexpr int kWaitMs = 20;         // between looks at what is due, with nothing going on
 
@@ -59,16 +61,8 @@ struct Transfer {
   libusb_transfer* transfer = nullptr;
   std::array<std::uint8_t, 2 * kFrameSize> buffer{};  // longer than a frame, so that a too long packet is seen as one
   bool flying = false;
-  bool done = false;                     // set by libusb's callback, looked at by the loop
-  std::uint64_t order = 0;               // of its completion among the port's
-  std::uint64_t* completions = nullptr;  // of the port
+  struct PortState* port = nullptr;
 };
-
-void LIBUSB_CALL markDone(libusb_transfer* transfer) {
-  auto& t = *static_cast<Transfer*>(transfer->user_data);
-  t.done = true;
-  t.order = ++*t.completions;
-}
 
 struct PortState {
   libusb_device* device = nullptr;  // null: free
@@ -77,10 +71,18 @@ struct PortState {
   std::array<Transfer, kInFlight> in;
   Transfer out;
   FrameBytes packet{};  // being sent
+  // Those that came back, in the order of their coming, which is that of the frames.
+  std::array<Transfer*, kInFlight + 1> done{};
+  std::size_t done_count = 0;
+  int flying = 0;
   int failures = 0;
-  std::uint64_t completions = 0;
   bool closing = false, told_closed = false;
 };
+
+void LIBUSB_CALL markDone(libusb_transfer* transfer) {
+  auto& t = *static_cast<Transfer*>(transfer->user_data);
+  t.port->done[t.port->done_count++] = &t;
+}
 
 std::string placeOf(libusb_device* device) {
   return "USB device " + std::to_string(libusb_get_bus_number(device)) + "-" + std::to_string(libusb_get_port_number(device));
@@ -241,33 +243,29 @@ class UsbBus::Thread {
 
   void start(PortState& p) {
     for (Transfer& t : p.in) {
-      t.completions = &p.completions;
+      t.port = &p;
       t.transfer = libusb_alloc_transfer(0);
       libusb_fill_interrupt_transfer(t.transfer, p.handle, p.endpoints.in, t.buffer.data(), static_cast<int>(t.buffer.size()), markDone, &t,
                                      0);
       t.transfer->type = p.endpoints.in_type;
       submit(p, t);
     }
-    p.out.completions = &p.completions;
+    p.out.port = &p;
     p.out.transfer = libusb_alloc_transfer(0);
     libusb_fill_interrupt_transfer(p.out.transfer, p.handle, p.endpoints.out, p.packet.data(), kFrameSize, markDone, &p.out, 0);
     p.out.transfer->type = p.endpoints.out_type;
   }
 
   void submit(PortState& p, Transfer& t) {
-    t.done = false;
     t.flying = libusb_submit_transfer(t.transfer) == 0;
+    p.flying += t.flying ? 1 : 0;
     if (!t.flying && ++p.failures >= kFailuresInARow) p.closing = true;
   }
 
   void serve(int port) {
     PortState& p = states_[static_cast<std::size_t>(port)];
     if (p.device == nullptr) return;
-    while (Transfer* t = nextDone(p)) finishIn(port, p, *t);
-    if (p.out.flying && p.out.done) {
-      p.out.flying = false;
-      finished(p, *p.out.transfer);
-    }
+    takeDone(port, p);
     if (!p.closing) {
       for (Transfer& t : p.in) {
         if (!t.flying && !p.closing) submit(p, t);
@@ -277,19 +275,15 @@ class UsbBus::Thread {
     if (p.closing) close(port, p);
   }
 
-  // Those that came back are read in the order of their coming: otherwise a frame would be late that wasn't.
-  static Transfer* nextDone(PortState& p) {
-    Transfer* next = nullptr;
-    for (Transfer& t : p.in) {
-      if (t.flying && t.done && (next == nullptr || t.order < next->order)) next = &t;
+  void takeDone(int port, PortState& p) {
+    for (std::size_t i = 0; i < p.done_count; ++i) {
+      Transfer& t = *p.done[i];
+      t.flying = false;
+      --p.flying;
+      if (!finished(p, *t.transfer) || &t == &p.out || p.told_closed) continue;
+      ports_.received(port, std::span(t.buffer).first(static_cast<std::size_t>(std::max(0, t.transfer->actual_length))), clock_());
     }
-    return next;
-  }
-
-  void finishIn(int port, PortState& p, Transfer& t) {
-    t.flying = false;
-    if (!finished(p, *t.transfer)) return;
-    ports_.received(port, std::span(t.buffer).first(static_cast<std::size_t>(std::max(0, t.transfer->actual_length))), clock_());
+    p.done_count = 0;
   }
 
   // Whether the transfer brought its packet. A stalled endpoint is cleared; whatever fails too often in a row closes the port.
@@ -326,15 +320,13 @@ class UsbBus::Thread {
   void close(int port, PortState& p) {
     if (!p.told_closed) ports_.closed(port, clock_());
     p.told_closed = true;
-    bool flying = false;
-    const auto recall = [&](Transfer& t) {
-      if (t.flying && t.done) t.flying = false;
+    takeDone(port, p);
+    const auto recall = [](Transfer& t) {
       if (t.flying) libusb_cancel_transfer(t.transfer);
-      flying = flying || t.flying;
     };
     for (Transfer& t : p.in) recall(t);
     recall(p.out);
-    if (flying) return;
+    if (p.flying > 0) return;
     for (Transfer& t : p.in) libusb_free_transfer(t.transfer), t = Transfer{};
     libusb_free_transfer(p.out.transfer), p.out = Transfer{};
     libusb_release_interface(p.handle, 0);

@@ -39,6 +39,7 @@ ArcTrial::ArcTrial(const ArcTrialSetup& setup, OneFingerObserver& observer, Stud
   model_.X_WD = arcArmBase(setup.path_radius);
   model_.finger_radius = setup.finger_radius;
   model_.stiffness = setup.stiffness;
+  model_.gate = devices::within(model_.gate, arm_.capabilities());
   devices::arm(state_.gate);
   display_.setTransmission(interval().transmission);
   // The hand is on the arm before the first tick.

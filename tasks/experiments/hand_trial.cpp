@@ -154,6 +154,11 @@ void HandTrial::keepPassive() {
   state_.passivity = grasp::PassivityState(scene_.model.mounts.size());
 }
 
+void HandTrial::limitForces(int finger, const devices::ArmCapabilities& arm) {
+  devices::GateLimits& gate = scene_.model.mounts[static_cast<std::size_t>(finger)].gate;
+  gate = devices::within(gate, arm);
+}
+
 void HandTrial::cutForces(devices::Trip cause) {
   for (MountState& mount : state_.mounts) devices::trip(mount.gate, cause);
   for (FingerOutputs& output : scratch_.outputs) output.f_D.setZero();

@@ -43,6 +43,8 @@ class HandTrial {
 
   // The tactors stay where they are, whatever the condition says. Before the first step.
   void parkTactors();
+  // The gate keeps to what the finger's arm can do, too. Before the first step.
+  void limitForces(int finger, const devices::ArmCapabilities& arm);
   // Zero force, latched.
   void cutForces(devices::Trip cause);
   // Passivity at the fingers from now on (grasp/passivity): for arms with motors.

@@ -106,15 +106,12 @@ void EmulatedBus::runInRealTime(std::function<void()> each) {
   thread_ = std::thread([this, each = std::move(each)] {
     const sched_param priority{.sched_priority = 81};  // a device doesn't wait for this computer, if that is permitted
     pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority);
-    using Time = std::chrono::steady_clock;
-    auto last = Time::now();
-    for (auto due = last; running_;) {
+    for (auto due = std::chrono::steady_clock::now(); running_;) {
       due += std::chrono::milliseconds(1);
       std::this_thread::sleep_until(due);
-      const auto now = Time::now();
-      due = std::max(due, now - std::chrono::milliseconds(5));
-      advance(std::chrono::duration<double>(now - last).count());
-      last = now;
+      for (Slot& slot : slots_) {
+        if (slot.plugged) slot.device->catchUp();
+      }
       if (each) each();
     }
   });

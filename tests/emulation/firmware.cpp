@@ -9,6 +9,7 @@ namespace {
 
 constexpr std::size_t kReplies = 16;   // that the device keeps for a host that doesn't fetch them; the oldest go first
 constexpr double kStatusPeriod = 0.1;  // [s]
+constexpr double kRounding = 1e-9;     // of sums of steps [s]
 
 devices::SimArmSettings armSettings(const std::string& serial) {
   devices::SimArmSettings settings;
@@ -120,7 +121,7 @@ bool Firmware::take(usb::FrameBytes& packet) {
 }
 
 ArmFirmware::ArmFirmware(const std::string& serial)
-    : Firmware({usb::DeviceKind::kArm, 1, 1000, "pincer emu arm", serial}), plant_(armSettings(serial)) {
+    : Firmware({usb::DeviceKind::kArm, 1, 1000, "pincer emu arm", serial, usb::Linkage::kPremium}), plant_(armSettings(serial)) {
   calibration() = {{"base_x", 0.0}, {"base_y", 0.0}, {"base_z", 0.0}};
 }
 
@@ -160,7 +161,7 @@ bool ArmFirmware::command(const usb::Frame& frame) {
   const bool takes = m->arming != 0 && m->arming != refused_;
   arming_ = m->arming;
   limp_ = !takes;
-  dies_at_ = time_ + m->deadline;
+  dies_at_ = time_ + m->deadline - kRounding;
   setForce(takes ? m->f_D : Vec3::Zero());
   return true;
 }
@@ -178,7 +179,7 @@ void ArmFirmware::setForce(const Vec3& f_D) {
 
 void ArmFirmware::advancePlant(double dt) {
   plant_.advance(dt);
-  if (limp_ || time_ <= dies_at_) return;
+  if (limp_ || time_ < dies_at_) return;
   ++status_.missed_deadlines;
   stop();
 }
@@ -211,14 +212,14 @@ bool DisplayFirmware::command(const usb::Frame& frame) {
   const auto m = usb::displayCommandIn(frame);
   if (!m) return false;
   parked_ = m->parked;
-  dies_at_ = time_ + m->deadline;
+  dies_at_ = time_ + m->deadline - kRounding;
   plant_.command({m->parked, m->place_L});
   return true;
 }
 
 void DisplayFirmware::advancePlant(double dt) {
   plant_.advance(dt);
-  if (parked_ || time_ <= dies_at_) return;
+  if (parked_ || time_ < dies_at_) return;
   ++status_.missed_deadlines;
   park();
 }

@@ -100,6 +100,7 @@ void UsbfsDevice::finish(Urb urb) {
 int UsbfsDevice::submit(Urb urb) {
   const std::lock_guard lock(mutex_);
   if (gone_) return -ENODEV;
+  keepTime();
   usbdevfs_urb& u = *urb.urb;
   u.status = 0;
   u.actual_length = 0;
@@ -145,11 +146,34 @@ int UsbfsDevice::discard(std::uint64_t key) {
 int UsbfsDevice::clearHalt(unsigned endpoint) {
   const std::lock_guard lock(mutex_);
   halted_.erase(endpoint);
-  return gone_ ? -ENODEV : 0;
+  if (gone_) return -ENODEV;
+  pump();
+  return 0;
+}
+
+void UsbfsDevice::catchUp() {
+  const std::lock_guard lock(mutex_);
+  if (!time_) time_ = std::chrono::steady_clock::now();
+  keepTime();
+}
+
+// What nobody could have looked at goes by in one step.
+void UsbfsDevice::keepTime() {
+  if (!time_ || gone_) return;
+  constexpr std::chrono::milliseconds kStep(1), kMost(100);
+  const auto now = std::chrono::steady_clock::now();
+  if (now - *time_ > kMost) {
+    firmware_->advance(std::chrono::duration<double>(now - *time_ - kStep).count());
+    time_ = now - kStep;
+  }
+  bool moved = false;
+  for (; now - *time_ >= kStep; *time_ += kStep) firmware_->advance(1e-3), moved = true;
+  if (moved) pump();
 }
 
 void UsbfsDevice::advance(double dt) {
   const std::lock_guard lock(mutex_);
+  time_.reset();
   firmware_->advance(dt);
   if (!gone_) pump();
 }
@@ -184,7 +208,7 @@ TransferFault UsbfsDevice::faultAt(bool in) {
 }
 
 void UsbfsDevice::pump() {
-  while (!waiting_.empty() && completeIn(waiting_.front())) waiting_.pop_front();
+  while (!waiting_.empty() && halted_.count(kIn) == 0 && completeIn(waiting_.front())) waiting_.pop_front();
 }
 
 // Whether the transfer ended.

@@ -6,11 +6,13 @@
 #pragma once
 #include <linux/usbdevice_fs.h>
 
+#include <chrono>
 #include <cstdint>
 #include <deque>
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <set>
 
 #include "tests/emulation/firmware.h"
@@ -63,6 +65,9 @@ class UsbfsDevice {
 
   // The cable's side.
   void advance(double dt);
+  // As the wall clock goes, in steps of a millisecond, until advance(); whoever submits a transfer finds the device up to date, however late
+  // the thread is that moves it.
+  void catchUp();
   void unplug();
   // The `index`-th transfer from now (0: the next) to the host (`in`) or from it suffers `fault`.
   void injectAt(std::int64_t index, bool in, TransferFault fault);
@@ -76,6 +81,7 @@ class UsbfsDevice {
   }
 
  private:
+  void keepTime();
   void pump();
   bool completeIn(Urb urb);
   bool alterIn(usb::FrameBytes& bytes, usbdevfs_urb& urb, TransferFault fault);
@@ -94,6 +100,7 @@ class UsbfsDevice {
   std::map<std::int64_t, TransferFault> in_faults_, out_faults_;
   std::int64_t in_count_ = 0, out_count_ = 0, faults_done_ = 0;
   int read_fd_ = -1, write_fd_ = -1;
+  std::optional<std::chrono::steady_clock::time_point> time_;  // that the device has reached; absent: the caller's time
   bool raised_ = true, gone_ = false, has_late_ = false;
   usb::FrameBytes late_{};
 };

@@ -1,15 +1,7 @@
 #include "tests/emulation/usbfs_interpose.h"
 
-#include <dlfcn.h>
-#include <fcntl.h>
-#include <sys/ioctl.h>
-#include <unistd.h>
-
 #include <array>
 #include <atomic>
-#include <cerrno>
-#include <cstdarg>
-#include <cstring>
 #include <map>
 
 namespace pincer::emulation {
@@ -30,72 +22,36 @@ Table& table() {
   return the_table;
 }
 
-template <typename F>
-F next(const char* name) {
-  return reinterpret_cast<F>(dlsym(RTLD_NEXT, name));
-}
+bool answersUsbfs() { return table().any; }
 
-UsbfsDevice* deviceAt(int fd) {
+UsbfsDevice* usbfsAt(int fd) {
   return table().any && fd >= 0 && fd < kMostFds ? table().fds[static_cast<std::size_t>(fd)].load() : nullptr;
 }
 
-int failWith(int error) {
-  errno = error;
-  return -1;
-}
-
-int openNode(const char* path) {
+int openUsbfs(const char* node) {
   Table& t = table();
   const std::lock_guard lock(t.mutex);
-  const auto found = t.nodes.find(path);
-  if (found == t.nodes.end() || !found->second) return failWith(ENOENT);
-  if (t.denied) return failWith(EACCES);
+  const auto found = t.nodes.find(node);
+  if (found == t.nodes.end() || !found->second) return -ENOENT;
+  if (t.denied) return -EACCES;
   int fd = -1;
-  if (const int error = found->second->open(fd); error < 0) return failWith(-error);
+  if (const int error = found->second->open(fd); error < 0) return error;
   t.owners[fd] = found->second;
   t.fds[static_cast<std::size_t>(fd)] = found->second.get();
   return fd;
 }
 
-int openAny(const char* name, const char* path, int flags, mode_t mode) {
-  if (table().any && std::strncmp(path, "/dev/bus/usb/", 13) == 0) return openNode(path);
-  return next<int (*)(const char*, int, ...)>(name)(path, flags, mode);
-}
-
-int request(UsbfsDevice& device, unsigned long code, void* argument) {
-  const auto answer = [](int result) { return result < 0 ? failWith(-result) : result; };
-  switch (code) {
-    case USBDEVFS_GET_CAPABILITIES:
-      *static_cast<std::uint32_t*>(argument) =
-          USBDEVFS_CAP_ZERO_PACKET | USBDEVFS_CAP_BULK_CONTINUATION | USBDEVFS_CAP_NO_PACKET_SIZE_LIM | USBDEVFS_CAP_REAP_AFTER_DISCONNECT;
-      return 0;
-    case USBDEVFS_CLAIMINTERFACE:
-    case USBDEVFS_RELEASEINTERFACE:
-    case USBDEVFS_SETINTERFACE:
-    case USBDEVFS_SETCONFIGURATION:
-    case USBDEVFS_RESET:
-      return answer(device.gone() ? -ENODEV : 0);
-    case USBDEVFS_GETDRIVER:
-      return answer(-ENODATA);
-    case USBDEVFS_CLEAR_HALT:
-      return answer(device.clearHalt(*static_cast<unsigned*>(argument)));
-    case USBDEVFS_SUBMITURB:
-      return answer(device.submit({static_cast<usbdevfs_urb*>(argument), reinterpret_cast<std::uint64_t>(argument), nullptr}));
-    case USBDEVFS_REAPURBNDELAY: {
-      Urb urb;
-      const int error = device.reap(urb);
-      if (error < 0) return answer(error);
-      *static_cast<void**>(argument) = urb.urb;
-      return 0;
-    }
-    case USBDEVFS_DISCARDURB:
-      return answer(device.discard(reinterpret_cast<std::uint64_t>(argument)));
-    default:
-      return answer(-ENOTTY);
+void closeUsbfs(int fd) {
+  Table& t = table();
+  std::shared_ptr<UsbfsDevice> owner;
+  {
+    const std::lock_guard lock(t.mutex);
+    t.fds[static_cast<std::size_t>(fd)] = nullptr;
+    owner = t.owners[fd];
+    t.owners.erase(fd);
   }
+  owner->closed();
 }
-
-mode_t modeOf(int flags, std::va_list arguments) { return (flags & (O_CREAT | O_TMPFILE)) != 0 ? va_arg(arguments, mode_t) : 0; }
 
 }  // namespace
 
@@ -110,48 +66,4 @@ void denyUsbfs(bool deny) { table().denied = deny; }
 
 }  // namespace pincer::emulation
 
-using namespace pincer::emulation;
-
-extern "C" {
-int open(const char* path, int flags, ...) {
-  std::va_list arguments;
-  va_start(arguments, flags);
-  const mode_t mode = modeOf(flags, arguments);
-  va_end(arguments);
-  return openAny("open", path, flags, mode);
-}
-int open64(const char* path, int flags, ...) {
-  std::va_list arguments;
-  va_start(arguments, flags);
-  const mode_t mode = modeOf(flags, arguments);
-  va_end(arguments);
-  return openAny("open64", path, flags, mode);
-}
-// What a fortified open() really calls: Debian's libusb opens the device's node with it.
-int __open_2(const char* path, int flags) { return openAny("open", path, flags, 0); }
-int __open64_2(const char* path, int flags) { return openAny("open64", path, flags, 0); }
-
-int ioctl(int fd, unsigned long code, ...) noexcept {
-  std::va_list arguments;
-  va_start(arguments, code);
-  void* argument = va_arg(arguments, void*);
-  va_end(arguments);
-  if (UsbfsDevice* device = deviceAt(fd)) return request(*device, code, argument);
-  static const auto real = next<int (*)(int, unsigned long, ...)>("ioctl");
-  return real(fd, code, argument);
-}
-
-int close(int fd) {
-  static const auto real = next<int (*)(int)>("close");
-  std::shared_ptr<UsbfsDevice> owner;
-  if (deviceAt(fd) != nullptr) {
-    Table& t = table();
-    const std::lock_guard lock(t.mutex);
-    t.fds[static_cast<std::size_t>(fd)] = nullptr;
-    owner = t.owners[fd];
-    t.owners.erase(fd);
-  }
-  if (owner) owner->closed();
-  return real(fd);
-}
-}
+#include "tests/emulation/usbfs_symbols.h"

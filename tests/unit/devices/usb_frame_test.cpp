@@ -111,7 +111,23 @@ TEST(UsbFrameOrder, CountsOnBeyondTheLargestNumber) {
   order.judge(0xffffffffu);
   EXPECT_EQ(order.judge(0), FrameVerdict::kNewer);
   EXPECT_EQ(order.lost(), 0);
-  EXPECT_EQ(order.judge(0xffffffffu), FrameVerdict::kLate);
+  EXPECT_EQ(order.judge(0xffffffffu), FrameVerdict::kDuplicate);
+}
+
+TEST(UsbFrameOrder, AFrameThatComesLateIsNoLongerLost) {
+  FrameOrder order;
+  order.judge(7);
+  order.judge(10);
+  EXPECT_EQ(order.lost(), 2);
+  EXPECT_EQ(order.judge(8), FrameVerdict::kLate);
+  EXPECT_EQ(order.lost(), -1);
+  EXPECT_EQ(order.judge(8), FrameVerdict::kDuplicate);
+  EXPECT_EQ(order.lost(), 0);
+  EXPECT_EQ(order.judge(6), FrameVerdict::kLate) << "before the first: it was never missed";
+  EXPECT_EQ(order.lost(), 0);
+  order.judge(11 + 100);
+  EXPECT_EQ(order.judge(9), FrameVerdict::kLate) << "too long ago to know";
+  EXPECT_EQ(order.lost(), 0);
 }
 
 TEST(UsbClockMap, SeesHowOldAFrameIsThatWasHeldUp) {

@@ -75,11 +75,18 @@ TEST(UsbMessages, IdentityStatusAndCapabilitiesComeBack) {
   EXPECT_EQ(status->missed_deadlines, 4u);
   ArmCapabilities arm;
   arm.peak_force = 8.5, arm.continuous_force = 1.4, arm.resolution = 3e-5, arm.stiffness_limit = 3500;
+  arm.peak_torque = Vec3(1.8275, 1.8275, 1.445);
   arm.workspace_min_D = Vec3(-0.1, -0.06, -0.06), arm.workspace_max_D = Vec3(0.1, 0.1, 0.05);
   const auto back = armCapabilitiesIn(toFrame(arm));
   ASSERT_TRUE(back);
   EXPECT_NEAR(back->peak_force, 8.5, 1e-9);
   EXPECT_NEAR((back->workspace_max_D - arm.workspace_max_D).norm(), 0, 1e-12);
+  ASSERT_TRUE(back->peak_torque);
+  EXPECT_NEAR((*back->peak_torque - *arm.peak_torque).norm(), 0, 1e-12);
+  arm.peak_torque.reset();
+  EXPECT_FALSE(armCapabilitiesIn(toFrame(arm))->peak_torque) << "absent, never zero";
+  arm.peak_torque = Vec3(1, 0, 1);
+  EXPECT_FALSE(armCapabilitiesIn(toFrame(arm))) << "one joint without torque is no arm";
   const auto display = displayCapabilitiesIn(toFrame(TactileCapabilities{53e-6, 0.1, 500, Vec2(0.012, 0.01)}));
   ASSERT_TRUE(display);
   EXPECT_NEAR(display->resolution, 53e-6, 1e-12);
