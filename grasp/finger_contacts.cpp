@@ -47,7 +47,7 @@ void takeFound(const Found& found, const GraspModel& model, const GraspState& st
     if constexpr (std::is_same_v<Found, contact::FingerContacts>) {
       scratch.nearest_p_F[finger] = scratch.q_mid_WF[finger].conjugate() * (to_tip_W + main.phi * scratch.nearest_n_W[finger]);
     } else {
-      scratch.nearest_n_W[finger] = -to_tip_W.normalized();  // where the facet is, whatever its shading says
+      scratch.nearest_n_W[finger] = -to_tip_W;  // where the facet is, whatever its shading says
     }
   }
   const bool neither_moves = !b.dynamic && scratch.world.points[finger].inverse_mass.isZero(0);

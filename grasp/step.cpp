@@ -26,11 +26,11 @@ void setInputs(const GraspModel& model, const GraspState& state, std::span<const
     setRotation(inputs[i], state.fingers[i], model.world.options.h, point, scratch.q_mid_WF[i]);
     const engine::DrivenPointModel& coupling = model.fingers[i].coupling;
     point.turned = model.fingers[i].along_normal || coupling.twist_stiffness + coupling.twist_damping > 0;
-    if (point.turned) point.R_WA = frameFromNormal(state.fingers[i].n_W);
+    if (point.turned) point.n_W = state.fingers[i].n_W;
   }
 }
 
-// Sums the contacts of one finger into its report; returns the direction from its centre to their force-weighted mean place.
+// Sums the contacts of one finger into its report; returns the way from its centre to their force-weighted mean place, or its direction.
 Vec3 sumContacts(const GraspScratch& scratch, int finger, double h, FingerReport& report) {
   Vec3 p_sum = Vec3::Zero(), n_sum = Vec3::Zero(), tangential = Vec3::Zero();
   double largest = 0;
@@ -53,7 +53,7 @@ Vec3 sumContacts(const GraspScratch& scratch, int finger, double h, FingerReport
   report.p_WC = p_sum / report.normal_force;
   if (n_sum.squaredNorm() > 0) report.n_W = n_sum.normalized();
   const Vec3 to_mean = report.p_WC - scratch.world.points[finger].p_mid_W;
-  return to_mean.squaredNorm() > 0 ? Vec3(to_mean.normalized()) : Vec3(-report.n_W);
+  return to_mean.squaredNorm() > 0 ? to_mean : Vec3(-report.n_W);
 }
 
 // Where the tick was cut, its last part doesn't speak for all of it: a landing in a short part would be felt as a blow.
@@ -99,8 +99,9 @@ void reportFinger(const GraspModel& model, const GraspState& state, int finger, 
   reportPlace(model, finger, touch_W, scratch);
   const double tick = model.world.options.h;
   if (h < tick) averageOverTick(point, tick, report);
-  const Vec3 a_W = (state.world.points[finger].v_W - point.v_tick_W) / tick;
-  report.f_user_W = report.f_contact_W + scratch.inputs[finger].f_W - model.fingers[finger].coupling.mass * a_W;
+  report.f_user_W = report.f_contact_W + scratch.inputs[finger].f_W;
+  const double mass = model.fingers[finger].coupling.mass;
+  if (mass > 0) report.f_user_W -= mass / tick * (state.world.points[finger].v_W - point.v_tick_W);
 }
 
 // The fingers' contacts, for each part of the tick.
@@ -171,7 +172,7 @@ Vec2 placeOnPad(const FingerModel& finger, const Vec3& d_F) {
   const Vec2 tangent(d_F.dot(finger.distal_F), d_F.dot(radial_F));
   const double sine = tangent.norm();
   if (sine < 1e-300) return Vec2::Zero();
-  if (finger.shape) return placeOnPad(finger, contact::supportOf(*finger.shape, d_F), d_F);
+  if (finger.shape) return placeOnPad(finger, contact::supportOf(*finger.shape, d_F.normalized()), d_F.normalized());
   return (finger.radius * std::atan2(sine, d_F.dot(finger.pad_normal_F)) / sine) * tangent;
 }
 

@@ -59,7 +59,7 @@ struct GraspScratch {
   explicit GraspScratch(const GraspModel& model);
   engine::WorldScratch world;
   std::vector<engine::PointInput> inputs;
-  std::vector<Vec3> nearest_n_W;        // per finger, of the nearest body
+  std::vector<Vec3> nearest_n_W;        // per finger, towards it from the nearest body, of any length; zero: none is near
   std::vector<FingerReport> fingers;    // the tick's result
   std::vector<FingerReport> baselines;  // of fingers that aren't proxies (baseline.h)
   std::vector<Quat> orientations;       // of the fingers at its end
@@ -74,7 +74,7 @@ GraspState makeState(const GraspModel& model, const std::vector<engine::BodyStar
 engine::StepReport step(const GraspModel& model, GraspState& state, GraspScratch& scratch, std::span<const FingerInput> inputs,
                         std::span<const engine::MotionInput> motions = {});
 
-// Place on the pad of the fingertip's point in direction `d_F` (unit, from the centre): arc length over the skin from the pad's centre (the
+// Place on the pad of the fingertip's point in direction `d_F` (from the centre, of any length): arc length over the skin from the pad's centre (the
 // finger's support point along the pad normal), in the direction in which it lies about the pad normal.
 Vec2 placeOnPad(const FingerModel& finger, const Vec3& d_F);
 // The same of any finger's surface point `p_F` [m] with outward normal `normal_F`.

@@ -96,15 +96,24 @@ class SmallProblem {
     std::copy(u_, u_ + m, u_out);
   }
 
-  void fillOwn(const ContactSides& sides, int first) {
+  template <class Dot>
+  void addOwn(const ContactSide& side, int first, const Dot& dot) {
     for (int k = 0; k < rows; ++k) {
-      for (int l = 0; l <= k; ++l) {
-        double sum = 0;
-        for (const ContactSide& side : sides) {
-          if (side.mover >= 0) sum += side.is_point ? dot3(side.A[k], side.A[l]) : dot6(side.A[k], side.A[l]);
-        }
-        W_[first + k][first + l] = W_[first + l][first + k] = sum;
-      }
+      for (int l = 0; l <= k; ++l) W_[first + k][first + l] += dot(side.A[k], side.A[l]);
+    }
+  }
+
+  void fillOwn(const ContactSides& sides, int first) {
+    for (int k = 0; k < rows; ++k) std::fill(W_[first + k] + first, W_[first + k] + first + k + 1, 0.0);
+    for (const ContactSide& side : sides) {
+      if (side.mover < 0) continue;
+      if (side.is_point)
+        addOwn(side, first, dot3);
+      else
+        addOwn(side, first, dot6);
+    }
+    for (int k = 1; k < rows; ++k) {
+      for (int l = 0; l < k; ++l) W_[first + l][first + k] = W_[first + k][first + l];
     }
   }
 

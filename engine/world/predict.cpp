@@ -84,28 +84,46 @@ void predictTwist(const DrivenPointModel& point, const PointState& s, const Poin
   out.free.w_W += axis.v_free * out.R_WA.col(2);
 }
 
-void predictPoint(const DrivenPointModel& point, const std::array<AxisForm, 3>& forms, const PointState& s, const PointInput& in, double h,
-                  PointScratch& out) {
-  out.input_ok = in.p_target_W.allFinite() && in.v_target_W.allFinite() && in.f_W.allFinite() && in.w_W.allFinite() && in.R_WA.allFinite();
-  out.p_target_W = out.input_ok ? in.p_target_W : s.p_target_W;
-  out.v_target_W = out.input_ok ? in.v_target_W : Vec3::Zero();
-  const Vec3 f_W = out.input_ok ? in.f_W : Vec3::Zero();
-  out.start.v_W = s.v_W;
-  out.turned = in.turned && out.input_ok;
-  if (out.turned) out.R_WA = in.R_WA;
-  const auto inAxes = [&](const Vec3& v) { return out.turned ? Vec3(out.R_WA.transpose() * v) : v; };
-  const Vec3 e_A = inAxes(s.p_W - s.p_target_W), v_A = inAxes(s.v_W), v_target_A = inAxes(s.v_target_W);
-  const Vec3 v_end_A = inAxes(out.v_target_W), step_A = inAxes(out.p_target_W - s.p_target_W), f_A = inAxes(f_W);
+// A driven point's error, velocities, the target's motion over the tick and the force, all in one frame.
+struct PointMotion {
+  Vec3 e, v, v_target, v_target_end, target_step, f;
+
+  PointMotion in(const Mat3& R) const {
+    return {R.transpose() * e,           R.transpose() * v, R.transpose() * v_target, R.transpose() * v_target_end,
+            R.transpose() * target_step, R.transpose() * f};
+  }
+};
+
+void predictAxes(const DrivenPointModel& point, const std::array<AxisForm, 3>& forms, const PointMotion& m, bool touching, double h,
+                 PointScratch& out) {
   for (int i = 0; i < 3; ++i) {
-    const AxisInput a{point.mass, point.stiffness[i], point.damping[i], e_A[i], v_A[i], v_target_A[i], v_end_A[i], step_A[i], f_A[i], h};
-    PointAxis axis{v_end_A[i], 0};
+    const AxisInput a{point.mass,    point.stiffness[i], point.damping[i], m.e[i], m.v[i],
+                      m.v_target[i], m.v_target_end[i],  m.target_step[i], m.f[i], h};
+    PointAxis axis{m.v_target_end[i], 0};
     if (forms[i] == AxisForm::kFourthOrder) axis = fourthOrderAxis(a);
-    if (forms[i] == AxisForm::kImplicit) axis = implicitAxis(a, s.touching ? 0.5 : 1.0);
+    if (forms[i] == AxisForm::kImplicit) axis = implicitAxis(a, touching ? 0.5 : 1.0);
     out.free.v_W[i] = axis.v_free;
     out.inverse_mass[i] = axis.inverse_mass;
-    out.p_mid_W[i] = forms[i] == AxisForm::kLocked ? 0.5 * (s.p_W[i] + out.p_target_W[i]) : s.p_W[i] + 0.5 * h * s.v_W[i];
   }
-  if (out.turned) out.free.v_W = out.R_WA * out.free.v_W.eval();
+}
+
+void predictPoint(const DrivenPointModel& point, const std::array<AxisForm, 3>& forms, const PointState& s, const PointInput& in, double h,
+                  PointScratch& out) {
+  out.p_target_W = out.input_ok ? in.p_target_W : s.p_target_W;
+  out.v_target_W = out.input_ok ? in.v_target_W : Vec3::Zero();
+  out.start.v_W = s.v_W;
+  out.turned = in.turned && out.input_ok;
+  const PointMotion motion_W{
+      s.p_W - s.p_target_W, s.v_W, s.v_target_W, out.v_target_W, out.p_target_W - s.p_target_W, out.input_ok ? in.f_W : Vec3::Zero()};
+  if (out.turned) {
+    out.R_WA = frameFromNormal(in.n_W);
+    predictAxes(point, forms, motion_W.in(out.R_WA), s.touching, h, out);
+    out.free.v_W = out.R_WA * out.free.v_W.eval();
+  } else {
+    predictAxes(point, forms, motion_W, s.touching, h, out);
+  }
+  for (int i = 0; i < 3; ++i)
+    out.p_mid_W[i] = forms[i] == AxisForm::kLocked ? 0.5 * (s.p_W[i] + out.p_target_W[i]) : s.p_W[i] + 0.5 * h * s.v_W[i];
   predictTwist(point, s, in, h, out);
 }
 

@@ -11,8 +11,6 @@ int patchesFor(const WorldModel& model) {
   return std::any_of(model.bodies.begin(), model.bodies.end(), is_mesh) ? 1024 : 1;
 }
 
-bool turns(const Motion& m) { return m.w_W[0] != 0 || m.w_W[1] != 0 || m.w_W[2] != 0; }
-
 }  // namespace
 
 WorldScratch::WorldScratch(const WorldModel& model) : h(model.options.h), patches(patchesFor(model)), islands(model) {
@@ -60,17 +58,6 @@ WorldScratch::WorldScratch(const WorldModel& model) : h(model.options.h), patche
 std::uint64_t contactId(int kind, int a, int b, std::uint32_t feature) {
   return static_cast<std::uint64_t>(kind) << 62 | static_cast<std::uint64_t>(a & 0x7fff) << 47 |
          static_cast<std::uint64_t>(b & 0x7fff) << 32 | feature;
-}
-
-ContactVector relativeVelocity(const Contact& c, const Motion& a, const Motion& b) {
-  Vec3 v_W = a.v_W - b.v_W;
-  if (turns(a)) v_W += a.w_W.cross(c.arm_a_W);
-  if (turns(b)) v_W -= b.w_W.cross(c.arm_b_W);
-  ContactVector v = ContactVector::Zero();
-  for (int k = 0; k < 3; ++k) v[k] = c.R_WC(0, k) * v_W[0] + c.R_WC(1, k) * v_W[1] + c.R_WC(2, k) * v_W[2];
-  if (rowsOf(c.material) == kTorsionRow) return v;
-  for (int k = kTorsionRow; k < rowsOf(c.material); ++k) v[k] = axisOf(c, k).dot(a.w_W - b.w_W);
-  return v;
 }
 
 Contact* addContact(WorldScratch& scratch, double phi) {

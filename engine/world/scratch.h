@@ -33,17 +33,17 @@ struct Contact {
   double phi = 0;                // gap [m]
   Material material;
   int memory = -1;  // index in the state's contacts before the step, -1 for a new contact
-  // filled by the step:
+  // filled by the step, without a value before:
   double mu = 0;  // in force in this tick
-  Vec3 arm_a_W = Vec3::Zero(), arm_b_W = Vec3::Zero();
-  ContactVector v_start_C = ContactVector::Zero();  // of a relative to b at the start of the tick, see relativeVelocity
-  ContactVector offset_C = ContactVector::Zero();   // anchored stick, at the start of the tick; see ContactMemory
-  bool closing = false;                             // it closes in this tick, from a positive gap or with an approaching velocity
-  bool stuck = false;                               // it stuck in the last tick: its tangential biases undo the offset
-  ContactVector bias_C = ContactVector::Zero();     // part of q that isn't velocity [m/s], from torsion on [rad/s]
-  ContactVector r = ContactVector::Zero();          // impulse on a in C [N s]
-  Vec3 impulse_W = Vec3::Zero();                    // impulse on a at p_W [N s]; b got exactly its negative
-  Vec3 u_C = Vec3::Zero();                          // velocity of a relative to b at the end of the tick, biases included [m/s]
+  Vec3 arm_a_W, arm_b_W;
+  ContactVector v_start_C;  // of a relative to b at the start of the tick, see relativeVelocity
+  ContactVector offset_C;   // anchored stick, at the start of the tick; see ContactMemory
+  bool closing = false;     // it closes in this tick, from a positive gap or with an approaching velocity
+  bool stuck = false;       // it stuck in the last tick: its tangential biases undo the offset
+  ContactVector bias_C;     // part of q that isn't velocity [m/s], from torsion on [rad/s]
+  ContactVector r;          // impulse on a in C [N s]
+  Vec3 impulse_W;           // impulse on a at p_W [N s]; b got exactly its negative
+  Vec3 u_C;                 // velocity of a relative to b at the end of the tick, biases included [m/s]
   bool sliding = false;
   int settling = 0;    // see ContactMemory; of the last tick before the solve, of this one after it
   bool quiet = false;  // the last tick's impulses still fit
@@ -61,9 +61,9 @@ struct PointInput {
   Vec3 v_target_W = Vec3::Zero();  // [m/s]
   Vec3 f_W = Vec3::Zero();         // [N]
   Vec3 w_W = Vec3::Zero();         // with which what the point stands for turns, over the tick [rad/s]
-  // Axes of the coupling where they aren't the world's; the third is that of its twist.
+  // Axes A of the coupling where they aren't the world's: frameFromNormal of this unit vector, the axis of its twist (contact/math.h).
   bool turned = false;
-  Mat3 R_WA = Mat3::Identity();
+  Vec3 n_W = Vec3::UnitZ();
 };
 
 // What a body or point went through in this part of the tick.
@@ -173,8 +173,18 @@ inline const MoverScratch& mover(const WorldScratch& scratch, const Side& side) 
 inline Vec3 axisOf(const Contact& c, int k) { return k == kTorsionRow ? c.R_WC.col(2) : c.R_WC.col(k - kRollingRow); }
 inline double radiusOf(const Contact& c, int k) { return k == kTorsionRow ? c.material.torsion_radius : c.material.rolling_radius; }
 
+inline bool turns(const Motion& m) { return m.w_W[0] != 0 || m.w_W[1] != 0 || m.w_W[2] != 0; }
+
 // Velocity of a relative to b where they touch, in C: along t1, t2, n [m/s]; of rows that the contact has, about n, t1, t2 [rad/s].
-ContactVector relativeVelocity(const Contact& c, const Motion& a, const Motion& b);
+inline ContactVector relativeVelocity(const Contact& c, const Motion& a, const Motion& b) {
+  Vec3 v_W = a.v_W - b.v_W;
+  if (turns(a)) v_W += a.w_W.cross(c.arm_a_W);
+  if (turns(b)) v_W -= b.w_W.cross(c.arm_b_W);
+  ContactVector v = ContactVector::Zero();
+  for (int k = 0; k < 3; ++k) v[k] = c.R_WC(0, k) * v_W[0] + c.R_WC(1, k) * v_W[1] + c.R_WC(2, k) * v_W[2];
+  for (int k = kTorsionRow; k < rowsOf(c.material); ++k) v[k] = axisOf(c, k).dot(a.w_W - b.w_W);
+  return v;
+}
 
 inline void mark(WorldScratch& scratch, Stage stage) {
   if (scratch.clock) scratch.clock->mark(stage);

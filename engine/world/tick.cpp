@@ -20,7 +20,9 @@ bool isFinite(const MotionInput& in) {
 }
 
 bool isFinite(const PointInput& in) {
-  return in.p_target_W.allFinite() && in.v_target_W.allFinite() && in.f_W.allFinite() && in.w_W.allFinite() && in.R_WA.allFinite();
+  Vec3 sum = in.p_target_W + in.v_target_W + in.f_W + in.w_W;  // a NaN or infinity anywhere survives the sum
+  if (in.turned) sum += in.n_W;
+  return std::isfinite(sum[0] + sum[1] + sum[2]);
 }
 
 bool isFinite(const WorldState& state) {
@@ -233,15 +235,16 @@ class Tick {
   void setInputs(double h) {
     const double share = h / left_;
     for (std::size_t i = 0; i < scratch_.point_inputs.size(); ++i)
-      setPoint(state_.points[i], inputs_.points[i], share, scratch_.point_inputs[i]);
+      setPoint(state_.points[i], inputs_.points[i], share, scratch_.points[i], scratch_.point_inputs[i]);
     for (std::size_t i = 0; i < model_.bodies.size() && model_.driven_count > 0; ++i) {
       if (model_.bodies[i].driven) setMotion(static_cast<std::size_t>(model_.bodies[i].motion), state_.bodies[i], share);
     }
   }
 
-  void setPoint(const PointState& now, const PointInput& end, double share, PointInput& out) {
+  void setPoint(const PointState& now, const PointInput& end, double share, PointScratch& point, PointInput& out) {
     out = end;
-    if (!isFinite(end)) report_.status |= kInputNotFinite;
+    point.input_ok = isFinite(end);
+    if (!point.input_ok) report_.status |= kInputNotFinite;
     if (share < 1)
       out.p_target_W = cubicBetween(now.p_target_W, now.v_target_W, end.p_target_W, end.v_target_W, left_, share, out.v_target_W);
   }
