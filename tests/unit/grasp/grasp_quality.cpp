@@ -168,5 +168,32 @@ TEST(GraspQuality, HeldBallTellsItsMargins) {
   EXPECT_TRUE(q.force_closure);
 }
 
+// A grasp's tau_n once was the solver's impulse over the tick, which is scaled by the equivalent radius: off by 1/e, 300 times here.
+TEST(GraspQuality, TorsionOfAGraspContactIsTheMomentThatItsSpringCarries) {
+  constexpr double kTwist = 0.2, kAngle = 2e-3;  // [N m/rad], [rad]: an eighth of what the pad carries
+  engine::WorldOptions options;
+  options.gravity_W.setZero();
+  engine::WorldBuilder builder(options);
+  builder.addBody({"plate", contact::HalfSpace{}, false, 0, {0.5, 0.5, 0, 0}});
+  FingerModel finger = tests::softFinger("soft");
+  finger.pad.patch_radius = 5e-3;
+  finger.coupling.twist_stiffness = kTwist;
+  const GraspModel model = buildGrasp(builder, {finger});
+  GraspState state = makeState(model, {tests::startAt(Vec3::Zero())}, {Vec3(0, 0, 8e-3)});
+  GraspScratch scratch(model);
+  std::vector<FingerInput> input(1);
+  for (int i = 1; i <= 500; ++i) {
+    input[0].p_WF = Vec3(0, 0, 8e-3 - 2e-3 * std::min(1.0, i / 100.0));
+    input[0].q_WF = Quat(Eigen::AngleAxisd(kAngle * std::clamp((i - 200) / 100.0, 0.0, 1.0), Vec3::UnitZ()));
+    step(model, state, scratch, input);
+  }
+  const std::vector<GraspContact> contacts = graspContacts(model, scratch, 0);
+  ASSERT_EQ(contacts.size(), 1u);
+  const GraspContact& c = contacts[0];
+  EXPECT_NEAR(c.tau_n, -kTwist * kAngle, 1e-6 * kTwist * kAngle);  // at rest: 200 ticks after the turn
+  EXPECT_DOUBLE_EQ(std::abs(c.tau_n), std::abs(scratch.fingers[0].torsion));
+  EXPECT_NEAR(slipMargin(c), 1 - kTwist * kAngle / (2.0 / 3 * 5e-3 * 0.5 * c.f_n), 1e-6);
+}
+
 }  // namespace
 }  // namespace pincer::grasp
