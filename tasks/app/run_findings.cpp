@@ -35,17 +35,19 @@ int runFindingsCommand(const FindingsArguments& arguments) {
     line->update(done);
   });
   line.reset();
-  if (result.interrupted) {
-    fmt::print(stderr, "pincer: interrupted; nothing was written.\n");
+  if (result.variants.empty()) {
+    fmt::print(stderr, "pincer: interrupted before an experiment was whole; nothing was written.\n");
     return kExitInterrupted;
   }
+  const int exit_code = result.interrupted ? kExitInterrupted : kExitOk;
+  if (result.interrupted) fmt::print(stderr, "pincer: interrupted; these are the experiments that were whole.\n");
   fmt::print("{}", findingsText(result));
-  if (!arguments.run.report) return kExitOk;
+  if (!arguments.run.report) return exit_code;
   const std::string directory = outputDirectory(arguments.run, "findings");
   makeDirectory(directory);
   writeFindingsPage(result, directory + "/report.html");
   fmt::print("Report: {}/report.html\n", directory);
-  return kExitOk;
+  return exit_code;
 }
 
 }  // namespace
@@ -61,7 +63,7 @@ void addFindingsTask(CLI::App& run, int& exit_code) {
   command->add_option("--alignments", options.alignments, "Per participant and condition")->capture_default_str();
   command->add_option("--threads", options.threads, "That work at once")->capture_default_str();
   command->add_option("--seed", options.seed, "Of all that varies")->capture_default_str();
-  command->add_option("--only", options.only, "Only variants whose name holds this");
+  command->add_option("--only", options.only, "Only variants whose name holds one of these, separated by commas");
   command->add_option("--out", arguments->run.out, "Directory for the report (default: out/findings-DATE-TIME)");
   command->add_flag("!--no-report", arguments->run.report, "Only the table");
   command->footer(kFindingsExample);

@@ -26,7 +26,7 @@ struct StudyArguments {
   std::string study_file;
   std::optional<int> participants;
   std::optional<std::uint64_t> seed;
-  bool print_study = false;
+  bool print_study = false, resume = false;
 };
 
 // A study's parameters: the published design, changed by the file and then by the command line.
@@ -36,6 +36,25 @@ Study studyOf(Study study, const StudyArguments& arguments) {
   if (arguments.participants) study.participants = *arguments.participants;
   if (arguments.seed) study.seed = *arguments.seed;
   validate(study);
+  return study;
+}
+
+// Of a session that is to go on: its parameters, whoever takes part being the same as today.
+template <class Study>
+Study resumedStudy(const std::string& task, Study study, const StudyArguments& arguments) {
+  if (arguments.run.out.empty()) throw InputError("run: --resume needs --out DIR, the directory of the session to go on with.");
+  if (!arguments.study_file.empty() || arguments.participants || arguments.seed)
+    throw InputError("run: --resume goes on with the session's own parameters. Leave out --study, --participants and --seed.");
+  const SessionReader session(arguments.run.out + "/session.db");
+  const SessionInfo& info = session.info();
+  if (info.task != task)
+    throw InputError(fmt::format("{}: a session of {}, not of {}. Resume it as that.", session.path(), info.task, task));
+  if (session.complete()) throw InputError(session.path() + ": the session is complete; there is nothing to go on with.");
+  parseStudy(info.protocol_json, session.path() + ": protocol", study);
+  study.seed = info.seed;
+  if (participantsJson(study) != info.participants_json)
+    throw InputError(session.path() + ": other participants began it than this version simulates. Go on with the version that began it: " +
+                     info.version + ".");
   return study;
 }
 
@@ -65,7 +84,7 @@ int showStudy(const StudyArguments& arguments, const std::string& directory, con
                   simulated / outcome.cpu_seconds));
   say(fmt::format("Session: {}", session.path()));
   if (outcome.interrupted) {
-    say(fmt::format("Interrupted after {} trials; they are safe. See them: pincer report {}", outcome.trials, session.path()));
+    say(fmt::format("Interrupted after {} trials; they are safe. Go on: the same task with --resume --out {}", outcome.trials, directory));
     return kExitInterrupted;
   }
   if (arguments.run.report) say(fmt::format("Report: {}", writeStudyReport(session, directory + "/report.html").html));
@@ -78,15 +97,16 @@ template <class Study, class MakeExperiment>
 int runStudyTask(const std::string& task, const Study& published, const StudyArguments& arguments, const char* display,
                  const MakeExperiment& make) {
   const std::atomic<bool>& interrupted = interruptFlag();
-  const Study study = studyOf(published, arguments);
+  const Study study = arguments.resume ? resumedStudy(task, published, arguments) : studyOf(published, arguments);
   if (arguments.print_study) {
     fmt::print("{}\n", studyJson(study));
     return kExitOk;
   }
   auto experiment = make(study, arguments.run.servo, strideOf(arguments.run));
-  const std::string directory = outputDirectory(arguments.run, task);
+  const std::string directory = arguments.resume ? arguments.run.out : outputDirectory(arguments.run, task);
   makeDirectory(directory);
   StudySession session;
+  session.resume = arguments.resume;
   session.info.task = task;
   session.info.seed = study.seed;
   session.info.version = PINCER_VERSION;
@@ -112,6 +132,7 @@ std::shared_ptr<StudyArguments> addStudyTask(CLI::App& run, const std::string& t
   command->add_option("--seed", arguments->seed, "Of all that varies; the same seed gives the same session (default: 1)");
   command->add_option("--study", arguments->study_file, "File with parameters that differ from the published design (JSON)");
   command->add_flag("--print-study", arguments->print_study, "Print all parameters as JSON, and run nothing");
+  command->add_flag("--resume", arguments->resume, "Go on with the interrupted or killed session in --out");
   addRunOptions(*command, arguments->run);
   command->footer(fmt::format("\n{}\n\nExample:\n  pincer run {} --participants 2 --out out/{}", more, task, task));
   return arguments;

@@ -109,8 +109,7 @@ class FieldWriter {
 };
 
 template <class Study>
-void readStudyFile(const std::string& path, Study& study) {
-  const JsonValue file = readJson(path);
+void takeStudy(const JsonValue& file, Study& study) {
   FieldReader reader(file);
   visitFields(study, reader);
   reader.refuseOthers();
@@ -136,9 +135,12 @@ std::string peopleJson(const Limits& limits) {
 
 }  // namespace
 
-void readStudy(const std::string& path, ArcStudy& study) { readStudyFile(path, study); }
-void readStudy(const std::string& path, LocalisationStudy& study) { readStudyFile(path, study); }
-void readStudy(const std::string& path, ShapeStudy& study) { readStudyFile(path, study); }
+void readStudy(const std::string& path, ArcStudy& study) { takeStudy(readJson(path), study); }
+void readStudy(const std::string& path, LocalisationStudy& study) { takeStudy(readJson(path), study); }
+void readStudy(const std::string& path, ShapeStudy& study) { takeStudy(readJson(path), study); }
+void parseStudy(const std::string& text, const std::string& name, ShapeStudy& study) { takeStudy(parseJson(text, name), study); }
+void parseStudy(const std::string& text, const std::string& name, LocalisationStudy& study) { takeStudy(parseJson(text, name), study); }
+void parseStudy(const std::string& text, const std::string& name, ArcStudy& study) { takeStudy(parseJson(text, name), study); }
 std::string studyJson(const ArcStudy& study) { return objectJson(study); }
 std::string studyJson(const LocalisationStudy& study) { return objectJson(study); }
 std::string studyJson(const ShapeStudy& study) { return objectJson(study); }

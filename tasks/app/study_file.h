@@ -14,6 +14,10 @@ namespace pincer::tasks {
 void readStudy(const std::string& path, ArcStudy& study);
 void readStudy(const std::string& path, LocalisationStudy& study);
 void readStudy(const std::string& path, ShapeStudy& study);
+// The same from the text of a file; `name` stands for it in errors.
+void parseStudy(const std::string& text, const std::string& name, ArcStudy& study);
+void parseStudy(const std::string& text, const std::string& name, LocalisationStudy& study);
+void parseStudy(const std::string& text, const std::string& name, ShapeStudy& study);
 
 std::string studyJson(const ArcStudy& study);
 std::string studyJson(const LocalisationStudy& study);

@@ -20,9 +20,11 @@ StudyOutcome runStudySession(Experiment& experiment, const StudySession& session
                              const std::function<void(const StudyProgress&)>& progress) {
   SessionOptions store;
   store.block_when_full = !session.real_time;
-  SessionWriter writer = SessionWriter::create(session.path, session.info, store);
+  const std::vector<ResponseRecord> earlier = session.resume ? SessionReader(session.path).responses() : std::vector<ResponseRecord>();
+  SessionWriter writer =
+      session.resume ? SessionWriter::resume(session.path, store) : SessionWriter::create(session.path, session.info, store);
   StudyFileSink sink(writer);
-  const StudyOutcome outcome = runStudy(experiment, session.info.seed, {}, sink, interrupted, progress);
+  const StudyOutcome outcome = runStudy(experiment, session.info.seed, earlier, sink, interrupted, progress);
   if (outcome.interrupted) {
     writer.abort("interrupted by the user");
   } else {

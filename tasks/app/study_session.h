@@ -11,11 +11,13 @@ namespace pincer::tasks {
 
 struct StudySession {
   SessionInfo info;
-  std::string path;  // of the new file
+  std::string path;  // of the file
   bool real_time = false;
+  bool resume = false;  // go on with the session in the file; else the file is new
 };
 
-// Runs the study and writes it to the new file. Throws InputError for a file that can't be written.
+// Runs the study, or what is left of it, and writes it to the file. Throws InputError for a file that can't be written, and for a session whose
+// answers aren't those of this study.
 StudyOutcome runStudySession(Experiment& experiment, const StudySession& session, const std::atomic<bool>& interrupted,
                              const std::function<void(const StudyProgress&)>& progress);
 

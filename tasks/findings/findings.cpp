@@ -5,7 +5,9 @@
 #include <chrono>
 #include <cmath>
 #include <exception>
+#include <map>
 #include <mutex>
+#include <sstream>
 #include <thread>
 
 #include "tasks/experiments/simulated_trial.h"
@@ -51,10 +53,12 @@ class Workshop {
            const std::function<void(std::int64_t, std::int64_t)>& progress)
       : options_(options), variants_(std::move(variants)), interrupted_(interrupted), progress_(progress), object_(makePickupObject({})) {
     for (std::size_t v = 0; v < variants_.size(); ++v) {
-      const int experiments = experimentsOf(v);
-      means_.emplace_back(static_cast<std::size_t>(experiments), std::vector<PersonMeans>(static_cast<std::size_t>(options.participants)));
-      for (int e = 0; e < experiments; ++e) {
-        for (int p = 0; p < options.participants; ++p) jobs_.push_back({v, e, p});
+      means_.emplace_back(static_cast<std::size_t>(experimentsOf(v)), People());
+      if (isPrimary(v)) addExperiments(v, 0, options.experiments);
+    }
+    for (int e = 0; e < options.control_experiments; ++e) {
+      for (std::size_t v = 0; v < variants_.size(); ++v) {
+        if (!isPrimary(v)) addExperiments(v, e, e + 1);
       }
     }
   }
@@ -66,16 +70,36 @@ class Workshop {
     if (failure_) std::rethrow_exception(failure_);
   }
 
-  int experimentsOf(std::size_t v) const {
-    return variants_[v] == &findingsVariants().front() ? options_.experiments : options_.control_experiments;
+  // The experiments whose participants have all been simulated: all of them, unless the work was interrupted.
+  std::vector<std::vector<PersonMeans>> whole(std::size_t variant) const {
+    std::vector<std::vector<PersonMeans>> experiments;
+    for (const People& people : means_[variant]) {
+      if (people.size() < static_cast<std::size_t>(options_.participants)) continue;
+      experiments.emplace_back();
+      for (const auto& [person, means] : people) experiments.back().push_back(means);
+    }
+    return experiments;
   }
-  const std::vector<std::vector<PersonMeans>>& means(std::size_t variant) const { return means_[variant]; }
   double simulated() const { return simulated_; }
 
  private:
+  using People = std::map<std::int64_t, PersonMeans>;
+
+  bool isPrimary(std::size_t v) const { return variants_[v] == &findingsVariants().front(); }
+  int experimentsOf(std::size_t v) const { return isPrimary(v) ? options_.experiments : options_.control_experiments; }
+  void addExperiments(std::size_t v, int first, int end) {
+    for (int e = first; e < end; ++e) {
+      for (int p = 0; p < options_.participants; ++p) jobs_.push_back({v, e, p});
+    }
+  }
+
   void work() {
     try {
-      for (std::size_t k = next_++; k < jobs_.size() && !interrupted_; k = next_++) finish(jobs_[k], meansOf(jobs_[k]));
+      for (std::size_t k = next_++; k < jobs_.size(); k = next_++) {
+        PersonMeans means = meansOf(jobs_[k]);
+        if (interrupted_) return;  // half a person
+        finish(jobs_[k], std::move(means));
+      }
     } catch (...) {
       const std::lock_guard lock(mutex_);
       if (!failure_) failure_ = std::current_exception();
@@ -102,7 +126,7 @@ class Workshop {
 
   void finish(const Job& job, PersonMeans means) {
     const std::lock_guard lock(mutex_);
-    means_[job.variant][static_cast<std::size_t>(job.experiment)][static_cast<std::size_t>(job.person)] = std::move(means);
+    means_[job.variant][static_cast<std::size_t>(job.experiment)].emplace(job.person, std::move(means));
     ++done_;
     if (progress_) progress_(done_, static_cast<std::int64_t>(jobs_.size()));
   }
@@ -115,7 +139,7 @@ class Workshop {
   std::vector<Job> jobs_;
   std::atomic<std::size_t> next_{0};
   std::mutex mutex_;  // guards the rest
-  std::vector<std::vector<std::vector<PersonMeans>>> means_;
+  std::vector<std::vector<People>> means_;
   double simulated_ = 0;
   std::int64_t done_ = 0;
   std::exception_ptr failure_;
@@ -152,6 +176,14 @@ FindingResult summarise(const std::vector<std::vector<PersonMeans>>& experiments
   return result;
 }
 
+// `only`: parts of names, separated by commas; empty: all.
+bool isWanted(const std::string& name, const std::string& only) {
+  std::istringstream parts(only);
+  bool wanted = only.empty();
+  for (std::string part; std::getline(parts, part, ',');) wanted = wanted || name.find(part) != std::string::npos;
+  return wanted;
+}
+
 void requireSizes(const FindingsOptions& o) {
   const auto require = [](const char* name, int value, int low, int high) {
     if (value >= low && value <= high) return;
@@ -172,9 +204,9 @@ FindingsResult runFindings(const FindingsOptions& options, const std::atomic<boo
   requireSizes(options);
   std::vector<const FindingsVariant*> chosen;
   for (const FindingsVariant& variant : findingsVariants()) {
-    if (std::string_view(variant.name).find(options.only) != std::string_view::npos) chosen.push_back(&variant);
+    if (isWanted(variant.name, options.only)) chosen.push_back(&variant);
   }
-  if (chosen.empty()) throw InputError(fmt::format("findings: no variant's name holds \"{}\".", options.only));
+  if (chosen.empty()) throw InputError(fmt::format("findings: no variant's name holds one of \"{}\".", options.only));
   FindingsResult result{options, studyOf(options, findingsVariants().front(), 0), {}, 0, 0, false};
   const auto start = std::chrono::steady_clock::now();
   Workshop workshop(options, chosen, interrupted, progress);
@@ -182,10 +214,11 @@ FindingsResult runFindings(const FindingsOptions& options, const std::atomic<boo
   result.wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   result.simulated = workshop.simulated();
   result.interrupted = interrupted;
-  if (result.interrupted) return result;
   for (std::size_t v = 0; v < chosen.size(); ++v) {
+    const auto experiments = workshop.whole(v);
+    if (experiments.empty()) continue;
     VariantResult variant{chosen[v]->name, chosen[v]->what, hashOf(studyOf(options, *chosen[v], 0).people), {}};
-    for (std::size_t m = 0; m < findingMeasures().size(); ++m) variant.findings.push_back(summarise(workshop.means(v), m));
+    for (std::size_t m = 0; m < findingMeasures().size(); ++m) variant.findings.push_back(summarise(experiments, m));
     result.variants.push_back(std::move(variant));
   }
   return result;

@@ -32,7 +32,7 @@ struct FindingsOptions {
   int pickups = 1;     // repetitions of every friction per condition
   int alignments = 3;  // per condition
   int threads = 2;
-  std::string only;  // variants whose name holds this; empty: all
+  std::string only;  // variants whose name holds one of these, separated by commas; empty: all
 };
 
 struct FindingResult {
@@ -57,7 +57,8 @@ struct FindingsResult {
   bool interrupted = false;
 };
 
-// Runs all; `progress(done, total)` after every participant, from any thread, one at a time. Throws InputError.
+// Runs all: first the primary analysis, then one experiment of each control after the other. Where it is interrupted the experiments that are
+// whole are reported; variants that have none are left out. `progress(done, total)` after every participant, from any thread, one at a time. Throws InputError.
 FindingsResult runFindings(const FindingsOptions& options, const std::atomic<bool>& interrupted,
                            const std::function<void(std::int64_t, std::int64_t)>& progress);
 

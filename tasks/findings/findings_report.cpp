@@ -52,9 +52,10 @@ std::string designOf(const FindingsResult& r) {
   const FindingsOptions& o = r.options;
   return fmt::format(
       "{} simulated experiments of the primary analysis, {} of each other variant, of {} participants each, in two conditions: {} spheres "
-      "({} frictions) and {} cylinders per participant and condition. Seed {}.",
+      "({} frictions) and {} cylinders per participant and condition. Seed {}.{}",
       o.experiments, o.control_experiments, o.participants, o.pickups * static_cast<int>(r.study.pickup.frictions.size()),
-      r.study.pickup.frictions.size(), o.alignments, o.seed);
+      r.study.pickup.frictions.size(), o.alignments, o.seed,
+      r.interrupted ? " Interrupted: the tables say how many experiments were whole." : "");
 }
 
 constexpr const char* kReading =

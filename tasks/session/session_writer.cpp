@@ -94,7 +94,7 @@ class SessionWriter::Impl {
     database_.text("PRAGMA journal_mode = WAL");
     database_.run(fmt::format("PRAGMA wal_autocheckpoint = {}; PRAGMA synchronous = NORMAL", kCheckpointPages));
     for (const char* table : {"sample", "event", "reading"}) {
-      database_.run(fmt::format("DELETE FROM {} WHERE trial NOT IN (SELECT trial FROM trial)", table));
+      database_.run(fmt::format("DELETE FROM {} WHERE trial NOT IN (SELECT trial FROM trial UNION SELECT trial FROM response)", table));
     }
     database_.run(fmt::format("UPDATE session SET state = '{}'", kStateRunning));
     statements_.emplace(database_);

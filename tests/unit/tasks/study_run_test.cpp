@@ -11,6 +11,7 @@
 #include "tasks/experiments/arc_study.h"
 #include "tasks/experiments/localisation.h"
 #include "tasks/experiments/shape_study.h"
+#include "tasks/session/database.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/error_of.h"
 #include "tests/support/run_app.h"
@@ -203,6 +204,90 @@ TEST(StudySession, LosesNoFinishedTrialWhenItIsKilled) {
   const SessionReader session(path);
   EXPECT_FALSE(session.complete());
   EXPECT_EQ(session.responses().size(), 3u);
+}
+
+LocalisationStudy studyToKill() {
+  LocalisationStudy study;
+  study.participants = 1;
+  study.repetitions = 4;
+  return study;
+}
+
+// Runs the study in a child, from its begin or from where the last one died, and kills that after `trials` more and `delay` microseconds.
+void killStudyAfter(const StudySession& session, int trials, unsigned delay) {
+  int reported[2];
+  ASSERT_EQ(::pipe(reported), 0);
+  const pid_t child = ::fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    LocalisationExperiment experiment(studyToKill(), {}, 50);
+    const std::atomic<bool> no{false};
+    runStudySession(experiment, session, no, [&](const StudyProgress&) {
+      if (::write(reported[1], "x", 1) != 1) ::_exit(1);
+    });
+    ::_exit(0);
+  }
+  ::close(reported[1]);
+  char x = 0;
+  for (int k = 0; k < trials; ++k) ASSERT_EQ(::read(reported[0], &x, 1), 1);
+  ::usleep(delay);
+  ::kill(child, SIGKILL);
+  ::waitpid(child, nullptr, 0);
+  ::close(reported[0]);
+}
+
+// Killed again and again, each time somewhere else in a trial (where, the machine decides), and resumed: the answers and samples are those of the
+// study that nobody touched.
+TEST(StudySession, GoesOnAfterEveryKillToTheSameEnd) {
+  const TemporaryDirectory dir;
+  StudySession session;
+  session.info.task = "repeated-localisation";
+  session.path = dir / "killed.db";
+  std::size_t answers = 0;
+  for (const unsigned delay : {0u, 1500u, 4000u, 9000u}) {
+    killStudyAfter(session, static_cast<int>(answers) + 2, delay);
+    session.resume = true;
+    const SessionReader killed(session.path);
+    EXPECT_FALSE(killed.complete());
+    EXPECT_GE(killed.responses().size(), answers + 2);
+    answers = killed.responses().size();
+  }
+  const std::atomic<bool> no{false};
+  LocalisationExperiment experiment(studyToKill(), {}, 50), again(studyToKill(), {}, 50);
+  runStudySession(experiment, session, no, {});
+  StudySession whole = session;
+  whole.path = dir / "whole.db";
+  whole.resume = false;
+  runStudySession(again, whole, no, {});
+  const SessionReader a(session.path), b(whole.path);
+  EXPECT_TRUE(a.complete());
+  expectSameAnswers(a.responses(), b.responses());
+  int samples_a = 0, samples_b = 0;
+  a.forEachSample({}, [&](const SampleRecord&) { ++samples_a; });
+  b.forEachSample({}, [&](const SampleRecord&) { ++samples_b; });
+  EXPECT_EQ(samples_a, samples_b);
+  EXPECT_GT(samples_b, 0);
+}
+
+TEST(StudyApp, ResumesWithTheSessionsOwnParameters) {
+  const TemporaryDirectory dir;
+  std::ofstream(dir / "small.json") << R"({"repetitions": 1})";
+  const std::vector<std::string> begin = {
+      "run",        "repeated-localisation", "--participants", "1", "--study", dir / "small.json", "--seed", "4", "--out", dir / "out",
+      "--no-report"};
+  ASSERT_EQ(tests::runPincer(begin).exit_code, 0);
+  const std::vector<std::string> resume = {"run", "repeated-localisation", "--resume", "--out", dir / "out", "--no-report"};
+  const auto finished = tests::runPincer(resume);
+  EXPECT_EQ(finished.exit_code, 3);
+  EXPECT_TRUE(contains(finished.error, "the session is complete")) << finished.error;
+  Database(dir / "out/session.db", Database::Mode::kWrite)
+      .run("DELETE FROM response WHERE trial >= 2; UPDATE session SET state = 'running'");
+  const auto resumed = tests::runPincer(resume);
+  EXPECT_EQ(resumed.exit_code, 0) << resumed.error;
+  EXPECT_EQ(SessionReader(dir / "out/session.db").responses().size(), 5u);
+  const auto other = tests::runPincer({"run", "delay-discrimination", "--resume", "--out", dir / "out"});
+  EXPECT_EQ(other.exit_code, 3);
+  EXPECT_TRUE(contains(other.error, "a session of repeated-localisation")) << other.error;
 }
 
 TEST(StudyApp, RunsReportsAndPrintsItsStudy) {
