@@ -9,12 +9,20 @@
 namespace pincer::tasks {
 namespace {
 
+// Each draw is a statement of its own: the order in which arguments are evaluated is the compiler's, and a seed must mean the same world to all.
 double logUniform(Random& random, double low, double high) { return low * std::pow(high / low, random.uniform()); }
 
 double friction(Random& random) { return random.below(8) == 0 ? 0 : random.uniform(0, 5); }
 
+Vec3 anyVector(Random& random, double low, double high) {
+  Vec3 v;
+  for (int i = 0; i < 3; ++i) v[i] = random.uniform(low, high);
+  return v;
+}
+
 Quat anyRotation(Random& random) {
-  const Vec3 a = random.normal3(), b = random.normal3();
+  const Vec3 a = random.normal3();
+  const Vec3 b = random.normal3();
   return Quat(a.x(), a.y(), a.z(), b.x()).normalized();
 }
 
@@ -23,7 +31,7 @@ contact::Shape anyShape(Random& random, double size) {
     case 0:
       return contact::Sphere{size / 2};
     case 1:
-      return contact::Box{size / 2 * Vec3(random.uniform(0.3, 1), random.uniform(0.3, 1), random.uniform(0.3, 1))};
+      return contact::Box{size / 2 * anyVector(random, 0.3, 1)};
     default:
       return contact::Capsule{size / 4, size / 4};
   }
@@ -88,8 +96,9 @@ class Draft {
     const int count = 2 + static_cast<int>(random_.below(4));
     double z = 0;
     for (int i = 0; i < count; ++i) {
-      add(contact::Box{Vec3::Constant(edge / 2)}, logUniform(random_, 1e-4, 100),
-          {Quat::Identity(), {random_.uniform(-0.1, 0.1) * edge, random_.uniform(-0.1, 0.1) * edge, z + edge / 2}});
+      const double mass = logUniform(random_, 1e-4, 100);
+      const Vec3 aside = edge * anyVector(random_, -0.1, 0.1);
+      add(contact::Box{Vec3::Constant(edge / 2)}, mass, {Quat::Identity(), {aside.x(), aside.y(), z + edge / 2}});
       z += edge;
     }
   }
@@ -103,8 +112,10 @@ class Draft {
     const double size = logUniform(random_, 0.01, 0.1);
     const int count = 1 + static_cast<int>(random_.below(2));
     for (int i = 0; i < count; ++i) {
-      engine::BodyStart& start = add(contact::Box{size / 2 * Vec3(1, random_.uniform(0.5, 1), random_.uniform(0.5, 1))},
-                                     logUniform(random_, 1e-3, 1), {Quat::Identity(), size * Vec3(0.9, 0.9, 0.7 + 1.3 * i)});
+      const double mass = logUniform(random_, 1e-3, 1);
+      const Vec3 sides = anyVector(random_, 0.5, 1);
+      engine::BodyStart& start =
+          add(contact::Box{size / 2 * Vec3(1, sides.y(), sides.z())}, mass, {Quat::Identity(), size * Vec3(0.9, 0.9, 0.7 + 1.3 * i)});
       start.v_W = Vec3(-1, -1, -1) * random_.uniform(0, 1);
     }
   }
@@ -112,9 +123,12 @@ class Draft {
   void drawOverlap() {
     const int count = 1 + static_cast<int>(random_.below(4));
     for (int i = 0; i < count; ++i) {
-      const double size = logUniform(random_, 5e-3, 0.2), mass = logUniform(random_, 1e-4, 100);
-      add(anyShape(random_, size), mass,
-          {anyRotation(random_), size * Vec3(random_.uniform(0, 0.5), random_.uniform(0, 0.5), random_.uniform(0, 0.6))});
+      const double size = logUniform(random_, 5e-3, 0.2);
+      const double mass = logUniform(random_, 1e-4, 100);
+      contact::Shape shape = anyShape(random_, size);
+      const Quat q = anyRotation(random_);
+      const Vec3 place = anyVector(random_, 0, 0.5);
+      add(std::move(shape), mass, {q, size * Vec3(place.x(), place.y(), 1.2 * place.z())});
     }
     double mass = 0, reach = 0;
     for (std::size_t i = 1; i < bodies.size(); ++i) {
@@ -127,11 +141,14 @@ class Draft {
   void drawFalling(int count, double spin, double size) {
     double z = size;
     for (int i = 0; i < count; ++i) {
-      const Vec3 aside = 0.3 * size * Vec3(random_.uniform(-1, 1), random_.uniform(-1, 1), 0);
-      engine::BodyStart& start = add(anyShape(random_, size * random_.uniform(0.5, 1)), logUniform(random_, 1e-3, 1),
-                                     {anyRotation(random_), aside + Vec3(0, 0, z)});
+      const Vec3 aside = 0.3 * size * anyVector(random_, -1, 1);
+      const double own_size = size * random_.uniform(0.5, 1);
+      contact::Shape shape = anyShape(random_, own_size);
+      const double mass = logUniform(random_, 1e-3, 1);
+      const Quat q = anyRotation(random_);
+      engine::BodyStart& start = add(std::move(shape), mass, {q, Vec3(aside.x(), aside.y(), z)});
       start.v_W = 0.5 * random_.normal3();
-      start.w_W = random_.uniform(0, spin) * random_.normal3().normalized();
+      start.w_W = anySpin(spin);
       z += 1.8 * size;
     }
   }
@@ -140,18 +157,27 @@ class Draft {
     double z = 0;
     for (int i = 0; i < 2; ++i) {
       const double length = logUniform(random_, 0.02, 0.5);
-      const double a = length * logUniform(random_, 1e-3, 1), b = length * logUniform(random_, 1e-3, 1);
+      const double a = length * logUniform(random_, 1e-3, 1);
+      const double b = length * logUniform(random_, 1e-3, 1);
       const double reach = 0.5 * Vec3(length, a, b).norm();
-      engine::BodyStart& start =
-          add(contact::Box{Vec3(length, a, b) / 2}, logUniform(random_, 1e-3, 1), {anyRotation(random_), Vec3(0, 0, z + 1.1 * reach)});
+      const double mass = logUniform(random_, 1e-3, 1);
+      const Quat q = anyRotation(random_);
+      engine::BodyStart& start = add(contact::Box{Vec3(length, a, b) / 2}, mass, {q, Vec3(0, 0, z + 1.1 * reach)});
       z += 2.2 * reach;
-      start.w_W = random_.uniform(0, 50) * random_.normal3().normalized();
+      start.w_W = anySpin(50);
     }
+  }
+
+  Vec3 anySpin(double fastest) {
+    const double speed = random_.uniform(0, fastest);
+    return speed * random_.normal3().normalized();
   }
 
   void drawHeld() {
     const double size = logUniform(random_, 0.01, 0.1);
-    add(anyShape(random_, size), logUniform(random_, 1e-3, 1), {anyRotation(random_), Vec3(0, 0, size)});
+    contact::Shape shape = anyShape(random_, size);
+    const double mass = logUniform(random_, 1e-3, 1);
+    add(std::move(shape), mass, {anyRotation(random_), Vec3(0, 0, size)});
     const int count = 2 + static_cast<int>(random_.below(3));
     for (int i = 0; i < count; ++i) {
       grasp::FingerModel finger;
@@ -191,9 +217,8 @@ std::span<const grasp::FingerInput> StressWorld::nextInputs() {
   const double closing = std::min(1.0, static_cast<double>(++tick_) / 100);
   for (std::size_t i = 0; i < devices_.size(); ++i) {
     Vec3 p = devices_[i] + closing * 0.6 * (middle - devices_[i]);
-    if (kind_ == StressClass::kTeleport && random_.below(20) == 0)
-      p += 0.05 * Vec3(random_.uniform(-1, 1), random_.uniform(-1, 1), random_.uniform(-1, 1));
-    if (kind_ == StressClass::kNoise) p += 1e-3 * Vec3(random_.uniform(-1, 1), random_.uniform(-1, 1), random_.uniform(-1, 1));
+    if (kind_ == StressClass::kTeleport && random_.below(20) == 0) p += 0.05 * anyVector(random_, -1, 1);
+    if (kind_ == StressClass::kNoise) p += 1e-3 * anyVector(random_, -1, 1);
     inputs_[i].v_WF = (p - inputs_[i].p_WF) / h;
     inputs_[i].p_WF = p;
   }
