@@ -86,6 +86,7 @@ std::vector<Measurement> engineMeasurements(const EngineBenchOptions& options) {
     measurements.push_back({shared->name, run});
   }
   measurements.push_back(stepLatencyMeasurement(contestants));
+  measurements.push_back(solveLatencyMeasurement());
   return measurements;
 }
 
