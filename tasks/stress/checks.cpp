@@ -40,11 +40,12 @@ std::string faultOfState(const engine::WorldModel& model, const engine::WorldSta
 }
 
 std::string faultOfCones(const engine::WorldScratch& scratch) {
-  constexpr double kTolerance = 1e-9;  // relative; the projection rounds to 1e-15
+  constexpr double kTolerance = 1e-9;    // relative; the projection rounds to 1e-15
+  constexpr double kUnderflow = 1e-150;  // squares of less aren't normal numbers any more [N s]
   for (const engine::Contact& c : scratch.contacts) {
     const double friction = std::sqrt(c.r.head<2>().squaredNorm() + c.r.tail<3>().squaredNorm());
     if (!(c.r[2] >= 0)) return fmt::format("a contact pulls with {:.3g} N s", -c.r[2]);
-    if (!(friction <= c.mu * c.r[2] * (1 + kTolerance) + 1e-300))
+    if (!(friction <= c.mu * c.r[2] * (1 + kTolerance) + kUnderflow))
       return fmt::format("friction {:.17g} over mu r_n = {:.17g} N s", friction, c.mu * c.r[2]);
   }
   return {};
