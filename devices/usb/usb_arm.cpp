@@ -26,7 +26,7 @@ ArmSample UsbArm::sample() {
 
 void UsbArm::commandForce(const Vec3& f_D) {
   const bool may = armed_.load(std::memory_order_acquire) && f_D.allFinite();
-  commands_.put({may ? f_D : Vec3::Zero(), kForceDeadline, may ? arming_ : std::uint16_t{0}, signal_});
+  commands_.put({may ? f_D : Vec3::Zero(), deadline_, may ? arming_ : std::uint16_t{0}, signal_});
   signal_ = Signal::kNone;
   waker_.wake();
 }

@@ -1,7 +1,7 @@
 // usb_arm: an arm that speaks the protocol of docs/usb-protocol.md.
 //
 // Force needs three yeses: the gate's (the caller), this arm's (armed since it was plugged in and since the last stop), and the device's (an
-// arming count that it hasn't refused). Every command dies in the device after `kForceDeadline`, so a computer that stops is zero force.
+// arming count that it hasn't refused). Every command dies in the device after its deadline, so a computer that stops is zero force.
 #pragma once
 #include "devices/arm/arm.h"
 #include "devices/usb/device_link.h"
@@ -10,7 +10,7 @@
 
 namespace pincer::devices::usb {
 
-inline constexpr double kForceDeadline = 4e-3;  // [s]
+inline constexpr double kForceDeadline = 4e-3;  // unless set otherwise [s]
 
 class UsbArm final : public Arm, public DeviceLink {
  public:
@@ -24,6 +24,8 @@ class UsbArm final : public Arm, public DeviceLink {
   void commandForce(const Vec3& f_D) override;
   void arm() override;
   void stop() noexcept override;
+  // After which the arm goes limp by itself; before streaming [s], (0, 0.1].
+  void setDeadline(double deadline) { deadline_ = deadline; }
   // A tone for the next command.
   void signal(Signal signal) { signal_ = signal; }
 
@@ -47,6 +49,7 @@ class UsbArm final : public Arm, public DeviceLink {
   Mailbox<Reading> readings_;     // USB thread -> servo
   Mailbox<ArmCommand> commands_;  // servo -> USB thread
   std::atomic<bool> armed_{false}, stop_{false};
+  double deadline_ = kForceDeadline;
   std::uint16_t arming_ = 0;  // servo thread only
   Signal signal_ = Signal::kNone;
 };

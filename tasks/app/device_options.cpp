@@ -23,10 +23,15 @@ void addDeviceOptions(CLI::App& command, DeviceRunOptions& options) {
   command.add_option("--arms", options.which.arms, "Serial numbers of the arms of index finger and thumb (default: in their order)")
       ->delimiter(',');
   command.add_option("--displays", options.which.displays, "Serial numbers of their displays")->delimiter(',');
-  command.add_option("--watchdog", options.watchdog_ms, "So long may the servo loop stall before forces are cut [ms]")
+  command
+      .add_option("--watchdog", options.watchdog_ms,
+                  "So long may the program stall before forces are cut; samples count for 0.6 of it, arms go limp after 0.8 [ms]")
       ->check(CLI::Range(2.0, 100.0))
       ->capture_default_str();
-  command.add_option("--recording", options.which.recording, "What replay replays: a CSV of samples, as pincer export writes it");
+  command.add_option("--calibration", options.which.calibrations, "Files of the arms' bases (pincer devices calibrate --save)")
+      ->delimiter(',');
+  command.add_option("--recording", options.which.recording,
+                     "What replay replays: a session.db, or a CSV of samples as pincer export writes it; the first trial");
   command.add_option("--firmware", options.which.firmware, "The Falcon's image, out of its maker's driver");
   command.add_flag("--yes", options.yes, "Switch forces on without asking; nobody's hand may be in danger");
 }
@@ -36,6 +41,7 @@ std::unique_ptr<HandDevices> openDevices(const DeviceRunOptions& options, ServoO
   servo.show = [period = 1 / servo.rate](const ServoReport& report) { fmt::print(stderr, "{}\n", servoText(report, period)); };
   std::signal(SIGUSR1, pincerOnReportRequest);
   DeviceOptions which = options.which;
+  which.watchdog = servo.watchdog;
   which.choice = deviceChoiceOf(options.devices);
   if (which.choice == DeviceChoice::kSim) return nullptr;
   auto devices = openHandDevices(which);

@@ -1,10 +1,19 @@
 #include "tasks/experiments/hand_scene.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "contact/error.h"
+
 namespace pincer::tasks {
 namespace {
 
-constexpr double kHomeBeside = 0.045;  // a waiting fingertip is so far beside the object [m]
-constexpr double kHomeAbove = 0.040;   // and above the pinch place [m]
+constexpr double kHomeBeside = 0.045;             // a waiting fingertip is so far beside the object [m]
+constexpr double kFacing = std::numbers::pi / 6;  // so far may an arm look past the other [rad]
+constexpr double kHomeAbove = 0.040;              // and above the pinch place [m]
 
 Quat fromAxes(const Vec3& x, const Vec3& y, const Vec3& z) {
   Mat3 R;
@@ -39,6 +48,19 @@ FingerCue fingerCue(const grasp::FingerModel& finger, const Pose& X_WD, const Ve
   return {X_WD.q, X_WD.p, home_W, finger.radius, finger.pad_normal_F, finger.distal_F, finger.pad_normal_F.cross(finger.distal_F)};
 }
 
+void requireFacing(const HandScene& scene, std::size_t i, const ArmBase& base) {
+  const Pose &own = scene.model.mounts[i].X_WD, &other = scene.model.mounts[1 - i].X_WD;
+  const Vec3 there_W = (other.p - own.p).normalized(), ahead_W = own.q * Vec3::UnitZ();
+  const double off = std::acos(std::clamp(ahead_W.dot(there_W), -1.0, 1.0));
+  if (off <= kFacing) return;
+  throw InputError(
+      fmt::format("calibration: the {} finger's arm doesn't face the other: with base_x, base_y, base_z = {:g}, {:g}, {:g} m and base_turn "
+                  "= {:g} rad it "
+                  "looks {:.0f} degrees past it. At most {:.0f}: measure the bases again (docs/devices.md).",
+                  i == 0 ? "index" : "thumb", base.offset_W.x(), base.offset_W.y(), base.offset_W.z(), base.turn,
+                  off * 180 / std::numbers::pi, kFacing * 180 / std::numbers::pi));
+}
+
 }  // namespace
 
 HandScene makeHandScene(const HandSetup& setup, engine::WorldBuilder world, std::vector<engine::BodyStart> starts, const Vec3& place_W,
@@ -64,6 +86,16 @@ HandScene makeHandScene(const HandSetup& setup, engine::WorldBuilder world, std:
   scene.cues.surface_stiffness = setup.coupling_stiffness;
   scene.cues.half_width = half_width;
   return scene;
+}
+
+void standArms(HandScene& scene, const std::array<ArmBase, kHandFingers>& bases) {
+  for (std::size_t i = 0; i < bases.size(); ++i) {
+    Pose& X_WD = scene.model.mounts[i].X_WD;
+    const Quat turned = Quat(Eigen::AngleAxisd(bases[i].turn, Vec3::UnitZ())) * X_WD.q;
+    scene.q_DF[i] = turned.conjugate() * X_WD.q * scene.q_DF[i];
+    X_WD = {turned, X_WD.p + bases[i].offset_W};
+  }
+  for (std::size_t i = 0; i < bases.size(); ++i) requireFacing(scene, i, bases[i]);
 }
 
 TickState makeHandState(const HandScene& scene) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tasks/participants/participant.h"
+#include "tasks/servo/device_calibration.h"
 #include "tasks/servo/tick.h"
 
 namespace pincer::tasks {
@@ -31,6 +32,10 @@ struct HandScene {
 // fingers and place; the rest of them is the task's. `display_tactile` false: the tactors stay parked.
 HandScene makeHandScene(const HandSetup& setup, engine::WorldBuilder world, std::vector<engine::BodyStart> starts, const Vec3& place_W,
                         double half_width, bool display_tactile);
+
+// Moves the arms' bases by their calibrations; the fingers themselves stay. Throws InputError unless each arm's z points at the other, within
+// 30 degrees: forces would go elsewhere than where the fingers are.
+void standArms(HandScene& scene, const std::array<ArmBase, kHandFingers>& bases);
 
 // A fresh state: everything at its start, gates armed.
 TickState makeHandState(const HandScene& scene);

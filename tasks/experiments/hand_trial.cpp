@@ -159,6 +159,10 @@ void HandTrial::limitForces(int finger, const devices::ArmCapabilities& arm) {
   gate = devices::within(gate, arm);
 }
 
+void HandTrial::trustSamples(double oldest) {
+  for (FingerMount& mount : scene_.model.mounts) mount.gate.watchdog_time = oldest;
+}
+
 void HandTrial::cutForces(devices::Trip cause) {
   for (MountState& mount : state_.mounts) devices::trip(mount.gate, cause);
   for (FingerOutputs& output : scratch_.outputs) output.f_D.setZero();

@@ -45,6 +45,10 @@ class HandTrial {
   void parkTactors();
   // The gate keeps to what the finger's arm can do, too. Before the first step.
   void limitForces(int finger, const devices::ArmCapabilities& arm);
+  // So old may a sample be [s]. Before the first step.
+  void trustSamples(double oldest);
+  // The arms stand so far off their places in the scene. Throws InputError unless they face each other. Before the first step.
+  void standArms(const std::array<ArmBase, kHandFingers>& bases) { pincer::tasks::standArms(scene_, bases); }
   // Zero force, latched.
   void cutForces(devices::Trip cause);
   // Passivity at the fingers from now on (grasp/passivity): for arms with motors.

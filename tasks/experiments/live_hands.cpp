@@ -6,9 +6,12 @@
 
 namespace pincer::tasks {
 
-LiveHands::LiveHands(HandTrial& trial, HandDevices& devices)
-    : trial_(trial), devices_(devices), q_DF_(trial.scene().q_DF.begin(), trial.scene().q_DF.end()), samples_(kHandFingers) {
+LiveHands::LiveHands(HandTrial& trial, HandDevices& devices, double oldest_sample)
+    : trial_(trial), devices_(devices), samples_(kHandFingers) {
   trial.keepPassive();
+  trial.standArms({devices.base(0), devices.base(1)});
+  trial.trustSamples(oldest_sample);
+  q_DF_.assign(trial.scene().q_DF.begin(), trial.scene().q_DF.end());
   const HandScene& scene = trial.scene();
   for (int i = 0; i < kHandFingers; ++i) {
     const Pose& X_WD = scene.model.mounts[static_cast<std::size_t>(i)].X_WD;

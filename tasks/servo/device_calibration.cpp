@@ -15,6 +15,14 @@ constexpr NumberRule kCalibrationRule = {.min = -10, .max = 10, .remedy = "Lengt
 
 }  // namespace
 
+ArmBase armBaseIn(const DeviceCalibration& calibration) {
+  const auto value = [&](const char* name) {
+    const auto found = calibration.values.find(name);
+    return found == calibration.values.end() ? 0.0 : found->second;
+  };
+  return {Vec3(value("base_x"), value("base_y"), value("base_z")), value("base_turn")};
+}
+
 DeviceCalibration readCalibration(const std::string& path) {
   const JsonValue json = readJson(path);
   constexpr std::array<std::string_view, 2> kKeys{"device", "values"};

@@ -5,12 +5,21 @@
 #include <map>
 #include <string>
 
+#include "devices/math.h"
+
 namespace pincer::tasks {
 
 struct DeviceCalibration {
   std::string serial;
   std::map<std::string, double> values;  // by name, 1 .. 20 characters each
 };
+
+// Where an arm's base stands, off its place in the scene: values base_x, base_y, base_z (in W, of its reset place) and base_turn (about W's z).
+struct ArmBase {
+  Vec3 offset_W = Vec3::Zero();  // [m]
+  double turn = 0;               // [rad]
+};
+ArmBase armBaseIn(const DeviceCalibration& calibration);
 
 // Throws InputError naming line, value, range and remedy.
 DeviceCalibration readCalibration(const std::string& path);

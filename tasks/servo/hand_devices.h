@@ -9,6 +9,7 @@
 
 #include "devices/arm/arm.h"
 #include "devices/cld/tactile_display.h"
+#include "tasks/servo/device_calibration.h"
 
 namespace pincer::tasks {
 
@@ -32,6 +33,8 @@ class HandDevices {
   // Moves what has no clock of its own to `now` [s since the epoch].
   virtual void advanceTo(double) {}
   virtual void sound(DeviceTone) {}
+  // By how much the finger's arm stands off its place in the scene, from its calibration file.
+  virtual ArmBase base(int) const { return {}; }
   // Where the finger's arm stands in the world; for what was recorded there.
   virtual void setBase(int, const Vec3&, const Quat&) {}
   // One line per device, for a person.
@@ -47,7 +50,9 @@ struct DeviceOptions {
   std::vector<std::string> arms, displays;  // serial numbers, per finger; empty: in the order of the serial numbers
   bool needs_displays = true;               // false: a finger may go without
   double timeout = 3;                       // for devices that are plugged in to become ready [s]
-  std::string recording;                    // replay: a CSV file of samples (pincer export)
+  double watchdog = 5e-3;                   // so long may the program stall before forces are cut [s]; arms go limp after 0.8 of it
+  std::vector<std::string> calibrations;    // usb: files of arms (device_calibration.h)
+  std::string recording;                    // replay: a session's store, or a CSV file of samples (pincer export)
   std::string firmware;                     // falcon: the maker's image
 };
 

@@ -5,10 +5,12 @@
 #include <fstream>
 #include <optional>
 #include <sstream>
+#include <string_view>
 
 #include "contact/error.h"
 #include "devices/arm/replay_arm.h"
 #include "tasks/servo/hand_devices_parts.h"
+#include "tasks/session/session_store.h"
 
 namespace pincer::tasks {
 namespace {
@@ -62,10 +64,37 @@ double numberIn(const std::string& path, int line, const std::vector<std::string
   return value;
 }
 
-// The first trial of a table of samples.
+bool isStore(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::array<char, 15> head{};
+  return file.read(head.data(), head.size()) && std::string_view(head.data(), head.size()) == "SQLite format 3";
+}
+
+// The first trial of a session's store, or of a table of samples.
 class ReplayRecording {
  public:
   ReplayRecording(const std::string& path, int fingers) : places_(static_cast<std::size_t>(fingers)) {
+    isStore(path) ? readStore(path) : readTable(path, fingers);
+  }
+  const std::vector<ReplayPoint>& places(int finger) const { return places_[static_cast<std::size_t>(finger)]; }
+  bool inWorld(int finger) const { return columns_[static_cast<std::size_t>(finger)].in_world; }
+
+ private:
+  void readStore(const std::string& path) {
+    const SessionReader session(path);
+    columns_.assign(places_.size(), FingerColumns{.at = {}, .in_world = true});
+    std::optional<std::int64_t> first;
+    session.forEachSample({}, [&](const SampleRecord& sample) {
+      if (!first) first = sample.trial;
+      if (sample.trial != *first) return;
+      for (std::size_t i = 0; i < places_.size(); ++i) {
+        const auto& p = sample.fingers.at(i).p_WF;
+        places_[i].push_back({sample.time, Vec3(p[0], p[1], p[2])});
+      }
+    });
+    if (!first) throw InputError(path + ": the session holds no samples. Record one with `pincer run` first.");
+  }
+  void readTable(const std::string& path, int fingers) {
     std::ifstream file(path);
     std::string line;
     if (!std::getline(file, line)) throw InputError(path + ": there is no such file, or it is empty. Give a CSV file of samples.");
@@ -84,10 +113,7 @@ class ReplayRecording {
       }
     }
   }
-  const std::vector<ReplayPoint>& places(int finger) const { return places_[static_cast<std::size_t>(finger)]; }
-  bool inWorld(int finger) const { return columns_[static_cast<std::size_t>(finger)].in_world; }
 
- private:
   std::vector<FingerColumns> columns_;
   std::vector<std::vector<ReplayPoint>> places_;
 };
@@ -132,7 +158,7 @@ class ReplayHand final : public HandDevices {
 
 std::unique_ptr<HandDevices> openReplayHand(const DeviceOptions& options) {
   if (options.recording.empty())
-    throw DeviceError("--devices replay needs the recording: --recording FILE, a CSV of samples (pincer export).");
+    throw DeviceError("--devices replay needs the recording: --recording FILE, a session.db, or a CSV of samples (pincer export).");
   return std::make_unique<ReplayHand>(options);
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "contact/error.h"
 #include "devices/usb/usb_host.h"
 #include "tasks/servo/hand_devices_parts.h"
 
@@ -39,8 +40,12 @@ class UsbHand final : public HandDevices {
     for (std::size_t i = 0; i < fingers; ++i) {
       arms_.push_back(chosenDevice(host_.arms(), options.arms, i, "arm"));
       displays_.push_back(chosenDevice(host_.displays(), options.displays, i, "display"));
+      arms_.back()->setDeadline(0.8 * options.watchdog);
     }
+    bases_.resize(fingers);
+    for (const std::string& path : options.calibrations) calibrate(path);
   }
+  ArmBase base(int finger) const override { return bases_[static_cast<std::size_t>(finger)]; }
   devices::Arm& arm(int finger) override { return *arms_[static_cast<std::size_t>(finger)]; }
   devices::TactileDisplay* display(int finger) override { return displays_[static_cast<std::size_t>(finger)]; }
   void setEpoch(std::int64_t ns) override { host_.setEpoch(ns); }
@@ -54,6 +59,17 @@ class UsbHand final : public HandDevices {
   }
 
  private:
+  void calibrate(const std::string& path) {
+    const DeviceCalibration calibration = readCalibration(path);
+    const auto found =
+        std::find_if(arms_.begin(), arms_.end(), [&](UsbArm* a) { return a->deviceIdentity().serial == calibration.serial; });
+    if (found == arms_.end()) {
+      throw InputError(
+          fmt::format("{}: it is of device {}, and no finger wears that arm. Give the files of the session's arms (found: {}).", path,
+                      calibration.serial, listOf(host_)));
+    }
+    bases_[static_cast<std::size_t>(found - arms_.begin())] = armBaseIn(calibration);
+  }
   [[noreturn]] void refuse(const DeviceOptions& options) {
     const auto problems = host_.problems();
     std::string why = fmt::format("A session needs {} arms{} on USB; found: {}.", options.fingers,
@@ -67,6 +83,7 @@ class UsbHand final : public HandDevices {
   UsbHost& host_ = *own_;
   std::vector<UsbArm*> arms_;
   std::vector<UsbDisplay*> displays_;
+  std::vector<ArmBase> bases_;
 };
 
 }  // namespace

@@ -5,8 +5,10 @@
 #include <fstream>
 
 #include "contact/error.h"
+#include "tasks/experiments/pickup_scene.h"
 #include "tasks/servo/device_calibration.h"
 #include "tasks/servo/hand_devices.h"
+#include "tasks/session/session_store.h"
 #include "tests/support/error_of.h"
 #include "tests/support/run_app.h"
 #include "tests/support/temporary_directory.h"
@@ -96,6 +98,60 @@ TEST(ReplayHand, MovesAsTheRecordedFingersDid) {
   EXPECT_EQ(hand->display(0), nullptr);
   hand->advanceTo(1.1);
   EXPECT_FALSE(hand->arm(0).sample().valid) << "the recording's first trial has ended";
+}
+
+TEST(ReplayHand, ReplaysASessionsStoreAsItIs) {
+  const TemporaryDirectory folder;
+  const std::string path = folder / "session.db";
+  EXPECT_THROW(tasks::openHandDevices(replayOf(path)), InputError);
+  {
+    tasks::SessionOptions store;
+    store.block_when_full = true;
+    tasks::SessionWriter writer = tasks::SessionWriter::create(path, tasks::SessionInfo{}, store);
+    for (int i = 0; i < 20; ++i) {
+      tasks::SampleRecord sample;
+      sample.trial = i < 11 ? 4 : 5;
+      sample.tick = i;
+      sample.time = 0.1 * i;
+      sample.fingers[0].p_WF = {0.01 * i, 0, 0};
+      sample.fingers[1].p_WF = {1, 0, i < 11 ? 0.02 * i : 99.0};
+      writer.pushSample(sample);
+    }
+    writer.close();
+  }
+  const auto hand = tasks::openHandDevices(replayOf(path));
+  hand->setBase(0, Vec3::Zero(), Quat::Identity());
+  hand->setBase(1, Vec3(1, 0, 0), Quat::Identity());
+  hand->advanceTo(0.55);
+  EXPECT_NEAR((hand->arm(0).sample().p_DF - Vec3(0.055, 0, 0)).norm(), 0, 1e-12);
+  EXPECT_NEAR((hand->arm(1).sample().p_DF - Vec3(0, 0, 0.11)).norm(), 0, 1e-12);
+  hand->advanceTo(1.1);
+  EXPECT_FALSE(hand->arm(0).sample().valid) << "the first trial has ended";
+}
+
+tasks::HandScene sceneOfArms() {
+  const tasks::SpherePickupOptions options;
+  return tasks::makePickupScene(options, tasks::makePickupObject(options), tasks::PickupTrialSpec{});
+}
+
+TEST(ArmBases, AreMovedAndTurnedByTheirCalibrationAndTheFingersStay) {
+  tasks::HandScene scene = sceneOfArms();
+  const tasks::HandScene nominal = sceneOfArms();
+  tasks::DeviceCalibration file{"A1", {{"base_x", -0.01}, {"base_z", 0.02}, {"base_turn", 0.2}, {"gain", 3}}};
+  tasks::standArms(scene, {tasks::armBaseIn(file), tasks::ArmBase{}});
+  const Pose &now = scene.model.mounts[0].X_WD, &before = nominal.model.mounts[0].X_WD;
+  EXPECT_NEAR((now.p - before.p - Vec3(-0.01, 0, 0.02)).norm(), 0, 1e-12);
+  EXPECT_NEAR(now.q.angularDistance(before.q), 0.2, 1e-12);
+  EXPECT_NEAR((now.q * scene.q_DF[0]).angularDistance(before.q * nominal.q_DF[0]), 0, 1e-7) << "the finger itself hasn't turned";
+  EXPECT_EQ(scene.model.mounts[1].X_WD.p, nominal.model.mounts[1].X_WD.p);
+}
+
+TEST(ArmBases, ThatDoNotFaceEachOtherAreRefusedByName) {
+  tasks::HandScene turned = sceneOfArms();
+  const std::string why = errorOf([&] { tasks::standArms(turned, {tasks::ArmBase{}, tasks::ArmBase{Vec3::Zero(), 0.6}}); });
+  EXPECT_TRUE(contains(why, "thumb") && contains(why, "base_turn = 0.6")) << why;
+  tasks::HandScene behind = sceneOfArms();
+  EXPECT_THROW(tasks::standArms(behind, {tasks::ArmBase{Vec3(1, 0, 0), 0}, tasks::ArmBase{}}), InputError) << "behind the other one";
 }
 
 TEST(ReplayHand, NamesWhatIsWrongInTheFile) {

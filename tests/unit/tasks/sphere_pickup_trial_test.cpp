@@ -183,5 +183,25 @@ TEST(ManipulationStudy, GoesOnWhereItWasStopped) {
   EXPECT_EQ(rest.trials[1].duration, whole.trials[3].duration);
 }
 
+// The joints' torques were no limit of any session's gate.
+TEST(SpherePickupTrial, TheGateKeepsToTheTorquesOfTheArms) {
+  PickupRun run(specWith(0.9));
+  EXPECT_EQ(run.cycle.trial().scene().model.mounts[0].gate.peak_torque, run.cycle.hands().arm(0).peakTorque());
+  devices::ArmCapabilities weak;
+  weak.peak_torque = Vec3(0.2, 0.2, 0.1);
+  for (int i = 0; i < kHandFingers; ++i) run.cycle.trial().limitForces(i, weak);
+  double most = 0;
+  for (int tick = 0; tick < 9000; ++tick) {
+    run.cycle.tick(1e-3 * tick);
+    const std::vector<FingerInputs>& samples = run.cycle.hands().sample();
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const Vec3 torque = samples[i].arm.J->transpose() * run.cycle.trial().outputs()[i].f_D;
+      most = std::max(most, torque.cwiseQuotient(*weak.peak_torque).cwiseAbs().maxCoeff());
+    }
+  }
+  EXPECT_LE(most, 1 + 1e-12);
+  EXPECT_GT(most, 0.99) << "the pinch must have asked for more";
+}
+
 }  // namespace
 }  // namespace pincer::tasks
