@@ -71,16 +71,28 @@ Gnuplot::~Gnuplot() {
 }
 
 std::string Gnuplot::plot(const Figure& figure) {
+  return draw(
+      figure,
+      fmt::format("pngcairo noenhanced size {},{} font 'DejaVu Sans,20' linewidth 2 background '#ffffff'", figure.width, figure.height),
+      "png");
+}
+
+std::string Gnuplot::svg(const Figure& figure) {
+  return draw(
+      figure,
+      fmt::format("svg noenhanced size {},{} fixed font 'DejaVu Sans,20' linewidth 2 background '#ffffff'", figure.width, figure.height),
+      "svg");
+}
+
+std::string Gnuplot::draw(const Figure& figure, const std::string& terminal, const char* ending) {
   for (const auto& [name, content] : figure.data) writeAtomically(directory_ + "/" + name, content);
-  const std::string terminal = fmt::format(
-      "set terminal pngcairo noenhanced size {},{} font 'DejaVu Sans,20' linewidth 2 background '#ffffff'\n", figure.width, figure.height);
-  const std::string script = figure.name + ".gp", picture = directory_ + "/" + figure.name + ".png";
-  writeAtomically(directory_ + "/" + script, fmt::format("{}set output '{}.png'\n{}", terminal, figure.name, figure.script));
+  const std::string script = figure.name + ".gp", picture = fmt::format("{}.{}", figure.name, ending);
+  writeAtomically(directory_ + "/" + script, fmt::format("set terminal {}\nset output '{}'\n{}", terminal, picture, figure.script));
   const int status = run(script);
-  std::string png = read(picture);
-  if (status == 0 && !png.empty()) return png;
+  std::string drawn = read(directory_ + "/" + picture);
+  if (status == 0 && !drawn.empty()) return drawn;
   throw InputError(
-      fmt::format("{}: figure {} failed (status {}): {}. Check that it is gnuplot 5.4 or newer with the pngcairo terminal "
+      fmt::format("{}: figure {} failed (status {}): {}. Check that it is gnuplot 5.4 or newer with the pngcairo and svg terminals "
                   "(Debian: apt-get install gnuplot-nox).",
                   program_, figure.name, status, read(directory_ + "/log")));
 }

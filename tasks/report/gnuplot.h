@@ -26,8 +26,10 @@ class Gnuplot {
   Gnuplot(Gnuplot&&) = delete;
   ~Gnuplot();
   std::string plot(const Figure& figure);  // the PNG's bytes
+  std::string svg(const Figure& figure);   // the same picture, scalable
 
  private:
+  std::string draw(const Figure& figure, const std::string& terminal, const char* ending);
   int run(const std::string& script_name);
   std::string program_, directory_;
 };

@@ -67,11 +67,12 @@ std::string trialList(const std::vector<TrialRecord>& trials) {
 }  // namespace
 
 std::string reportHtml(const SessionSummary& s, const std::vector<TrialRecord>& trials, const std::vector<Picture>& pictures,
-                       const std::string& figures_name) {
+                       const std::string& figures_name, const std::string& devices) {
   const std::string title = fmt::format("{}, seed {}", s.info.task, s.info.seed);
   std::string html = htmlHead(title, s.warning);
   html += facts(s) + (s.cells.empty() ? "" : "<h2>Per condition and friction</h2>\n") + cellTable(s) + pairTable(s);
   for (const Picture& picture : pictures) html += htmlFigure(picture, figures_name);
+  html += devices;
   if (!trials.empty()) html += trialList(trials);
   return html + htmlFoot(s.info);
 }

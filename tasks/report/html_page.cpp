@@ -76,7 +76,7 @@ std::string htmlFacts(const std::vector<std::pair<std::string, std::string>>& ro
 }
 
 std::string htmlFigure(const Picture& p, const std::string& figures_name) {
-  std::string links = fmt::format("<a href=\"{0}/{1}.png\">picture</a>", escaped(figures_name), p.figure.name);
+  std::string links = fmt::format("<a href=\"{0}/{1}.png\">PNG</a>, <a href=\"{0}/{1}.svg\">SVG</a>", escaped(figures_name), p.figure.name);
   for (const auto& [name, content] : p.figure.data) links += fmt::format(", <a href=\"{}/{}\">{}</a>", escaped(figures_name), name, name);
   if (!p.anchor_trial.empty()) links += fmt::format("; <a href=\"#trial-{0}\">trial {0} in the list</a>", p.anchor_trial);
   return fmt::format(

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "tasks/report/device_errors.h"
 #include "tasks/report/figures.h"
 #include "tasks/session/atomic_file.h"
 
@@ -41,6 +42,7 @@ std::string writeFigure(const std::string& directory, const Picture& picture) {
   const std::string png = directory + "/" + picture.figure.name + ".png";
   for (const auto& [name, content] : picture.figure.data) writeAtomically(directory + "/" + name, content);
   writeAtomically(png, picture.png);
+  writeAtomically(directory + "/" + picture.figure.name + ".svg", picture.svg);
   return png;
 }
 
@@ -51,7 +53,10 @@ std::string plotAndWrite(std::vector<Picture>& pictures, const std::string& html
   const std::string figures_name = path.stem().string() + "_figures";
   files = {html_path, (path.parent_path() / figures_name).string(), {}};
   Gnuplot gnuplot(options.gnuplot);
-  for (Picture& picture : pictures) picture.png = gnuplot.plot(picture.figure);
+  for (Picture& picture : pictures) {
+    picture.png = gnuplot.plot(picture.figure);
+    picture.svg = gnuplot.svg(picture.figure);
+  }
   makeDirectory(files.figures_directory);
   for (const Picture& picture : pictures) files.figures.push_back(writeFigure(files.figures_directory, picture));
   return figures_name;
@@ -63,7 +68,7 @@ ReportFiles writeReport(const SessionReader& session, const std::string& html_pa
   std::vector<Picture> pictures = wantedPictures(session, summary, trials);
   ReportFiles files;
   const std::string figures_name = plotAndWrite(pictures, html_path, options, files);
-  writeAtomically(html_path, reportHtml(summary, trials, pictures, figures_name));
+  writeAtomically(html_path, reportHtml(summary, trials, pictures, figures_name, deviceErrorsHtml(deviceErrors(session))));
   return files;
 }
 

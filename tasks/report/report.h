@@ -30,14 +30,15 @@ struct Picture {
   Figure figure;
   std::string png;
   std::string anchor_trial;  // the trial that the caption is about, or empty
+  std::string svg = {};
 };
 
-// Plots the pictures and writes them, as PNG and CSV, to the directory that belongs to the page at `html_path`. Returns that directory's
+// Plots the pictures and writes them, as PNG, SVG and CSV, to the directory that belongs to the page at `html_path`. Returns that directory's
 // name relative to the page and fills in `files`.
 std::string plotAndWrite(std::vector<Picture>& pictures, const std::string& html_path, const ReportOptions& options, ReportFiles& files);
 
-// The page itself. `figures_name`: the figures' directory relative to the page.
+// The page itself. `figures_name`: the figures' directory relative to the page; `devices`: HTML of what the devices did.
 std::string reportHtml(const SessionSummary& summary, const std::vector<TrialRecord>& trials, const std::vector<Picture>& pictures,
-                       const std::string& figures_name);
+                       const std::string& figures_name, const std::string& devices = "");
 
 }  // namespace pincer::tasks

@@ -205,7 +205,7 @@ Figure speedFigure(const StudySummary& s) {
       "drawn from the first.";
   figure.data = {{"speeds.csv", table.take()}};
   figure.script =
-      figurePrelude(figure.name) + conditionTics(s) + "set yrange [0:*]\nset ylabel 'speed [mm/s]'\nset offsets 0, 0, graph 0.1, 0\n";
+      figurePrelude(figure.name) + conditionTics(s) + "set yrange [0:80<*]\nset ylabel 'speed [mm/s]'\nset offsets 0, 0, graph 0.1, 0\n";
   std::string plots;
   for (std::size_t i = 0; i < kSpeeds.size(); ++i) {
     const SpeedKind& kind = kSpeeds[i];

@@ -53,6 +53,7 @@ TEST(Report, HoldsTheTableAndEveryFigureAndNeedsNothingElse) {
     EXPECT_TRUE(has(html, std::string("id=\"figure-") + figure + "\"")) << figure;
     const std::string beside = dir / (std::string("it's a report_figures/") + figure);
     EXPECT_EQ(readFile(beside + ".png").substr(0, 8), kPngSignature) << figure;
+    EXPECT_NE(readFile(beside + ".svg").find("</svg>"), std::string::npos) << figure;
     EXPECT_GT(count(readFile(beside + ".csv"), "\n"), 2) << figure;
   }
   EXPECT_EQ(files.figures.size(), 7u);
