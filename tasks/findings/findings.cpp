@@ -16,6 +16,7 @@ namespace pincer::tasks {
 namespace {
 
 constexpr double kSignificant = 0.05;
+constexpr int kFewest = 4;      // with fewer not even all of them are certainly more than half (Wilson)
 constexpr double kRate = 1000;  // [Hz]
 
 // Keeps the rows alone: no sample is made.
@@ -226,6 +227,7 @@ FindingsResult runFindings(const FindingsOptions& options, const std::atomic<boo
 
 std::string verdictOn(const FindingMeasure& measure, const FindingResult& r) {
   if (measure.expected == PublishedEffect::kNone) return "-";
+  if (r.experiments < kFewest) return "too few experiments";
   if (measure.expected == PublishedEffect::kSame) {
     return wilsonInterval(r.significant_t, r.experiments).first <= kSignificant ? "follows" : "does not follow";
   }

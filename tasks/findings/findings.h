@@ -62,7 +62,7 @@ struct FindingsResult {
 FindingsResult runFindings(const FindingsOptions& options, const std::atomic<bool>& interrupted,
                            const std::function<void(std::int64_t, std::int64_t)>& progress);
 
-// "follows", "does not follow", "in the same direction only", or "-" where nothing was published.
+// "follows", "does not follow", "in the same direction only", "too few experiments", or "-" where nothing was published.
 std::string verdictOn(const FindingMeasure& measure, const FindingResult& result);
 
 }  // namespace pincer::tasks
