@@ -76,12 +76,13 @@ Figure forestFigure(const FindingsResult& r) {
       "Difference (CLD + force minus force only) as a share of the force-only mean, with its 95 % interval over the experiments. From the "
       "left: tries, pickup time, alignment error, alignment time.";
   figure.width = 2000;
-  figure.height = 220 + 90 * static_cast<int>(r.variants.size());
+  figure.height = 260 + 90 * static_cast<int>(r.variants.size());
   CsvTable table{"measure", "variant", "row", "share", "low", "high"};
-  std::string tics;
+  std::string tics, bare_tics;
   for (std::size_t v = 0; v < r.variants.size(); ++v) {
     const std::size_t row = r.variants.size() - 1 - v;
     tics += fmt::format("{}{} {}", v ? ", " : "", gnuplotString(r.variants[v].name), row);
+    bare_tics += fmt::format("{}'' {}", v ? ", " : "", row);
     for (const std::size_t m : kShown) {
       const FindingResult& f = r.variants[v].findings[m];
       const double scale = std::abs(f.force.mean) > 0 ? 100 / std::abs(f.force.mean) : 0;
@@ -91,8 +92,9 @@ Figure forestFigure(const FindingsResult& r) {
     }
   }
   figure.data = {{"findings.csv", table.take()}};
-  figure.script = figurePrelude("findings") + fmt::format("set yrange [-0.6:{}]\nset multiplot\nset key off\nset grid xtics\n",
-                                                          static_cast<double>(r.variants.size()) - 0.4);
+  figure.script = figurePrelude("findings") +
+                  fmt::format("set yrange [-0.6:{}]\nset xtics rotate by 45 right font ',15'\nset multiplot\nset key off\nset grid xtics\n",
+                              static_cast<double>(r.variants.size()) - 0.4);
   const char* titles[] = {"tries", "pickup time", "alignment error", "alignment time"};
   for (std::size_t k = 0; k < kShown.size(); ++k) {
     const double left = 0.17 + 0.21 * static_cast<double>(k);
@@ -100,9 +102,8 @@ Figure forestFigure(const FindingsResult& r) {
         "set lmargin at screen {:.3f}\nset rmargin at screen {:.3f}\nset title '{}'\nset xlabel 'change [%]'\n{}\n"
         "set arrow 1 from 0, graph 0 to 0, graph 1 nohead dt 2 lc rgb '#999999'\n"
         "plot data skip 1 using (strcol(1) eq '{}' ? $4 : NaN):3:5:6 with xerrorbars pt 7 ps 1.6 lw 2 lc rgb '{}'\n",
-        left, left + 0.19, titles[k], k == 0 ? "set ytics (" + tics + ") scale 0" : "set ytics (" + tics + ") format ''\nset format y ''",
-        findingMeasures()[kShown[k]].key, palette::kBlue);
-    if (k == 0) figure.script += "unset ytics\n";
+        left, left + 0.19, titles[k], "set ytics (" + (k == 0 ? tics : bare_tics) + ") scale 0", findingMeasures()[kShown[k]].key,
+        palette::kBlue);
   }
   figure.script += "unset multiplot\n";
   return figure;
