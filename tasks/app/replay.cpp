@@ -93,7 +93,7 @@ void requireSimulated(const SessionReader& session) {
 }  // namespace
 
 ReplayResult replaySession(const SessionReader& session, std::optional<std::int64_t> trial, const std::atomic<bool>& interrupted,
-                           const std::function<void(std::int64_t, std::int64_t)>& progress) {
+                           const std::function<void(std::int64_t, std::int64_t)>& progress, const ReplayRun& run) {
   requireSimulated(session);
   const ManipulationStudy study = parseStudyFile(session.info().protocol_json, session.path() + ": protocol");
   const auto plan = manipulationTrials(study);
@@ -105,7 +105,7 @@ ReplayResult replaySession(const SessionReader& session, std::optional<std::int6
     ComparingSink sink(session, row, result);
     const std::unique_ptr<Participant> participant = makeParticipant(study, spec);
     SimulatedTrial cycle(makeTrial(study, object, spec, sink), *participant);
-    if (runServo({}, cycle, interrupted).interrupted) break;
+    if ((run ? run(cycle.cycle(), row) : runServo({}, cycle, interrupted)).interrupted) break;
     cycle.finish();
     if (result.first) break;
     if (progress) progress(result.trials, static_cast<std::int64_t>(rows.size()));

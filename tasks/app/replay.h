@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 
+#include "tasks/experiments/hands_cycle.h"
 #include "tasks/session/session_store.h"
 
 namespace pincer::tasks {
@@ -25,8 +26,11 @@ struct ReplayResult {
   std::optional<ReplayDifference> first;
 };
 
+// Runs a trial's cycle in virtual time, and may look at it; the row is the stored one.
+using ReplayRun = std::function<ServoReport(HandsCycle& cycle, const TrialRecord& row)>;
+
 // Every finished trial, or only `trial`. Stops at the first difference. Throws InputError for a session that can't be replayed.
 ReplayResult replaySession(const SessionReader& session, std::optional<std::int64_t> trial, const std::atomic<bool>& interrupted,
-                           const std::function<void(std::int64_t done, std::int64_t total)>& progress = {});
+                           const std::function<void(std::int64_t done, std::int64_t total)>& progress = {}, const ReplayRun& run = {});
 
 }  // namespace pincer::tasks

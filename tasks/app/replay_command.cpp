@@ -8,6 +8,7 @@
 #include "tasks/app/interrupt.h"
 #include "tasks/app/progress.h"
 #include "tasks/app/replay.h"
+#include "tasks/app/trial_recording.h"
 
 namespace pincer::tasks {
 namespace {
@@ -16,22 +17,46 @@ constexpr const char* kReplayExample = R"(
 Runs the trials of a session with simulated participants again, through the same tick, and compares every kept sample and every trial to the
 bit. Exit code 1 when something differs; then the first differing tick is named.
 
-Example:
-  pincer replay out/first/session.db --trial 3)";
+With --view the trial is played in a window, to be paused and scrubbed; --screenshot writes a picture of it at the time of --at.
+
+Examples:
+  pincer replay out/first/session.db --trial 3
+  pincer replay out/first/session.db --trial 3 --view
+  pincer replay out/first/session.db --trial 3 --at 2.5 --screenshot grasp.png)";
 
 struct ReplayArguments {
   std::string session;
   std::optional<std::int64_t> trial;
+  double at = 0;  // [s]
+  ViewOptions view;
+  bool looks() const { return view.view || !view.screenshot.empty(); }
 };
 
-int replay(const ReplayArguments& arguments) {
-  const SessionReader session(arguments.session);
+// One trial is looked at: the one that was named, or the first.
+ReplayResult replayAndLook(const ReplayArguments& arguments, const SessionReader& session) {
+  const std::vector<TrialRecord> trials = session.trials();
+  std::optional<std::int64_t> wanted = arguments.trial;
+  if (!wanted && !trials.empty()) wanted = trials.front().trial;
+  ViewOptions options = arguments.view;
+  return replaySession(session, wanted, interruptFlag(), {}, [&](HandsCycle& cycle, const TrialRecord& row) {
+    options.title = fmt::format("{}, trial {}", row.task, row.trial);
+    TrialRecording recording = recordTrial(cycle, static_cast<std::size_t>(row.trial), trials.size(), interruptFlag());
+    showRecording(cycle.trial().scene().model.grasp, std::move(recording.history), arguments.at, options, interruptFlag());
+    return recording.report;
+  });
+}
+
+ReplayResult replayAll(const ReplayArguments& arguments, const SessionReader& session) {
   std::unique_ptr<Progress> line;
-  const ReplayResult result = replaySession(session, arguments.trial, interruptFlag(), [&](std::int64_t done, std::int64_t total) {
+  return replaySession(session, arguments.trial, interruptFlag(), [&](std::int64_t done, std::int64_t total) {
     if (!line) line = std::make_unique<Progress>("trials", total);
     line->update(done);
   });
-  line.reset();
+}
+
+int replay(const ReplayArguments& arguments) {
+  const SessionReader session(arguments.session);
+  const ReplayResult result = arguments.looks() ? replayAndLook(arguments, session) : replayAll(arguments, session);
   if (result.first) {
     const ReplayDifference& d = *result.first;
     fmt::print("Differs first in trial {}, {}: {}\n", d.trial,
@@ -49,6 +74,8 @@ void addReplayCommand(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("replay", "A session again, compared to the bit");
   command->add_option("session", arguments->session, "Session file")->required();
   command->add_option("--trial", arguments->trial, "Only this trial");
+  addViewOptions(*command, arguments->view);
+  command->add_option("--at", arguments->at, "Begin there [s]")->check(CLI::NonNegativeNumber);
   command->footer(kReplayExample);
   command->callback([arguments, &exit_code] { exit_code = replay(*arguments); });
 }

@@ -11,6 +11,8 @@ class CylinderTrial final : public HandTrial {
   // Throws InputError for options out of range.
   CylinderTrial(const CylinderAlignmentOptions& options, const CylinderTrialSpec& spec, RecordSink& sink);
 
+  const char* instruction() const override { return "Find the flat of the cylinder by touch, and turn it to the front"; }
+
  private:
   TrialVerdict judge(const HandIntent& intent, double time) override;
   void fill(TrialRecord& row) const override;

@@ -37,6 +37,7 @@ class HandTrial {
   const std::vector<FingerOutputs>& outputs() const { return scratch_.outputs; }
   Cue cue() const { return cue_; }  // the tone of this tick
   const HandScene& scene() const { return scene_; }
+  virtual const char* instruction() const = 0;  // what the person is asked to do, a sentence
   const TickState& state() const { return state_; }
   const TickScratch& scratch() const { return scratch_; }
   double simulatedTime() const { return last_; }  // [s]

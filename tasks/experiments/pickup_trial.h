@@ -10,6 +10,8 @@ class PickupTrial final : public HandTrial {
  public:
   PickupTrial(const SpherePickupOptions& options, const PickupObject& object, const PickupTrialSpec& spec, RecordSink& sink);
 
+  const char* instruction() const override { return "Pinch the object, lift it by 50 mm and hold it for a second"; }
+
  private:
   TrialVerdict judge(const HandIntent& intent, double time) override;
   void fill(TrialRecord& row) const override;

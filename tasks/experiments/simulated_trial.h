@@ -18,6 +18,7 @@ class SimulatedTrial final : public ServoCycle {
   void finish() { trial_->finish(); }
 
   HandTrial& trial() { return *trial_; }
+  HandsCycle& cycle() { return cycle_; }
   SimulatedHands& hands() { return hands_; }
 
  private:

@@ -10,9 +10,12 @@ class History {
  public:
   explicit History(std::size_t most = 7200) : most_(most) {}  // two minutes at 60 pictures a second
 
+  // Of its contacts those that count.
   void add(const Snapshot& snapshot) {
     if (!kept_.empty() && kept_.back().tick == snapshot.tick) return;
     kept_.push_back(snapshot);
+    kept_.back().contacts.resize(static_cast<std::size_t>(snapshot.contact_count));
+    kept_.back().contacts.shrink_to_fit();
     if (kept_.size() > most_) kept_.pop_front();
   }
   std::size_t size() const { return kept_.size(); }

@@ -24,7 +24,7 @@ constexpr std::array kTimeKeys = {
     KeyBinding{Key::kKeyLeft, "Left", ViewAction::kTickBack, "while paused: one picture back"},
     KeyBinding{Key::kKeyHome, "Home", ViewAction::kScrubBack, "while paused: a second back in what was seen"},
     KeyBinding{Key::kKeyEnd, "End", ViewAction::kScrubForward, "while paused: a second on"},
-    KeyBinding{Key::kKeyBackspace, "Backspace", ViewAction::kLive, "to the present"},
+    KeyBinding{Key::kKeyBackspace, "Backspace", ViewAction::kLive, "to the present; to the end of a recording"},
     KeyBinding{'-', "-", ViewAction::kSlower, "slow motion, half as fast"},
     KeyBinding{'=', "=", ViewAction::kFaster, "twice as fast, to real time"},
 };
@@ -61,6 +61,7 @@ constexpr std::array kCameraGestures = {
     MouseGesture{"left button, drag", "turn the camera"},
     MouseGesture{"right button, drag", "move the camera"},
     MouseGesture{"wheel", "nearer, further"},
+    MouseGesture{"bar below, drag", "to another time"},
 };
 constexpr std::array kHandGestures = {
     MouseGesture{"move", "fingers left, right, up, down"},        MouseGesture{"Shift, move", "fingers left, right, away, near"},

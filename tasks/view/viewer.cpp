@@ -51,7 +51,35 @@ bool Viewer::update() {
   return !quit_ && !surface_.closed();
 }
 
+void Viewer::showRecording(History recording, double time) {
+  history_ = std::move(recording);
+  recorded_ = true;
+  play_time_ = time;
+  scrub_ = history_.find(time);
+  chartRecording();
+}
+
+// The recording goes on by the time since the last picture.
+void Viewer::play() {
+  const double passed = last_picture_ > 0 ? viewerSeconds() - last_picture_ : 0;
+  if (!pace_.paused) play_time_ += pace_.speed * passed;
+  const std::size_t before = *scrub_;
+  if (!pace_.paused) scrub_ = history_.find(play_time_);
+  if (*scrub_ + 1 == history_.size()) pace_.paused = true;
+  if (*scrub_ != before) chartRecording();
+}
+
+// The seconds before what is shown.
+void Viewer::chartRecording() {
+  constexpr std::size_t kPoints = 400;
+  const double from = shown().time - charts_.front().seconds();
+  const std::size_t first = history_.find(from), step = (*scrub_ - first) / kPoints + 1;
+  for (std::size_t i = first; i < *scrub_; i += step) addToCharts(history_.at(i));
+  addToCharts(shown());
+}
+
 void Viewer::look() {
+  if (recorded_) return play();
   if (!channel_.update()) return;
   const Snapshot& snapshot = channel_.current();
   history_.add(snapshot);
@@ -111,7 +139,8 @@ OverlayText Viewer::overlayText() const {
 }
 
 std::string Viewer::paceText() const {
-  if (scrub_) return "looking back";
+  if (recorded_ && pace_.paused) return fmt::format("paused, of {:.3f} s", history_.at(history_.size() - 1).time);
+  if (scrub_ && !recorded_) return "looking back";
   if (pace_.paused) return "paused";
   const double speed = pace_.speed;
   return speed < 1 ? fmt::format("1/{:.0f} of real time", 1 / speed) : "real time";

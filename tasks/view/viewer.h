@@ -26,6 +26,9 @@ class Viewer {
   Viewer(devices::Surface& surface, const grasp::GraspModel& model, const Snapshot& start, SnapshotChannel& channel, PaceControl& pace,
          devices::MouseHand* hand, ViewerOptions options);
 
+  // From now on what is shown is this, not empty, from `time` [s] on; the channel isn't looked at any more.
+  void showRecording(History recording, double time = 0);
+
   // What the person did, one picture, and shown. Returns false when the person has closed it.
   bool update();
 
@@ -35,6 +38,7 @@ class Viewer {
   Image picture();  // of what is shown, at its best
   ViewChoice& choice() { return choice_; }
   Painter& painter() { return painter_; }
+  const Snapshot& shown() const { return scrub_ ? history_.at(*scrub_) : channel_.current(); }
   const Histogram& lateness() const { return lateness_; }
   double pictures_per_second() const { return pictures_per_second_; }
 
@@ -45,13 +49,16 @@ class Viewer {
   void actOnHand(ViewAction action);
   void drag(double right, double down);  // [shares of the picture's height]
   void wheel(const devices::InputEvent& event);
+  void play();
   void scrubBy(int pictures);
   void scrubTo(double time);  // [s]
+  void scrubToMouse();        // on the bar at the picture's lower border
+  bool mouseIsOnBar() const;
+  void chartRecording();
   void saveScreenshot();
   void toggleSequence();
   void savePictureOfSequence();
   void addToCharts(const Snapshot& snapshot);
-  const Snapshot& shown() const { return scrub_ ? history_.at(*scrub_) : channel_.current(); }
   OverlayText overlayText() const;
   std::string paceText() const;
   double metresPerHeight() const;
@@ -71,6 +78,9 @@ class Viewer {
   double start_height_ = 0;
   Histogram lateness_;
   std::optional<std::size_t> scrub_;  // place in the history; absent: the present
+  bool recorded_ = false;             // the history is all there is
+  double play_time_ = 0;              // of what is shown of it [s]
+  bool bar_held_ = false;             // by the left button
   Vec2 mouse_ = Vec2::Zero();         // [pixels]
   bool mouse_known_ = false;
   bool left_ = false, right_ = false, shift_ = false;

@@ -42,14 +42,17 @@ void Viewer::handle(const devices::InputEvent& event) {
     if (const auto action = actionOf(event.code, hand_ && !pace_.paused)) act(*action);
   } else if (event.kind == InputKind::kButton) {
     if (event.code == devices::kButtonLeft) left_ = event.down;
+    if (event.code == devices::kButtonLeft) bar_held_ = event.down && mouseIsOnBar();
+    if (bar_held_) scrubToMouse();
     if (event.code == devices::kButtonRight) right_ = event.down;
     if (event.code == devices::kButtonLeft && hand_) hand_->squeeze(event.down);
   } else if (event.kind == InputKind::kWheel) {
     wheel(event);
   } else {
     const Vec2 now(event.x, event.y), by = (now - mouse_) / surface_.size().height;
-    if (mouse_known_) drag(by.x(), by.y());
+    if (mouse_known_ && !bar_held_) drag(by.x(), by.y());
     mouse_ = now;
+    if (bar_held_) scrubToMouse();
     mouse_known_ = true;
   }
 }
@@ -104,14 +107,15 @@ void Viewer::actOnTime(ViewAction action) {
   switch (action) {
     case ViewAction::kPause:
       pace_.paused = !pace_.paused;
-      if (!pace_.paused) scrub_.reset();
+      if (!pace_.paused && recorded_ && at_present) play_time_ = history_.at(0).time;
+      if (!pace_.paused && !recorded_) scrub_.reset();
       break;
     case ViewAction::kTickForward:
-      if (pace_.paused && at_present) {
+      if (pace_.paused && at_present && !recorded_) {
         scrub_.reset();
         pace_.single_ticks.fetch_add(1);
       } else if (scrub_) {
-        ++*scrub_;
+        scrubBy(1);
       }
       break;
     case ViewAction::kTickBack:
@@ -124,7 +128,11 @@ void Viewer::actOnTime(ViewAction action) {
       scrubTo(shown().time + 1);
       break;
     case ViewAction::kLive:
-      scrub_.reset();
+      if (recorded_) {
+        scrubTo(kInfinity);
+      } else {
+        scrub_.reset();
+      }
       break;
     case ViewAction::kSlower:
       pace_.speed = std::max(0.5 * pace_.speed, kSlowest);
@@ -142,10 +150,25 @@ void Viewer::scrubBy(int pictures) {
   const auto last = static_cast<std::ptrdiff_t>(history_.size()) - 1;
   const auto from = scrub_ ? static_cast<std::ptrdiff_t>(*scrub_) : last;
   scrub_ = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(from + pictures, 0, last));
+  play_time_ = shown().time;
+  if (recorded_) chartRecording();
 }
 
 void Viewer::scrubTo(double time) {
-  if (pace_.paused && history_.size() > 0) scrub_ = history_.find(time);
+  if (!(pace_.paused || recorded_) || history_.size() == 0) return;
+  scrub_ = history_.find(time);
+  play_time_ = shown().time;
+  if (recorded_) chartRecording();
+}
+
+bool Viewer::mouseIsOnBar() const {
+  constexpr double kReach = 14;  // [pixels]
+  return scrub_ && mouse_.y() > surface_.size().height - kReach;
+}
+
+void Viewer::scrubToMouse() {
+  const double share = mouse_.x() / surface_.size().width;
+  scrubTo(history_.at(0).time + share * (history_.at(history_.size() - 1).time - history_.at(0).time));
 }
 
 void Viewer::actOnHand(ViewAction action) {
