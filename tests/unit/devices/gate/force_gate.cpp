@@ -197,6 +197,26 @@ TEST(ForceGate, NamesTheLimitThatIsOutOfRange) {
   EXPECT_NE(problemWith(limits).value().find("peak_force"), std::string::npos);
 }
 
+TEST(ForceGate, NamesEveryLimitThatIsNoPositiveNumber) {
+  const std::array<std::pair<const char*, double GateLimits::*>, 7> fields{{{"peak_force", &GateLimits::peak_force},
+                                                                            {"continuous_force", &GateLimits::continuous_force},
+                                                                            {"thermal_time", &GateLimits::thermal_time},
+                                                                            {"slew", &GateLimits::slew},
+                                                                            {"ramp_time", &GateLimits::ramp_time},
+                                                                            {"top_speed", &GateLimits::top_speed},
+                                                                            {"watchdog_time", &GateLimits::watchdog_time}}};
+  for (const auto& [name, field] : fields) {
+    for (const double value : {-1.0, kInf, kNan}) {
+      GateLimits limits;
+      limits.*field = value;
+      EXPECT_EQ(problemWith(limits).value_or("").find(name), 0u) << name << " = " << value;
+    }
+  }
+  GateLimits sound;
+  sound.peak_torque = Vec3::Ones();
+  EXPECT_FALSE(problemWith(sound));
+}
+
 TEST(ForceGate, ScalesAllJointsByOneFactorWhereOneWouldBearTooMuch) {
   Loop loop;
   loop.limits.ramp_time = 0;
