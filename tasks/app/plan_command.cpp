@@ -32,8 +32,8 @@ struct PlanArguments {
   bool json = false;
 };
 
-struct StageTimes {
-  explicit StageTimes(std::int64_t ticks) : whole(ticks), stages(engine::kStageCount, TickTimes(ticks)) {}
+struct PlanTimes {
+  explicit PlanTimes(std::int64_t ticks) : whole(ticks), stages(engine::kStageCount, TickTimes(ticks)) {}
   TickTimes whole;  // without the stage clock
   std::vector<TickTimes> stages;
   double clock_cost = 0;  // of one mark of the stage clock, included in each stage [s]
@@ -42,8 +42,7 @@ struct StageTimes {
 
 // Ticks through the scene, begun again as often as needed. `work` is called once per tick and steps the simulation.
 template <typename Work>
-void repeatScene(const Scene& scene, std::int64_t ticks, StageTimes& times, Progress& progress, std::int64_t done_before,
-                 const Work& work) {
+void repeatScene(const Scene& scene, std::int64_t ticks, PlanTimes& times, Progress& progress, std::int64_t done_before, const Work& work) {
   std::optional<Simulation> simulation;
   for (std::int64_t i = 0; i < ticks && !times.interrupted; ++i) {
     if (!simulation || simulation->ticks() == scene.ticks()) simulation.emplace(scene);
@@ -66,8 +65,8 @@ double costOfMark() {
   return batches.quantile(0.5) / kMarks;
 }
 
-StageTimes measureStages(const Scene& scene, std::int64_t ticks) {
-  StageTimes times(ticks);
+PlanTimes measureStages(const Scene& scene, std::int64_t ticks) {
+  PlanTimes times(ticks);
   Progress progress("plan", 2 * ticks);
   repeatScene(scene, ticks, times, progress, 0, [&](Simulation& s) { times.whole.time([&] { s.tick(); }); });
   engine::StageClock clock;
@@ -85,7 +84,7 @@ std::string timesRow(const char* name, const TickTimes& times) {
   return fmt::format("  {:<18} {:>9.3f} {:>9.3f}\n", name, 1e6 * times.quantile(0.5), 1e6 * times.quantile(0.999));
 }
 
-std::string planText(const Scene& scene, const std::vector<PlanLine>& plan, const StageTimes& times) {
+std::string planText(const Scene& scene, const std::vector<PlanLine>& plan, const PlanTimes& times) {
   std::string out = fmt::format("{}\n{}\n\n", scene.file, scene.description);
   std::size_t width = 0;
   for (const PlanLine& line : plan) width = std::max(width, line.name.size());
@@ -102,7 +101,7 @@ void writeTimes(const char* name, const TickTimes& times, JsonWriter& json) {
   json.key("p999_us").value(1e6 * times.quantile(0.999)).endObject();
 }
 
-std::string planJson(const Scene& scene, const std::vector<PlanLine>& plan, const StageTimes& times) {
+std::string planJson(const Scene& scene, const std::vector<PlanLine>& plan, const PlanTimes& times) {
   JsonWriter json;
   json.beginObject().key("scene").value(scene.file).key("plan").beginArray();
   for (const PlanLine& line : plan) {
@@ -118,7 +117,7 @@ int runPlan(const PlanArguments& arguments) {
   interruptFlag();
   const Scene scene = readSceneOrBuiltin(arguments.scene);
   const std::vector<PlanLine> plan = describePlan(buildWorld(scene));
-  const StageTimes times = measureStages(scene, arguments.ticks);
+  const PlanTimes times = measureStages(scene, arguments.ticks);
   fmt::print("{}", arguments.json ? planJson(scene, plan, times) : planText(scene, plan, times));
   return times.interrupted ? kExitInterrupted : kExitOk;
 }
