@@ -12,6 +12,7 @@
 #include <atomic>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "devices/usb/usb_bus.h"
@@ -276,18 +277,20 @@ class UsbBus::Thread {
   }
 
   void takeDone(int port, PortState& p) {
+    bool in_failed = false, out_failed = false;
     for (std::size_t i = 0; i < p.done_count; ++i) {
       Transfer& t = *p.done[i];
       t.flying = false;
       --p.flying;
-      if (!finished(p, *t.transfer) || &t == &p.out || p.told_closed) continue;
+      if (!finished(p, *t.transfer, &t == &p.out ? out_failed : in_failed) || &t == &p.out || p.told_closed) continue;
       ports_.received(port, std::span(t.buffer).first(static_cast<std::size_t>(std::max(0, t.transfer->actual_length))), clock_());
     }
     p.done_count = 0;
   }
 
-  // Whether the transfer brought its packet. A stalled endpoint is cleared; whatever fails too often in a row closes the port.
-  bool finished(PortState& p, libusb_transfer& transfer) {
+  // Whether the transfer brought its packet. A stalled endpoint is cleared; whatever fails too often in a row closes the port. Those that
+  // wait behind one that stalls come back with it: that is one failure; `failed`: it has been seen.
+  bool finished(PortState& p, libusb_transfer& transfer, bool& failed) {
     switch (transfer.status) {
       case LIBUSB_TRANSFER_COMPLETED:
         p.failures = 0;
@@ -295,10 +298,10 @@ class UsbBus::Thread {
       case LIBUSB_TRANSFER_NO_DEVICE:
         p.closing = true;
         return false;
-      case LIBUSB_TRANSFER_STALL:
-        if (libusb_clear_halt(p.handle, transfer.endpoint) == LIBUSB_ERROR_NO_DEVICE) p.closing = true;
-        [[fallthrough]];
       default:
+        if (std::exchange(failed, true)) return false;
+        if (transfer.status == LIBUSB_TRANSFER_STALL && libusb_clear_halt(p.handle, transfer.endpoint) == LIBUSB_ERROR_NO_DEVICE)
+          p.closing = true;
         if (++p.failures >= kFailuresInARow) p.closing = true;
         return false;
     }
