@@ -8,7 +8,7 @@
 #include "devices/usb/usb_host.h"
 #include "tasks/app/app.h"
 #include "tasks/app/devices_commands.h"
-#include "tasks/app/json_writer.h"
+#include "tasks/scene/json_writer.h"
 #include "tasks/servo/hand_devices_parts.h"
 
 namespace pincer::tasks {

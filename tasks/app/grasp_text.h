@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "tasks/app/json_writer.h"
+#include "tasks/scene/json_writer.h"
 #include "tasks/scene/simulation.h"
 
 namespace pincer::tasks {

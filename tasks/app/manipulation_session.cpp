@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "contact/error.h"
-#include "tasks/app/json_writer.h"
 #include "tasks/experiments/manipulation_file.h"
+#include "tasks/scene/json_writer.h"
 #include "tasks/session/session_store.h"
 
 namespace pincer::tasks {

@@ -10,9 +10,9 @@
 #include "contact/error.h"
 #include "tasks/app/app.h"
 #include "tasks/app/interrupt.h"
-#include "tasks/app/json_writer.h"
 #include "tasks/app/progress.h"
 #include "tasks/app/record_text.h"
+#include "tasks/scene/json_writer.h"
 
 namespace pincer::tasks {
 namespace {

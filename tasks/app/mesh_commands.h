@@ -6,7 +6,7 @@
 #include "contact/mesh/mesh_reader.h"
 #include "contact/mesh/mesh_report.h"
 #include "contact/mesh/triangle_mesh.h"
-#include "tasks/app/json_writer.h"
+#include "tasks/scene/json_writer.h"
 
 namespace CLI {
 class App;

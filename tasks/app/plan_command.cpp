@@ -9,11 +9,11 @@
 #include "tasks/app/app.h"
 #include "tasks/app/commands.h"
 #include "tasks/app/interrupt.h"
-#include "tasks/app/json_writer.h"
 #include "tasks/app/plan_text.h"
 #include "tasks/app/progress.h"
 #include "tasks/app/tick_times.h"
 #include "tasks/scene/builtin_scenes.h"
+#include "tasks/scene/json_writer.h"
 #include "tasks/scene/simulation.h"
 
 namespace pincer::tasks {

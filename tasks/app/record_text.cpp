@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 
-#include "tasks/app/json_writer.h"
 #include "tasks/app/terminal.h"
+#include "tasks/scene/json_writer.h"
 
 namespace pincer::tasks {
 namespace {

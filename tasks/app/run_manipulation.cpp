@@ -218,9 +218,9 @@ CLI::App* addManipulationCommand(CLI::App& run, const char* name, const char* wh
 
 void addSpherePickupTask(CLI::App& run, int& exit_code) {
   auto arguments = std::make_shared<ManipulationArguments>();
-  arguments->study.alignment_task = false;
+  arguments->study.tasks = {HandTask::kPickup};
   arguments->study.participants = 1;
-  arguments->study.training_pickups = 0;
+  arguments->study.training.pickups = 0;
   addPickupOptions(
       *addManipulationCommand(run, "sphere-pickup", "Pick up spheres of different friction", kSpherePickupExample, arguments, exit_code),
       *arguments);
@@ -228,9 +228,9 @@ void addSpherePickupTask(CLI::App& run, int& exit_code) {
 
 void addCylinderAlignmentTask(CLI::App& run, int& exit_code) {
   auto arguments = std::make_shared<ManipulationArguments>();
-  arguments->study.pickup_task = false;
+  arguments->study.tasks = {HandTask::kAlignment};
   arguments->study.participants = 1;
-  arguments->study.training_alignments = 0;
+  arguments->study.training.alignments = 0;
   addAlignmentOptions(*addManipulationCommand(run, "cylinder-alignment", "Find the flat of a cylinder and turn it to the monitor",
                                               kCylinderExample, arguments, exit_code),
                       *arguments);

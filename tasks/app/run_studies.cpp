@@ -8,7 +8,6 @@
 #include "contact/error.h"
 #include "tasks/app/app.h"
 #include "tasks/app/interrupt.h"
-#include "tasks/app/json_writer.h"
 #include "tasks/app/progress.h"
 #include "tasks/app/run_options.h"
 #include "tasks/app/run_tasks.h"
@@ -16,6 +15,7 @@
 #include "tasks/app/study_file.h"
 #include "tasks/app/study_session.h"
 #include "tasks/report/study_report.h"
+#include "tasks/scene/json_writer.h"
 #include "tasks/session/atomic_file.h"
 
 namespace pincer::tasks {
@@ -131,7 +131,7 @@ std::shared_ptr<StudyArguments> addStudyTask(CLI::App& run, const std::string& t
   command->add_option("--participants", arguments->participants, "How many simulated participants (default: 12)");
   command->add_option("--seed", arguments->seed, "Of all that varies; the same seed gives the same session (default: 1)");
   command->add_option("--study", arguments->study_file, "File with parameters that differ from the published design (JSON)");
-  command->add_flag("--print-study", arguments->print_study, "Print all parameters as JSON, and run nothing");
+  command->add_flag("--print-study", arguments->print_study, "Print all parameters as JSON with what they mean, and run nothing");
   command->add_flag("--resume", arguments->resume, "Go on with the interrupted or killed session in --out");
   addRunOptions(*command, arguments->run);
   command->footer(fmt::format("\n{}\n\nExample:\n  pincer run {} --participants 2 --out out/{}", more, task, task));

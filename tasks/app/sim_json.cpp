@@ -1,6 +1,6 @@
 #include "tasks/app/grasp_text.h"
-#include "tasks/app/json_writer.h"
 #include "tasks/app/sim_run.h"
+#include "tasks/scene/json_writer.h"
 
 namespace pincer::tasks {
 namespace {

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "contact/error.h"
+#include "tasks/experiments/study_parameters.h"
 #include "tasks/participants/random.h"
 #include "tasks/study/counterbalance.h"
 
@@ -63,6 +64,21 @@ std::shared_ptr<const contact::Curve> sharedCurve(const contact::Polyline& polyl
   return std::make_shared<const contact::Curve>(polyline, variant);
 }
 
+// What a condition's levels may be.
+void validate(const ArcStudy& study, const ArcCondition& c) {
+  const std::string of = fmt::format("{}: condition {}", study.task, c.name);
+  visitParameters(c, RangeCheck(of));
+  const std::string problem = problemWith(c.staircase);
+  if (!problem.empty()) throw InputError(fmt::format("{}: staircase: {}.", of, problem));
+  const bool turns = study.quantity == ArcQuantity::kTurn;
+  const double most = turns ? kLargestTurn : study.quantity == ArcQuantity::kDelay ? 0.512 : 0.05;
+  if (c.staircase.highest <= most && c.staircase.lowest >= (turns ? 1e-5 : 0)) return;
+  throw InputError(
+      fmt::format("{}: staircase: levels from {} to {} can't all be shown: a turn in [0.00001, 0.5] rad, a backlash in [0, 0.05] m, a "
+                  "delay in [0, 0.512] s.",
+                  of, c.staircase.lowest, c.staircase.highest));
+}
+
 }  // namespace
 
 ArcStudy smoothnessStudy() {
@@ -103,31 +119,16 @@ ArcStudy delayStudy() {
 }
 
 void validate(const ArcStudy& study) {
-  const auto require = [&](bool ok, const char* field, double value, const char* range) {
-    if (!ok)
-      throw InputError(
-          fmt::format("{}: {} = {:g} is out of range {}. Leave it out for the published design.", study.task, field, value, range));
-  };
-  require(study.participants >= 1 && study.participants <= 10'000, "participants", study.participants, "[1, 10000]");
-  require(study.finger_radius >= 2e-3 && study.finger_radius <= 0.05, "finger_radius", study.finger_radius, "[0.002, 0.05] m");
-  require(study.arc_radius >= 0.01 && study.arc_radius <= 0.2, "arc_radius", study.arc_radius, "[0.01, 0.2] m");
-  require(study.edge_angle > 0 && study.edge_angle < std::numbers::pi, "edge_angle", study.edge_angle, "(0, pi) rad");
-  require(study.edge_radius >= 1e-4 && study.edge_radius <= 0.05, "edge_radius", study.edge_radius, "[0.0001, 0.05] m");
-  require(study.tactor_reach > 0 && study.tactor_reach <= 8e-3, "tactor_reach", study.tactor_reach, "(0, 0.008] m");
-  require(study.tactor_reach / study.finger_radius <= 1, "tactor_reach", study.tactor_reach,
-          "(0, finger_radius]: a radian of stroke either way");
-  require(study.reference_turn >= 1e-4 && study.reference_turn <= 0.1, "reference_turn", study.reference_turn, "[0.0001, 0.1] rad");
-  require(study.stiffness > 0 && study.stiffness <= 3500, "stiffness", study.stiffness, "(0, 3500] N/m");
-  require(study.strokes >= 2 && study.strokes <= 100 && study.strokes % 2 == 0, "strokes", study.strokes, "[2, 100], even");
-  require(!study.conditions.empty(), "conditions", 0, "[1, inf)");
-  for (const ArcCondition& c : study.conditions) {
-    require(c.travel_share > 0 && c.travel_share <= 1, "travel_share", c.travel_share, "(0, 1]");
-    const std::string problem = problemWith(c.staircase);
-    if (!problem.empty()) throw InputError(fmt::format("{}: condition {}: staircase: {}.", study.task, c.name, problem));
-    const double most = study.quantity == ArcQuantity::kTurn ? kLargestTurn : study.quantity == ArcQuantity::kDelay ? 0.512 : 0.05;
-    require(c.staircase.highest <= most && c.staircase.lowest >= (study.quantity == ArcQuantity::kTurn ? 1e-5 : 0), "staircase.highest",
-            c.staircase.highest, "what can be shown: a turn in [0.00001, 0.5] rad, a backlash in [0, 0.05] m, a delay in [0, 0.512] s");
-  }
+  const RangeCheck check(study.task);
+  visitParameters(study, check);
+  if (study.tactor_reach > study.finger_radius)
+    throw InputError(fmt::format("{}: tactor_reach = {} is out of range (0, finger_radius]: a radian of stroke either way. {}", study.task,
+                                 study.tactor_reach, kAsPublished));
+  if (study.strokes % 2 != 0)
+    throw InputError(
+        fmt::format("{}: strokes = {} is odd, but every stroke has its way back. {}", study.task, study.strokes, kAsPublished));
+  if (study.conditions.empty()) throw InputError(study.task + ": conditions is empty. Give at least one.");
+  for (const ArcCondition& c : study.conditions) validate(study, c);
 }
 
 ArcExperiment::ArcExperiment(const ArcStudy& study, const ServoOptions& servo, int stride) : study_(study), servo_(servo), stride_(stride) {

@@ -6,15 +6,11 @@
 #include <numbers>
 
 #include "engine/world/state.h"
+#include "tasks/experiments/study_parameters.h"
 #include "tasks/participants/random.h"
 
 namespace pincer::tasks {
 namespace {
-
-void requireCylinder(const char* name, double value, double low, double high, const char* unit, const char* remedy) {
-  if (value >= low && value <= high) return;  // also false for NaN
-  throw InputError(fmt::format("cylinder-alignment: {} = {} is out of range [{}, {}]{}. {}", name, value, low, high, unit, remedy));
-}
 
 engine::WorldBuilder cylinderWorld(const CylinderAlignmentOptions& o, int& object) {
   engine::WorldBuilder builder{engine::WorldOptions{}};
@@ -36,20 +32,10 @@ engine::WorldBuilder cylinderWorld(const CylinderAlignmentOptions& o, int& objec
 double flatDistance(const CylinderAlignmentOptions& options) { return options.radius * std::cos(options.flat_half_angle); }
 
 void validate(const CylinderAlignmentOptions& o) {
-  requireCylinder("radius", o.radius, 0.01, 0.05, " m", "It is in metres; the usual cylinder has 0.02.");
-  requireCylinder("length", o.length, 0.02, 0.2, " m", "It is in metres; the usual cylinder has 0.08.");
-  requireCylinder("mass", o.mass, 0.01, 1, " kg", "It is in kilograms; the usual cylinder has 0.15.");
-  requireCylinder("flat_half_angle", o.flat_half_angle, 0.2, 1.2, " rad", "It is in radians; the usual flat has 0.7854, 45 degrees.");
-  requireCylinder("friction", o.friction, 0.05, 5, "", "A static friction coefficient; skin on plastic has about 0.6.");
-  requireCylinder("dynamic_ratio", o.dynamic_ratio, 0.01, 1, "", "Dynamic friction is at most static friction; 0.85 is the usual ratio.");
-  requireCylinder("torsion_radius", o.torsion_radius, 0, 0.02, " m", "It is in metres; a fingertip has 0.0033, a point contact 0.");
-  requireCylinder("pivot_damping", o.pivot_damping, 0, 0.1, " N m s/rad", "The usual pivot has 0.01.");
-  requireCylinder("table_friction", o.table_friction, 0, 5, "", "A friction coefficient; the usual table has 0.5.");
-  requireCylinder("start_min", o.start_min, 0, std::numbers::pi, " rad", "It is in radians; 0.7854, 45 degrees, is usual.");
-  requireCylinder("start_max", o.start_max, o.start_min, 3.1416, " rad", "It is in radians, at least start_min; 3.1416 is usual.");
-  requireCylinder("timeout", o.timeout, 1, 600, " s", "It is in seconds; 120 is the usual time.");
-  requireCylinder("repetitions", o.repetitions, 1, 1000, "", "So many trials are done in each condition; 10 is usual.");
-  requireCylinder("participants", o.participants, 1, 1000, "", "The published study had 12.");
+  const RangeCheck check("cylinder-alignment");
+  visitParameters(o, check);
+  check("participants", o.participants, Parameter{"", {1, 1000, false, "The published study had 12."}});
+  check("start_max", o.start_max, Parameter{"", {o.start_min, 3.1416, false, "It is in radians, at least start_min; 3.1416 is usual."}});
   if (o.conditions.empty()) throw InputError("cylinder-alignment: conditions is empty. Give force, cld+force, or both.");
 }
 

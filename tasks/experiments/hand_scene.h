@@ -7,17 +7,12 @@
 #include <array>
 #include <vector>
 
+#include "tasks/experiments/hand_setup.h"
 #include "tasks/participants/participant.h"
 #include "tasks/servo/device_calibration.h"
 #include "tasks/servo/tick.h"
 
 namespace pincer::tasks {
-
-struct HandSetup {
-  double finger_radius = 8e-3;       // [m], 0.002 .. 0.02
-  double coupling_stiffness = 1000;  // of finger and proxy [N/m], 50 .. 3500 (what the arm renders stably)
-  double coupling_damping = 5;       // [N s/m], 0 .. 30
-};
 
 struct HandScene {
   TickModel model;

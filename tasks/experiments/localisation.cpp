@@ -6,6 +6,7 @@
 
 #include "contact/error.h"
 #include "tasks/experiments/arc_trial.h"
+#include "tasks/experiments/study_parameters.h"
 #include "tasks/participants/place_observer.h"
 #include "tasks/study/counterbalance.h"
 
@@ -28,20 +29,10 @@ double startPlace(double target, double least, Random& random) {
 }  // namespace
 
 void validate(const LocalisationStudy& s) {
-  const auto require = [](bool ok, const char* field, double value, const char* range) {
-    if (!ok)
-      throw InputError(
-          fmt::format("repeated-localisation: {} = {:g} is out of range {}. Leave it out for the published design.", field, value, range));
-  };
-  require(s.participants >= 1 && s.participants <= 10'000, "participants", s.participants, "[1, 10000]");
-  require(s.places >= 2 && s.places <= 50, "places", s.places, "[2, 50]");
-  require(s.spacing > 0 && s.spacing * (s.places - 1) <= 2 * kTactorReach, "spacing", s.spacing, "(0, 0.016 / (places - 1)] m");
-  require(s.repetitions >= 1 && s.repetitions <= 1000, "repetitions", s.repetitions, "[1, 1000]");
-  require(s.least_travel >= 0 && s.least_travel <= 7.9e-3, "least_travel", s.least_travel, "[0, 0.0079] m");
-  require(s.radius_min >= 0.02 && s.radius_min <= s.radius_max, "radius_min", s.radius_min, "[0.02, radius_max] m");
-  require(s.radius_max <= 0.2, "radius_max", s.radius_max, "[radius_min, 0.2] m");
-  require(s.finger_radius >= 8e-3 && s.finger_radius <= 0.05, "finger_radius", s.finger_radius, "[0.008, 0.05] m");
-  require(s.stiffness > 0 && s.stiffness <= 3500, "stiffness", s.stiffness, "(0, 3500] N/m");
+  const RangeCheck check("repeated-localisation");
+  visitParameters(s, check);
+  check("spacing", s.spacing, Parameter{"", {0, 2 * kTactorReach / (s.places - 1), true, "All places lie within 0.016 m."}});
+  check("radius_min", s.radius_min, Parameter{"", {0.02, s.radius_max, false, kAsPublished}});
 }
 
 LocalisationExperiment::LocalisationExperiment(const LocalisationStudy& study, const ServoOptions& servo, int stride)

@@ -7,16 +7,12 @@
 #include "tasks/experiments/cylinder_trial.h"
 #include "tasks/experiments/pickup_trial.h"
 #include "tasks/experiments/simulated_hands.h"
+#include "tasks/experiments/study_parameters.h"
 
 namespace pincer::tasks {
 namespace {
 
 constexpr std::uint64_t kAlignmentSeed = 0x616c69676e, kTrainingSeed = 0x747261696e;  // "align", "train"
-
-void requireCount(const char* name, int value, int low, int high, const char* remedy) {
-  if (value >= low && value <= high) return;
-  throw InputError(fmt::format("study: {} = {} is out of range [{}, {}]. {}", name, value, low, high, remedy));
-}
 
 SpherePickupOptions pickupOf(const ManipulationStudy& study, bool training) {
   SpherePickupOptions options = study.pickup;
@@ -43,12 +39,12 @@ class TrialList {
   void addHalf(std::int64_t person, std::size_t half) {
     const std::size_t place = person % 2 == 1 ? study_.conditions.size() - 1 - half : half;
     const PickupCondition condition = study_.conditions[place];
-    if (study_.pickup_task) {
-      addPickups(trained_, person, condition, study_.training_pickups, true);
+    if (has(study_, HandTask::kPickup)) {
+      addPickups(trained_, person, condition, study_.training.pickups, true);
       addPickups(counted_, person, condition, std::numeric_limits<int>::max(), false);
     }
-    if (study_.alignment_task) {
-      addAlignments(person, condition, study_.training_alignments, true);
+    if (has(study_, HandTask::kAlignment)) {
+      addAlignments(person, condition, study_.training.alignments, true);
       addAlignments(person, condition, study_.alignment.repetitions, false);
     }
   }
@@ -87,32 +83,26 @@ class TrialList {
   std::int64_t index_ = 0;
 };
 
-void requireParameters(const ParticipantModel& people) {
-  forEachParameter(people, [](const char* name, double value, double low, double high, const char* unit) {
-    if (value >= low && value <= high) return;  // also false for NaN
-    throw InputError(fmt::format("study: people.{} = {} is out of range [{}, {}]{}{}. Leave it out for the default.", name, value, low,
-                                 high, *unit ? " " : "", unit));
-  });
-}
-
 }  // namespace
 
 void validate(const ManipulationStudy& study) {
-  requireCount("participants", study.participants, 1, 1000, "The published study had 12.");
-  requireCount("training_pickups", study.training_pickups, 0, 100, "So many trials come before the counted ones; 2 is usual.");
-  requireCount("training_alignments", study.training_alignments, 0, 100, "So many trials come before the counted ones; 1 is usual.");
-  if (!study.pickup_task && !study.alignment_task)
-    throw InputError("study: tasks is empty. Give sphere-pickup, cylinder-alignment, or both.");
+  visitParameters(study, RangeCheck("study"));
+  visitParameters(study.training, RangeCheck("study: training"));
+  visitParameters(study.people, RangeCheck("study: people"));
+  if (study.tasks.empty()) throw InputError("study: tasks is empty. Give sphere-pickup, cylinder-alignment, or both.");
   validate(pickupOf(study, false));
   CylinderAlignmentOptions alignment = study.alignment;
   alignment.conditions = study.conditions;
   validate(alignment);
-  requireParameters(study.people);
+}
+
+bool has(const ManipulationStudy& study, HandTask task) {
+  return std::find(study.tasks.begin(), study.tasks.end(), task) != study.tasks.end();
 }
 
 std::string taskName(const ManipulationStudy& study) {
-  if (study.pickup_task && study.alignment_task) return "manipulation";
-  return study.pickup_task ? "sphere-pickup" : "cylinder-alignment";
+  if (has(study, HandTask::kPickup) && has(study, HandTask::kAlignment)) return "manipulation";
+  return has(study, HandTask::kPickup) ? "sphere-pickup" : "cylinder-alignment";
 }
 
 std::vector<ManipulationTrial> manipulationTrials(const ManipulationStudy& study) {

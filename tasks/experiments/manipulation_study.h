@@ -19,20 +19,26 @@
 
 namespace pincer::tasks {
 
+struct TrainingTrials {
+  int pickups = 2, alignments = 1;  // per condition, before the counted ones, 0 .. 100
+};
+
 struct ManipulationStudy {
   int participants = 12;  // 1 .. 1000
   std::uint64_t seed = 1;
   std::vector<PickupCondition> conditions{PickupCondition::kForce, PickupCondition::kCldForce};
-  bool pickup_task = true, alignment_task = true;
-  int training_pickups = 2, training_alignments = 1;  // per condition, 0 .. 100
-  SpherePickupOptions pickup;                         // its participants, conditions and seed don't count here
-  CylinderAlignmentOptions alignment;                 // likewise
+  std::vector<HandTask> tasks{HandTask::kPickup, HandTask::kAlignment};  // done in this order
+  TrainingTrials training;
+  SpherePickupOptions pickup;          // its participants, conditions and seed don't count here
+  CylinderAlignmentOptions alignment;  // likewise
   ParticipantModel people;
   bool frozen_tactor = false;  // the tactors stay parked in every condition (a control)
 };
 
 // Throws InputError naming the first value out of range, its range and the remedy.
 void validate(const ManipulationStudy& study);
+
+bool has(const ManipulationStudy& study, HandTask task);
 
 // "sphere-pickup", "cylinder-alignment", or "manipulation" for both.
 std::string taskName(const ManipulationStudy& study);

@@ -12,10 +12,9 @@ constexpr double kFarthest = 0.3;  // [m]
 }  // namespace
 
 HandScene makePickupScene(const SpherePickupOptions& options, const PickupObject& object, const PickupTrialSpec& spec) {
-  const HandSetup setup{options.finger_radius, options.coupling_stiffness, options.coupling_damping};
-  HandScene scene =
-      makeHandScene(setup, pickupWorld(options, object.shape, spec.mu_s, spec.mu_d), {{}, {object.rest_X_WB, Vec3::Zero(), Vec3::Zero()}},
-                    object.place_W, object.half_width, spec.condition == PickupCondition::kCldForce);
+  HandScene scene = makeHandScene(options.hand, pickupWorld(options, object.shape, spec.mu_s, spec.mu_d),
+                                  {{}, {object.rest_X_WB, Vec3::Zero(), Vec3::Zero()}}, object.place_W, object.half_width,
+                                  spec.condition == PickupCondition::kCldForce);
   scene.object = kObjectBody;
   scene.cues.seed = spec.seed;
   scene.cues.mass = options.mass;

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "contact/error.h"
+#include "tasks/experiments/study_parameters.h"
 #include "tasks/study/counterbalance.h"
 
 namespace pincer::tasks {
@@ -29,21 +30,12 @@ std::vector<ShapeCondition> ShapeStudy::published() {
 }
 
 void validate(const ShapeStudy& s) {
-  const auto require = [](bool ok, const char* field, double value, const char* range) {
-    if (!ok)
-      throw InputError(
-          fmt::format("shape-identification: {} = {:g} is out of range {}. Leave it out for the published design.", field, value, range));
-  };
-  require(s.participants >= 1 && s.participants <= 10'000, "participants", s.participants, "[1, 10000]");
-  require(s.runs >= 1 && s.runs <= 100, "runs", s.runs, "[1, 100]");
-  require(s.sizes.radius >= 0.02 && s.sizes.radius <= 0.045, "radius", s.sizes.radius, "[0.02, 0.045] m");
-  require(s.sizes.length >= 0.04 && s.sizes.length <= 0.09, "length", s.sizes.length, "[0.04, 0.09] m");
-  require(s.sizes.edge_radius > 0 && s.sizes.edge_radius <= 5e-3, "edge_radius", s.sizes.edge_radius, "(0, 0.005] m");
-  require(s.sizes.sides >= 12 && s.sizes.sides <= 200 && s.sizes.sides % 2 == 0, "sides", s.sizes.sides, "[12, 200], even");
-  require(s.friction >= 0 && s.friction <= 2, "friction", s.friction, "[0, 2]");
-  require(s.finger_radius >= 4e-3 && s.finger_radius <= 0.015, "finger_radius", s.finger_radius, "[0.004, 0.015] m");
-  require(s.stiffness > 0 && s.stiffness <= 3500, "stiffness", s.stiffness, "(0, 3500] N/m");
-  require(!s.conditions.empty(), "conditions", 0, "[1, inf)");
+  const RangeCheck check("shape-identification");
+  visitParameters(s, check);
+  visitParameters(s.sizes, check);
+  if (s.sizes.sides % 2 != 0)
+    throw InputError(fmt::format("shape-identification: sides = {} is odd, but an even number is needed. {}", s.sizes.sides, kAsPublished));
+  if (s.conditions.empty()) throw InputError("shape-identification: conditions is empty. Give at least one.");
 }
 
 ShapeExperiment::ShapeExperiment(const ShapeStudy& study, const ServoOptions& servo, int stride)

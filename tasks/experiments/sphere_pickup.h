@@ -12,6 +12,7 @@
 
 #include "contact/error.h"
 #include "contact/surface/surface_contact.h"
+#include "tasks/experiments/hand_setup.h"
 
 namespace pincer::tasks {
 
@@ -34,13 +35,11 @@ struct SpherePickupOptions {
   double torsion_radius = 3.3e-3;                         // of the soft fingertip's patch [m], 0 .. 0.02
   double dish_radius = 0.150;                             // of curvature [m], 0.1 .. 10
   double dish_friction = 0.5;                             // mu of the dish [-], 0 .. 5; with the object: the geometric mean
-  double finger_radius = 8e-3;                            // [m], 0.002 .. 0.02
-  double coupling_stiffness = 1000;                       // of finger and proxy [N/m], 50 .. 3500 (what the arm renders stably)
-  double coupling_damping = 5;                            // [N s/m], 0 .. 30
-  double success_height = 0.050;                          // [m], 0.005 .. 0.08 (the arms' reach)
-  double hold_time = 1.0;                                 // at that height [s], 0 .. 10
-  double timeout = 60;                                    // [s], 1 .. 600
-  int repetitions = 5;                                    // of every friction per condition, 1 .. 1000
+  HandSetup hand;
+  double success_height = 0.050;  // [m], 0.005 .. 0.08 (the arms' reach)
+  double hold_time = 1.0;         // at that height [s], 0 .. 10
+  double timeout = 60;            // [s], 1 .. 600
+  int repetitions = 5;            // of every friction per condition, 1 .. 1000
   std::vector<PickupCondition> conditions{PickupCondition::kForce, PickupCondition::kCldForce};
   int participants = 1;  // 1 .. 1000
   std::uint64_t seed = 1;

@@ -34,7 +34,7 @@ ManipulationStudy studyOf(const FindingsOptions& options, const FindingsVariant&
   ManipulationStudy study;
   study.participants = options.participants;
   study.seed = seedFor(options.seed, static_cast<std::uint64_t>(experiment));
-  study.training_pickups = study.training_alignments = 0;
+  study.training = {0, 0};
   study.pickup.repetitions = options.pickups;
   study.alignment.repetitions = options.alignments;
   variant.change(study);

@@ -19,6 +19,8 @@ const std::vector<FindingsVariant>& findingsVariants() {
        [](Study& s) { s.people.limits.tactor_sd = kDeaf; }},
       {"frozen-tactor", "control: the tactors stand still in both conditions; no effect may remain",
        [](Study& s) { s.frozen_tactor = true; }},
+      {"slip-cue-only", "control: of a tactor people feel only that it runs while they hold something, and then grip harder",
+       [](Study& s) { s.people.limits.tactor_use = TactorUse::kSlip; }},
       {"slow-without-information", "control: infinite noise, and with the CLD people move at 32/74 of their speed",
        [](Study& s) {
          s.people.limits.tactor_sd = kDeaf;

@@ -19,8 +19,13 @@ struct HandRanges {
   double speed_min = 0.032, speed_max = 0.074;      // mean speed of a reach [m/s]; A. J. Doxon, dissertation, Univ. of Utah, 2014
 };
 
+// What the tactors are good for: where the fingers are touched; only that the contact runs over the pad while something is held, which is a cue of
+// slip; nothing. The latter two are controls.
+enum class TactorUse : std::uint8_t { kPlace, kSlip, kNothing };
+
 // Sensing limits. Noise is drawn once per deliberate reading, never per tick; what is "constant in a trial" once per trial.
 struct SensingLimits {
+  TactorUse tactor_use = TactorUse::kPlace;
   double tactor_sd = 1.63e-3;          // place on the pad, per axis [m]: 1.3 mm mean absolute error x sqrt(pi/2) (Doxon 2014)
   double tactor_bias = 0.9;            // felt place over true place, towards the centre [-] (Doxon 2014, direction; size: choice)
   double tactor_moves = 0.2e-3;        // a tactor that has moved less than this since the start is felt as still [m] (choice)

@@ -18,8 +18,7 @@ enum class Strategy : std::uint8_t { kRational, kSimple };
 
 struct ParticipantModel {
   Strategy strategy = Strategy::kRational;
-  double cld_speed = 1;      // speed with the contact location display over that without [-]: 1 is the primary analysis
-  bool feels_tactor = true;  // false: what the tactors do says nothing (a control)
+  double cld_speed = 1;  // speed with the contact location display over that without [-]: 1 is the primary analysis
   SensingLimits limits;
   HandRanges hands;
   ScriptedPickupOptions pickup;
@@ -77,6 +76,7 @@ void forEachParameter(Model& m, Visit&& visit) {
 }
 
 const char* nameOf(Strategy strategy);  // "rational", "simple"
+const char* nameOf(TactorUse use);      // "place", "slip", "nothing"
 
 // Every parameter with its value, as one JSON object, and its FNV-1a hash: equal models, equal hashes.
 std::string describe(const ParticipantModel& model);

@@ -174,8 +174,7 @@ void ScriptedPickup::say(const char* kind, const Vec3& percept, const Vec3& esti
 
 void ScriptedPickup::squeeze() {
   if (lostIt()) return;
-  const double stiffness = 0.5 * (body_.hands[0].stiffness + body_.hands[1].stiffness);
-  posture_.half = std::max(posture_.half - options_.squeeze_rate / stiffness * dt_, 0.0);
+  posture_.half = std::max(posture_.half - options_.squeeze_rate / meanStiffness() * dt_, 0.0);
   if (felt_factor_ * touch_.grip() < wanted_grip_ && posture_.half > 0) return;  // at 0 the hand can't close any further
   say("grip", Vec3(felt_factor_ * touch_.grip(), 0, 0), Vec3(wanted_grip_, 0, 0), "lift");
   raise(cues_.lift_height + options_.lift_margin);
@@ -184,13 +183,26 @@ void ScriptedPickup::squeeze() {
 void ScriptedPickup::lift() {
   if (lostIt()) return;
   posture_ = reach_.at(now_);
+  tightenWhereItSlips();
   if (reach_.over(now_)) enter(HandPhase::kHold);
 }
 
 void ScriptedPickup::hold() {
-  if (lostIt() || now_ < entered_ + options_.patience) return;
-  raise(options_.lift_more);
+  if (lostIt()) return;
+  tightenWhereItSlips();
+  if (now_ >= entered_ + options_.patience) raise(options_.lift_more);
 }
+
+// Without leaving the way up.
+void ScriptedPickup::tightenWhereItSlips() {
+  if (!touch_.feelsSlip() || wanted_grip_ >= options_.grip_max) return;
+  const double before = wanted_grip_;
+  wanted_grip_ = std::min(wanted_grip_ * options_.grip_growth, options_.grip_max);
+  const double closer = (wanted_grip_ - before) / meanStiffness();
+  for (double* half : {&reach_.from.half, &reach_.to.half, &posture_.half}) *half = std::max(*half - closer, 0.0);
+}
+
+double ScriptedPickup::meanStiffness() const { return 0.5 * (body_.hands[0].stiffness + body_.hands[1].stiffness); }
 
 void ScriptedPickup::enter(HandPhase phase) {
   phase_ = phase;

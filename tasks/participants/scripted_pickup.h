@@ -12,6 +12,7 @@
 // A loss of force for longer than the reflex time means that the object got away (slipped out, dropped, or was expelled): open, go down,
 // grip 1.3 times as hard, a random step away from where the object is believed to be. What is believed changes by readings, by the dish and by
 // the first touch alone, never by a random step. The same plan in every condition; no parameter knows an outcome.
+// Where the tactors are of use as a cue of slip only (a control), a tactor that runs during lift or hold makes the grip 1.3 times as hard.
 // That is the "simple" strategy. The "rational" one keeps a belief over the offset of its pinch and over the friction (place_belief.h): it
 // shifts when the gain in the chance to hold, times the time that a failure costs, pays for the time that a shift takes, both from its own
 // speed; a failure is evidence too, and the next pinch is where the belief says that it holds best. Grip grows 1.3 times alike.
@@ -82,10 +83,12 @@ class ScriptedPickup final : public Participant {
   void believe(const Vec3& place_W);
   void retry(double step_sd);
   bool lostIt();
+  void tightenWhereItSlips();
   bool standsOnDish();
   Posture besideThePinch() const;
   double heightOnDish(double beside) const;
   double touchingHalf() const;
+  double meanStiffness() const;  // of the two hands [N/m]
   devices::HandPull pullOf(int finger) const;
 
   ScriptedPickupOptions options_;

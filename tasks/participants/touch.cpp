@@ -10,6 +10,7 @@ void Touch::begin(const SensingLimits& limits, const TrialCues& cues, const Body
   limits_ = limits;
   cues_ = cues;
   push_W_.fill(Vec3::Zero());
+  place_before_.fill(Vec2::Zero());
   sense_ = sense;
 }
 
@@ -29,6 +30,23 @@ void Touch::feel(const Percept& percept) {
     moved_[k] = moved_[k] || (*place - *place_at_start_[k]).norm() > limits_.tactor_moves;
   }
   loss_time_ = feelsBoth() ? 0 : loss_time_ + dt;
+  feelSlip();
+}
+
+// Stretch by stretch; the first one that begins with both fingers touching only remembers where the tactors are.
+void Touch::feelSlip() {
+  slips_ = false;
+  if (limits_.tactor_use != TactorUse::kSlip) return;
+  const bool stretch_over = percept_.time - stretch_begin_ >= limits_.reflex_time;
+  if (feelsBoth() && !stretch_over) return;
+  for (int i = 0; i < kHandFingers; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const auto& place = percept_.fingers[k].tactile.place_L;
+    if (!place) continue;
+    slips_ = slips_ || (feelsBoth() && (*place - place_before_[k]).norm() > limits_.tactor_moves);
+    place_before_[k] = *place;
+  }
+  stretch_begin_ = percept_.time;
 }
 
 Vec3 Touch::padAxis_W(int finger, const Vec3& axis_F) const {
@@ -67,7 +85,7 @@ std::optional<Vec2> Touch::readPad(int finger, Random& random) const {
   const auto k = static_cast<std::size_t>(finger);
   const Vec2 noise = limits_.tactor_sd * random.normal2();
   const auto& place = percept_.fingers[k].tactile.place_L;
-  if (!moved_[k] || !place) return std::nullopt;
+  if (limits_.tactor_use != TactorUse::kPlace || !moved_[k] || !place) return std::nullopt;
   return Vec2(limits_.tactor_bias * *place + noise);
 }
 

@@ -31,6 +31,9 @@ class Touch {
   double push(int finger) const { return push_W_[static_cast<std::size_t>(finger)].norm(); }  // whatever its direction [N]
   // How long at least one finger has felt nothing [s].
   double lossTime() const { return loss_time_; }
+  // Both fingers feel something, and a tactor has gone further than `tactor_moves` within the reflex time: what is held slips or rolls. Never,
+  // unless the tactors are of use for it.
+  bool feelsSlip() const { return slips_; }
 
   // Reads the direction of the push on a finger that has felt one for the reflex time, and again every reading time. Returns a finger whose
   // push seems to come from below rather than against its pad.
@@ -48,6 +51,7 @@ class Touch {
   std::optional<Vec3> readPlace(Random& random) const;
 
  private:
+  void feelSlip();
   Vec3 padAxis_W(int finger, const Vec3& axis_F) const;
   std::optional<Vec2> readPad(int finger, Random& random) const;  // felt place on the pad [m]
   std::optional<Vec3> readPlace(int finger, Random& random) const;
@@ -61,6 +65,9 @@ class Touch {
   std::array<double, kHandFingers> touched_for_{};  // [s]
   std::array<bool, kHandFingers> moved_{};
   std::array<std::optional<Vec2>, kHandFingers> place_at_start_;
+  std::array<Vec2, kHandFingers> place_before_;  // at the begin of this stretch of reflex time [m]
+  double stretch_begin_ = 0;                     // [s]
+  bool slips_ = false;
   double loss_time_ = 0;
   bool begun_ = false;
 };

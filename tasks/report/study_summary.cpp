@@ -8,7 +8,7 @@
 #include <map>
 #include <set>
 
-#include "tasks/app/json_writer.h"
+#include "tasks/scene/json_writer.h"
 #include "tasks/scene/strict_json.h"
 
 namespace pincer::tasks {

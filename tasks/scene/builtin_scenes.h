@@ -14,6 +14,9 @@ struct BuiltinScene {
   std::string_view json;
 };
 
+// The format of scenes, for editors: docs/scene.schema.json.
+std::string_view sceneSchema();
+
 // In the order of their names.
 std::span<const BuiltinScene> builtinScenes();
 

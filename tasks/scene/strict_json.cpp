@@ -22,6 +22,10 @@ std::string withSpace(std::string_view sentence) { return sentence.empty() ? std
 
 }  // namespace
 
+bool isWithin(double value, const NumberRule& rule) { return (rule.min_open ? value > rule.min : value >= rule.min) && value <= rule.max; }
+
+std::string outOfRange(const NumberRule& rule) { return fmt::format("is out of range {}.{}", rangeText(rule), withSpace(rule.remedy)); }
+
 bool JsonValue::boolean() const {
   require(Kind::kBoolean, "true or false");
   return boolean_;
@@ -29,8 +33,7 @@ bool JsonValue::boolean() const {
 
 double JsonValue::number(const NumberRule& rule) const {
   require(Kind::kNumber, "a number");
-  const bool too_small = rule.min_open ? !(number_ > rule.min) : !(number_ >= rule.min);
-  if (too_small || !(number_ <= rule.max)) reject(fmt::format("is out of range {}.{}", rangeText(rule), withSpace(rule.remedy)));
+  if (!isWithin(number_, rule)) reject(outOfRange(rule));
   return number_;
 }
 

@@ -23,6 +23,9 @@ struct NumberRule {
   bool min_open = false;  // min itself is excluded
   std::string_view remedy = "";
 };
+bool isWithin(double value, const NumberRule& rule);  // false for NaN
+// "is out of range [0, inf). <remedy>"
+std::string outOfRange(const NumberRule& rule);
 
 class JsonValue {
  public:

@@ -116,6 +116,20 @@ std::string pageTestName(const testing::TestParamInfo<std::string>& info) {
 
 INSTANTIATE_TEST_SUITE_P(All, DocsPage, testing::ValuesIn(pages()), pageTestName);
 
+// To renew a page: the command in its last line.
+TEST(KeyReference, IsWhatTheProgramPrints) {
+  const TemporaryDirectory folder;
+  int found = 0;
+  for (const auto& page : fs::directory_iterator(kSource / "docs/reference")) {
+    const std::string line =
+        fmt::format("'{}/pincer' schema {} --markdown > '{}/page.md'", PINCER_BINARY_DIR, page.path().stem().string(), folder.path());
+    EXPECT_EQ(std::system(line.c_str()), 0) << line;
+    EXPECT_EQ(readFile(page.path()), readFile(folder / "page.md")) << page.path();
+    ++found;
+  }
+  EXPECT_EQ(found, 7);
+}
+
 TEST(ApiReference, IsBuiltWithoutAWarning) {
   const TemporaryDirectory folder;
   const std::string line =

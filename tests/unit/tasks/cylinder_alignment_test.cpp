@@ -118,8 +118,8 @@ SensingLimits sharpSenses() {
 ManipulationStudy alignments(const SensingLimits& limits, bool pivot = true) {
   ManipulationStudy study;
   study.participants = 1;
-  study.pickup_task = false;
-  study.training_alignments = 0;
+  study.tasks = {HandTask::kAlignment};
+  study.training.alignments = 0;
   study.alignment.repetitions = 2;
   study.alignment.pivot = pivot;
   study.conditions = {PickupCondition::kCldForce};

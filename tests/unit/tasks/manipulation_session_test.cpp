@@ -23,8 +23,8 @@ const std::atomic<bool> kGoOn{false};
 ManipulationSessionOptions quickSession(int repetitions) {
   ManipulationSessionOptions options;
   options.study.participants = 1;
-  options.study.alignment_task = false;
-  options.study.training_pickups = 0;
+  options.study.tasks = {HandTask::kPickup};
+  options.study.training.pickups = 0;
   options.study.conditions = {PickupCondition::kCldForce};
   options.study.pickup.frictions = {0.9};
   options.study.pickup.repetitions = repetitions;

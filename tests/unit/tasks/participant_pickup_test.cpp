@@ -120,6 +120,29 @@ TEST(ScriptedPickup, NoticesThatTheObjectGotAwayByTheLossOfForce) {
   ASSERT_TRUE(phantom.runTo(participant, HandPhase::kLift));  // it tries again
 }
 
+// Half a second of lifting while the tactors run at 20 mm/s: grip of the hands' equilibria at its end [N].
+double gripWhereTactorsRun(TactorUse use) {
+  Phantom phantom;
+  SensingLimits limits;
+  limits.tactor_use = use;
+  ScriptedPickup participant(1, {}, limits);
+  participant.begin(phantom.scene.cues);
+  phantom.step(participant, Cue::kStart);
+  EXPECT_TRUE(phantom.runTo(participant, HandPhase::kLift));
+  for (int i = 0; i < 500; ++i) {
+    for (auto& finger : phantom.percept.fingers) finger.tactile.place_L->x() += 2e-5;
+    phantom.step(participant);
+  }
+  return -phantom.percept.fingers[0].f_D.z();
+}
+
+// Seven stretches of the reflex time, each 1.3 times as hard: beyond the largest grip, which the hands reach at the stiffness of the phantom.
+TEST(ScriptedPickup, GripsHarderWhereATactorRunsIfThatIsWhatTactorsAreFor) {
+  const double place = gripWhereTactorsRun(TactorUse::kPlace), slip = gripWhereTactorsRun(TactorUse::kSlip);
+  EXPECT_GT(slip, 1.3 * place);
+  EXPECT_EQ(place, gripWhereTactorsRun(TactorUse::kNothing));
+}
+
 TEST(ScriptedPickup, OpensWhenItFindsNothingAndTriesElsewhere) {
   Phantom phantom;
   phantom.width = 0;

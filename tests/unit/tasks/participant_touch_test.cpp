@@ -33,7 +33,7 @@ struct TouchedSphere : ::testing::Test {
     Percept percept;
     percept.time = time;
     for (std::size_t i = 0; i < 2; ++i) {
-      const double reach = options.radius + options.finger_radius;
+      const double reach = options.radius + options.hand.finger_radius;
       const double side = i == 0 ? -1 : 1;
       const Vec3 tip_W = offset_W + Vec3(side * std::sqrt(reach * reach - offset_W.squaredNorm()), 0, 0);
       const Quat q_FW = (scene.cues.fingers[i].q_WD * scene.q_DF[i]).conjugate();
@@ -62,7 +62,7 @@ TEST_F(TouchedSphere, IsFeltTowardsTheCentreOfThePad) {
   SensingLimits limits = exactTouch();
   limits.tactor_bias = 0.9;
   Touch touch = touchWith(limits);
-  const double offset = 0.005, reach = options.radius + options.finger_radius;
+  const double offset = 0.005, reach = options.radius + options.hand.finger_radius;
   touch.feel(percept(0, Vec3(0, offset, 0), false));
   touch.feel(percept(1e-3, Vec3(0, offset, 0)));
   EXPECT_NEAR(touch.readPlace(random)->y(), -reach * std::sin(0.9 * std::asin(offset / reach)), 1e-12);

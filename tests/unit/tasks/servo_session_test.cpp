@@ -24,8 +24,8 @@ const std::atomic<bool> kNever{false};
 ManipulationSessionOptions shortStudy(int repetitions = 1) {
   ManipulationSessionOptions options;
   options.study.participants = 1;
-  options.study.alignment_task = false;
-  options.study.training_pickups = 0;
+  options.study.tasks = {HandTask::kPickup};
+  options.study.training.pickups = 0;
   options.study.conditions = {PickupCondition::kCldForce};
   options.study.pickup.frictions = {0.9};
   options.study.pickup.repetitions = repetitions;

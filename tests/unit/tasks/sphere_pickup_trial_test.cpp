@@ -142,7 +142,7 @@ TEST(SpherePickupTrial, MeasuresTheClearanceOfASphereLiftedStraightUp) {
 ManipulationStudy shortStudyOfBoth() {
   ManipulationStudy study;
   study.participants = 1;
-  study.training_pickups = study.training_alignments = 0;
+  study.training = {0, 0};
   study.pickup.frictions = {0.9};
   study.pickup.repetitions = study.alignment.repetitions = 1;
   study.pickup.timeout = study.alignment.timeout = 8;

@@ -1,13 +1,12 @@
-#include "tasks/app/json_writer.h"
+#include "tasks/scene/json_writer.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
 
 namespace pincer::tasks {
-namespace {
 
-std::string quoted(std::string_view text) {
+std::string quotedJson(std::string_view text) {
   std::string out = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') {
@@ -22,18 +21,16 @@ std::string quoted(std::string_view text) {
   return out + '"';
 }
 
-}  // namespace
-
 JsonWriter& JsonWriter::key(std::string_view name) {
   separate();
-  text_ += quoted(name) + ": ";
+  text_ += quotedJson(name) + ": ";
   after_key_ = true;
   return *this;
 }
 
 JsonWriter& JsonWriter::value(std::string_view text) {
   separate();
-  text_ += quoted(text);
+  text_ += quotedJson(text);
   return *this;
 }
 

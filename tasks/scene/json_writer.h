@@ -13,6 +13,8 @@
 
 namespace pincer::tasks {
 
+std::string quotedJson(std::string_view text);  // in quotes, escaped
+
 class JsonWriter {
  public:
   JsonWriter& beginObject() { return open('{'); }

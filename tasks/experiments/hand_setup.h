@@ -1,0 +1,12 @@
+// hand_setup: the fingertips of a pinching hand and what couples them to their arms, shared by both manipulation tasks.
+#pragma once
+
+namespace pincer::tasks {
+
+struct HandSetup {
+  double finger_radius = 8e-3;       // [m], 0.002 .. 0.02
+  double coupling_stiffness = 1000;  // of finger and proxy [N/m], 50 .. 3500 (what the arm renders stably)
+  double coupling_damping = 5;       // [N s/m], 0 .. 30
+};
+
+}  // namespace pincer::tasks
