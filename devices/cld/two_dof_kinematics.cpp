@@ -116,14 +116,29 @@ PadWay TwoDofKinematics::nearestOnEdge(const Vec2& place_L, const PadWay& from, 
   constexpr int kPieces = 16;
   const auto distance = [&](double share) { return (placeAt(blend(from, to, share)) - place_L).squaredNorm(); };
   int best = 0;
+  double least = distance(0);
   for (int i = 1; i <= kPieces; ++i) {
-    if (distance(i * (1.0 / kPieces)) < distance(best * (1.0 / kPieces))) best = i;
+    const double here = distance(i * (1.0 / kPieces));
+    if (here >= least) continue;
+    best = i;
+    least = here;
   }
   double low = std::max(0, best - 1) * (1.0 / kPieces), high = std::min(kPieces, best + 1) * (1.0 / kPieces);
-  constexpr double kGolden = 0.6180339887498949;
+  constexpr double kGolden = 0.6180339887498949;  // each section keeps one of the two places of the last
+  double a = high - kGolden * (high - low), b = low + kGolden * (high - low);
+  double at_a = distance(a), at_b = distance(b);
   for (int i = 0; i < 40; ++i) {
-    const double a = high - kGolden * (high - low), b = low + kGolden * (high - low);
-    (distance(a) < distance(b) ? high : low) = distance(a) < distance(b) ? b : a;
+    if (at_a < at_b) {
+      high = std::exchange(b, a);
+      at_b = at_a;
+      a = high - kGolden * (high - low);
+      at_a = distance(a);
+    } else {
+      low = std::exchange(a, b);
+      at_a = at_b;
+      b = low + kGolden * (high - low);
+      at_b = distance(b);
+    }
   }
   return blend(from, to, 0.5 * (low + high));
 }

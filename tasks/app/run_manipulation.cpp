@@ -103,10 +103,7 @@ int showStudy(const ManipulationArguments& arguments, const std::string& directo
   const ServoOptions& servo = arguments.run.servo;
   if (servo.real_time || arguments.view.view || arguments.devices.devices != "sim") say(servoText(result.servo, 1 / servo.rate));
   say(fmt::format("Session: {}", session.path()));
-  if (!servo.real_time && result.servo.wall > 0) {
-    const double simulated = static_cast<double>(result.servo.ticks) / servo.rate;
-    say(fmt::format("Simulated {:.0f} s in {:.1f} s: {:.0f} times real time", simulated, result.servo.wall, simulated / result.servo.wall));
-  }
+  if (!servo.real_time) say(throughputText(static_cast<double>(result.servo.ticks) / servo.rate));
   if (result.interrupted) {
     say(fmt::format("Interrupted after {} trials; they are safe. Go on: the same command with --resume --out {}", result.trials,
                     directory));

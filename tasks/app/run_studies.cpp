@@ -80,8 +80,7 @@ int showStudy(const StudyArguments& arguments, const std::string& directory, con
   const auto say = [&](const std::string& line) { fmt::print(arguments.run.json ? stderr : stdout, "{}\n", line); };
   if (arguments.run.servo.real_time) say(servoText(outcome.servo, 1 / arguments.run.servo.rate));
   const double simulated = static_cast<double>(outcome.servo.ticks) / arguments.run.servo.rate;
-  say(fmt::format("{:.0f} s of trials in {:.0f} s of processor time: {:.0f} times real time.", simulated, outcome.cpu_seconds,
-                  simulated / outcome.cpu_seconds));
+  say(throughputText(simulated));
   say(fmt::format("Session: {}", session.path()));
   if (outcome.interrupted) {
     say(fmt::format("Interrupted after {} trials; they are safe. Go on: the same task with --resume --out {}", outcome.trials, directory));

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "tasks/measure/timing.h"
+
 namespace pincer::tasks {
 namespace {
 
@@ -25,6 +27,11 @@ std::string servoText(const ServoReport& report, double period) {
   if (report.watchdog_tripped) text += "\nThe watchdog cut the forces: ticks stalled for longer than it allows. Close other programs.";
   if (!report.note.empty()) text += "\n" + report.note;
   return text;
+}
+
+std::string throughputText(double simulated) {
+  const double used = processCpuSeconds();
+  return fmt::format("Simulated {:.0f} s in {:.1f} s of processor time: {:.0f} times real time", simulated, used, simulated / used);
 }
 
 }  // namespace pincer::tasks

@@ -10,4 +10,7 @@ namespace pincer::tasks {
 // system didn't permit. `period`: of a tick [s].
 std::string servoText(const ServoReport& report, double period);
 
+// How much was simulated [s] in the processor time that the program has used so far, in one line.
+std::string throughputText(double simulated);
+
 }  // namespace pincer::tasks

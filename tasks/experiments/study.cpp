@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "contact/error.h"
-#include "tasks/measure/timing.h"
 #include "tasks/participants/random.h"
 
 namespace pincer::tasks {
@@ -104,9 +103,7 @@ class StudyRunner {
 
 StudyOutcome runStudy(Experiment& experiment, std::uint64_t seed, const std::vector<ResponseRecord>& earlier, StudySink& sink,
                       const std::atomic<bool>& interrupted, const std::function<void(const StudyProgress&)>& progress) {
-  const double start = threadCpuSeconds();
   StudyOutcome outcome = StudyRunner(experiment, seed, earlier, sink, interrupted).run(progress);
-  outcome.cpu_seconds = threadCpuSeconds() - start;
   return outcome;
 }
 

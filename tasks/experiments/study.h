@@ -64,7 +64,6 @@ struct StudyOutcome {
   std::int64_t trials = 0;  // finished, earlier ones included
   bool interrupted = false;
   ServoReport servo;
-  double cpu_seconds = 0;  // of this thread [s]
 };
 
 // Runs the study from the first trial that isn't among `earlier`, which are an earlier session's, in order. Throws InputError where they don't fit it.

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "tasks/experiments/simulated_trial.h"
+#include "tasks/measure/timing.h"
 
 namespace pincer::tasks {
 namespace {
@@ -212,6 +213,7 @@ FindingsResult runFindings(const FindingsOptions& options, const std::atomic<boo
   const auto start = std::chrono::steady_clock::now();
   Workshop workshop(options, chosen, interrupted, progress);
   workshop.run();
+  result.processor = processCpuSeconds();
   result.wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   result.simulated = workshop.simulated();
   result.interrupted = interrupted;

@@ -54,6 +54,7 @@ struct FindingsResult {
   ManipulationStudy study;  // of the primary analysis
   std::vector<VariantResult> variants;
   double simulated = 0, wall = 0;  // [s]
+  double processor = 0;            // time of all threads [s]
   bool interrupted = false;
 };
 

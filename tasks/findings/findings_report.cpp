@@ -44,8 +44,8 @@ const std::vector<std::string> kHeads = {"measure", "published",  "force only", 
                                          "d_z",     "p_t < 0.05", "p_W < 0.05", "direction",   "verdict"};
 
 std::string runCost(const FindingsResult& r) {
-  return fmt::format("{:.0f} s of trials in {:.0f} s on {} threads: {:.0f} times real time.", r.simulated, r.wall, r.options.threads,
-                     r.simulated / r.wall);
+  return fmt::format("{:.0f} s of trials in {:.0f} s on {} threads: {:.0f} times real time per processor.", r.simulated, r.wall,
+                     r.options.threads, r.simulated / r.processor);
 }
 
 std::string designOf(const FindingsResult& r) {

@@ -9,6 +9,12 @@
 namespace pincer::tasks {
 namespace {
 
+double secondsBy(clockid_t clock) {
+  timespec t{};
+  clock_gettime(clock, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
 double costOfReadingTheClock() {
   std::vector<double> pauses;
   for (int i = 0; i < 1001; ++i) {
@@ -34,11 +40,8 @@ double quantileOf(std::vector<double> values, double q) {
   return *nth;
 }
 
-double threadCpuSeconds() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
+double threadCpuSeconds() { return secondsBy(CLOCK_THREAD_CPUTIME_ID); }
+double processCpuSeconds() { return secondsBy(CLOCK_PROCESS_CPUTIME_ID); }
 
 double steadySeconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 

@@ -13,7 +13,8 @@ namespace pincer::tasks {
 // `q` in [0, 1], nearest rank; NaN of nothing.
 double quantileOf(std::vector<double> values, double q);
 
-double threadCpuSeconds();  // used by this thread so far [s]
+double threadCpuSeconds();   // used by this thread so far [s]
+double processCpuSeconds();  // by all threads
 double steadySeconds();     // [s]
 
 struct CallCost {
