@@ -87,7 +87,8 @@ std::optional<ResponseRecord> ShapeExperiment::present(const StudyTrial& trial, 
   if (report.interrupted) return std::nullopt;
   ResponseRecord response;
   response.stimulus = trial.stimulus.name;
-  response.level = response.answer_value = std::nan("");
+  response.level = std::nan("");
+  response.answer_value = explorer.sureness();
   response.answer = cycle.answered() ? kSolidNames[static_cast<std::size_t>(explorer.answer())] : "";
   response.correct = response.answer == response.stimulus;
   cycle.measure(response);

@@ -29,7 +29,8 @@ void ShapeExplorer::begin(const ShapeCues& cues) {
   random_ = Random(cues.seed);
   misplacement_W_ = limits_.common.placement_sd * random_.normal3();
   q_felt_true_ = drawRotation(limits_.common.orientation_sd, random_);
-  belief_.fill(0);
+  const double variance = limits_.common.placement_sd * limits_.common.placement_sd;
+  beliefs_.fill({0, Vec3::Zero(), variance * Mat3::Identity()});
   passes_ = 0;
   angle_ = 0;
   reach_ = limits_.distance;
@@ -140,12 +141,19 @@ void ShapeExplorer::read(const FingerPercept& finger, const Vec3& p_W) {
     n_W = (w_push * n_W + w_shown * *shown).normalized();
     sd_n = 1 / std::sqrt(w_push + w_shown);
   }
-  const double sd_p = std::hypot(limits_.place_sd, limits_.common.placement_sd);
-  for (std::size_t k = 0; k < solids_.size(); ++k) {
-    const double off = (felt_W - solids_[k].nearest(felt_W)).norm() - cues_.tip_radius;
-    const double angle = angleBetweenUnits(n_W, solids_[k].outward(felt_W));
-    belief_[k] -= 0.5 * (off * off / (sd_p * sd_p) + angle * angle / (sd_n * sd_n));
-  }
+  for (std::size_t k = 0; k < solids_.size(); ++k) believe(beliefs_[k], solids_[k], felt_W, n_W, sd_n);
+}
+
+// The misplacement is the same in all readings of a trial: taken for noise of each it would make them tell more than they do.
+void ShapeExplorer::believe(SolidBelief& b, const KnownSolid& solid, const Vec3& felt_W, const Vec3& n_W, double sd_n) const {
+  const Vec3 q_W = felt_W - b.misplacement_W, outward_W = solid.outward(q_W);
+  const double off = (q_W - solid.nearest(q_W)).norm() - cues_.tip_radius;
+  const Vec3 spread_W = b.covariance * outward_W;
+  const double S = outward_W.dot(spread_W) + limits_.place_sd * limits_.place_sd;
+  const double angle = angleBetweenUnits(n_W, outward_W);
+  b.log_likelihood -= 0.5 * (off * off / S + std::log(S) + angle * angle / (sd_n * sd_n));
+  b.misplacement_W += spread_W * (off / S);
+  b.covariance -= spread_W * spread_W.transpose() / S;
 }
 
 // Out of the surface, from where the contact is on the pad. Absent where the tactor has stood still since the trial began.
@@ -162,12 +170,15 @@ std::optional<Vec3> ShapeExplorer::directionOfTactor(const FingerPercept& finger
   return Vec3(-(q_felt_true_ * (q_WF * to_contact_F)));
 }
 
-int ShapeExplorer::answer() const { return static_cast<int>(std::max_element(belief_.begin(), belief_.end()) - belief_.begin()); }
+int ShapeExplorer::answer() const {
+  const auto lessLikely = [](const SolidBelief& a, const SolidBelief& b) { return a.log_likelihood < b.log_likelihood; };
+  return static_cast<int>(std::max_element(beliefs_.begin(), beliefs_.end(), lessLikely) - beliefs_.begin());
+}
 
 double ShapeExplorer::sureness() const {
-  const double best = *std::max_element(belief_.begin(), belief_.end());
+  const double best = beliefs_[static_cast<std::size_t>(answer())].log_likelihood;
   double sum = 0;
-  for (const double b : belief_) sum += std::exp(b - best);
+  for (const SolidBelief& b : beliefs_) sum += std::exp(b.log_likelihood - best);
   return 1 / sum;
 }
 

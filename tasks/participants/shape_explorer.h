@@ -10,8 +10,10 @@
 //   direction  felt from the push on the finger, direction_sd per axis; and, where the tactor moves, from its place on the pad,
 //              sigma / tip radius and the felt orientation's error, constant in a trial; the two weighed by their variances
 //
-// believe  each solid known by heart (known_solids.h) gets  -|distance to it - tip radius|^2 / 2 s_p^2 - angle^2 / 2 s_n^2  per reading, with
-//          s_p^2 = sigma_p^2 + placement_sd^2 and s_n of the direction; the answer is the likeliest, and exploring ends when it is sure.
+// believe  each solid known by heart (known_solids.h) has its own Gaussian over m, by a Kalman filter: were it this one, the finger would be its tip's
+//          radius r away from it,   y = |q - nearest(q)| - r,  q = felt place - mean of m,  S = n' P n + sigma_p^2,  n the solid's normal at q,
+//          and it gets  -y^2/2S - ln(S)/2 - angle(n, felt direction)^2 / 2 s_n^2  per reading. The answer is the likeliest, and exploring ends
+//          when it is sure.
 // The reading's own noise sigma_p and the wanted sureness are ours (choice); the rest is in body.h. The same plan in every condition.
 #pragma once
 #include <array>
@@ -62,7 +64,15 @@ class ShapeExplorer {
     double angle;        // [rad]
   };
 
+  // Were it this solid.
+  struct SolidBelief {
+    double log_likelihood = 0;
+    Vec3 misplacement_W = Vec3::Zero();  // mean [m]
+    Mat3 covariance = Mat3::Zero();      // [m^2]
+  };
+
   void enter(Phase phase);
+  void believe(SolidBelief& belief, const KnownSolid& solid, const Vec3& felt_W, const Vec3& n_W, double sd_n) const;
   void follow(const FingerPercept& finger, double dt);
   void read(const FingerPercept& finger, const Vec3& p_W);
   std::optional<Vec3> directionOfTactor(const FingerPercept& finger, const Quat& q_WF);
@@ -78,7 +88,7 @@ class ShapeExplorer {
   Random random_;
   Vec3 misplacement_W_ = Vec3::Zero();
   Quat q_felt_true_ = Quat::Identity();
-  std::array<double, kSolids> belief_{};  // logarithms
+  std::array<SolidBelief, kSolids> beliefs_{};
 
   Phase phase_ = Phase::kListen;
   double now_ = 0, entered_ = 0, read_at_ = 0;  // [s]

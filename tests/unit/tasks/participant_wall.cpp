@@ -8,6 +8,7 @@
 
 #include "tasks/participants/known_solids.h"
 #include "tasks/participants/place_observer.h"
+#include "tasks/participants/shape_explorer.h"
 #include "tasks/participants/stroke_observer.h"
 
 namespace pincer::tasks {
@@ -122,6 +123,38 @@ TEST(ParticipantSkin, SettlesAtForceOverStiffness) {
   for (int k = 0; k < 3000; ++k) u = skin.pushed({0.2, -1});
   EXPECT_NEAR(u.x(), 0.2e-3, 1e-9);
   EXPECT_NEAR(u.y(), -1e-3, 1e-9);
+}
+
+// A finger that keeps to a solid, pushed off along its normal, as long as the explorer wants; what it says then.
+int answerAbout(const KnownSolid& solid, std::uint64_t seed) {
+  ShapeExplorer explorer(1);
+  ShapeCues cues;
+  cues.seed = seed;
+  explorer.begin(cues);
+  FingerPercept percept;
+  percept.arm.valid = true;
+  percept.arm.p_DF = Vec3(0.075, 0, 0);
+  constexpr double kTick = 0.01;
+  for (int tick = 0; tick < 20'000; ++tick) {
+    const ShapeAction action = explorer.act(percept, kTick * tick, tick == 0 ? Cue::kStart : Cue::kNone);
+    if (action.finger.answered) break;
+    const Vec3 aim = action.finger.pull.p_D, away = aim - solid.nearest(aim);
+    const double depth = cues.tip_radius - away.norm();
+    percept.arm.p_DF = depth > 0 ? Vec3(aim + depth * solid.outward(aim)) : aim;
+    percept.f_D = depth > 0 ? Vec3(400 * depth * solid.outward(aim)) : Vec3::Zero();
+  }
+  return explorer.answer();
+}
+
+// The hand's misplacement of 7 mm per axis is the same for all readings of a trial; taken for noise of each, it made the solids look alike: 58 %
+// right answers in the study, and here 185 of 280; now 242.
+TEST(ShapeExplorer, IsNotMisledByAMisplacementThatStays) {
+  const auto solids = knownSolids();
+  int right = 0;
+  for (int k = 0; k < kSolids; ++k) {
+    for (std::uint64_t seed = 1; seed <= 40; ++seed) right += answerAbout(solids[static_cast<std::size_t>(k)], seed) == k;
+  }
+  EXPECT_GE(right, 225);
 }
 
 TEST(KnownSolids, DistancesAreThoseOfTheClosedForms) {
