@@ -74,7 +74,7 @@ Figure forestFigure(const FindingsResult& r) {
   figure.title = "Every variant beside the primary analysis";
   figure.caption =
       "Difference (CLD + force minus force only) as a share of the force-only mean, with its 95 % interval over the experiments. From the "
-      "left: tries, pickup time, alignment error, alignment time.";
+      "left: tries, pickup time, alignment error, alignment time. Intervals of few experiments go on beyond the borders.";
   figure.width = 2000;
   figure.height = 260 + 90 * static_cast<int>(r.variants.size());
   CsvTable table{"measure", "variant", "row", "share", "low", "high"};
@@ -93,16 +93,16 @@ Figure forestFigure(const FindingsResult& r) {
   }
   figure.data = {{"findings.csv", table.take()}};
   figure.script = figurePrelude("findings") +
-                  fmt::format("set yrange [-0.6:{}]\nset xtics rotate by 45 right font ',15'\nset multiplot\nset key off\nset grid xtics\n",
+                  fmt::format("set yrange [-0.6:{}]\nset xtics rotate by 45 right font ',15'\nset multiplot\nset key off\nset grid xtics\nset xrange [-160:160]\n",
                               static_cast<double>(r.variants.size()) - 0.4);
   const char* titles[] = {"tries", "pickup time", "alignment error", "alignment time"};
   for (std::size_t k = 0; k < kShown.size(); ++k) {
-    const double left = 0.17 + 0.21 * static_cast<double>(k);
+    const double left = 0.21 + 0.2 * static_cast<double>(k);
     figure.script += fmt::format(
         "set lmargin at screen {:.3f}\nset rmargin at screen {:.3f}\nset title '{}'\nset xlabel 'change [%]'\n{}\n"
         "set arrow 1 from 0, graph 0 to 0, graph 1 nohead dt 2 lc rgb '#999999'\n"
         "plot data skip 1 using (strcol(1) eq '{}' ? $4 : NaN):3:5:6 with xerrorbars pt 7 ps 1.6 lw 2 lc rgb '{}'\n",
-        left, left + 0.19, titles[k], "set ytics (" + (k == 0 ? tics : bare_tics) + ") scale 0", findingMeasures()[kShown[k]].key,
+        left, left + 0.18, titles[k], "set ytics (" + (k == 0 ? tics : bare_tics) + ") scale 0", findingMeasures()[kShown[k]].key,
         palette::kBlue);
   }
   figure.script += "unset multiplot\n";
