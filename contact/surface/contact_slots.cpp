@@ -7,6 +7,29 @@
 
 namespace pincer::contact {
 
+// What most ticks are: the only contact that is followed has moved on within its patch, nothing else has come near, and nothing is eased.
+bool SurfaceTouch::followAlone(SurfaceContacts& found) {
+  int slot = -1;
+  for (int i = 0; i < kMaxSurfaceContacts; ++i) {
+    if (keptIn(i).triangle < 0) continue;
+    if (slot >= 0) return false;
+    slot = i;
+  }
+  if (slot < 0 || s_.variant != SurfaceVariant::smooth || !isUsed(slot) || !(wayFromLook() < tracker_.look.vouched)) return false;
+  SurfaceSlot& kept = tracker_.slots[at(slot)];
+  if (kept.fades || kept.ease > 0 || !knowsMotion(kept)) return false;
+  const ShellContact contact = solveShellBeside(s_.net, cache_, C_, footOf(slot), {kept.du, kept.dv}, C_ - tracker_.p_BC_last);
+  if (!contact.converged || !(contact.h > 0 && contact.h < reach_) || !continues(kept, contact) || !isLookGoodFor(slot, contact.n))
+    return false;
+  const Vec3 S = placeOf(contact);
+  kept = {contact.foot.triangle, false, contact.foot.b[1], contact.foot.b[2], 0, S, contact.n, contact.motion.du, contact.motion.dv};
+  found.points[0] = {S, contact.n, contact.h - r_, static_cast<std::uint32_t>(slot)};
+  found.count = 1;
+  found.cost.iterations = found.cost.longest_walk = contact.cost.steps;
+  keepCentre(contact);
+  return true;
+}
+
 // A centre that begins well above the surface and ends below it has been led to the far side of the body, where the equation has
 // solutions too.
 void SurfaceTouch::followSlots() {
@@ -143,11 +166,10 @@ int SurfaceTouch::freeSlot() const {
   return spare;
 }
 
-SurfaceContacts SurfaceTouch::write() {
+void SurfaceTouch::write(SurfaceContacts& found) {
   std::sort(list_.begin(), list_.end(), [](const FollowedContact& a, const FollowedContact& b) {
     return a.shown() < b.shown() || (a.shown() == b.shown() && a.slot < b.slot);
   });
-  SurfaceContacts found;
   for (const FollowedContact& f : list_) {
     if (found.count > 0 && f.shown() >= reach_) continue;
     const ShellContact& c = f.contact;
@@ -160,7 +182,11 @@ SurfaceContacts SurfaceTouch::write() {
     if (keptIn(slot).triangle >= 0 && std::none_of(found.points.begin(), found.points.begin() + found.count, is_shown))
       tracker_.slots[at(slot)] = {};
   }
-  const ShellContact& main = list_.front().contact;
+  keepCentre(list_.front().contact);
+  found.cost = cost_;
+}
+
+void SurfaceTouch::keepCentre(const ShellContact& main) {
   if (main.h > 0) {
     tracker_.p_BC = C_;
     tracker_.has_centre = true;
@@ -169,8 +195,6 @@ SurfaceContacts SurfaceTouch::write() {
   }
   tracker_.p_BC_last = C_;
   tracker_.status = status_;
-  found.cost = cost_;
-  return found;
 }
 
 SurfaceContacts touchSurface(const TouchedSurface& surface, const Vec3& p_BC, double r, double margin, SurfaceTracker& tracker,

@@ -29,13 +29,13 @@ struct EdgeHandles {
 EdgeHandles edgeHandles(const EdgeEnd& from, const EdgeEnd& to);
 
 // Of a smooth edge.
-inline EdgeHandles smoothHandles(const Vec3& p0, const Vec3& p1, const Vec3& n0, const Vec3& n1) {
-  const double d = (p1 - p0).norm();
-  const Vec3 g = (p1 - p0) / d;
-  const double a = n0.dot(n1), a0 = n0.dot(g), a1 = n1.dot(g);
-  const double rho = 6 * (2 * a0 + a * a1) / (4 - a * a);
-  const double sigma = 6 * (2 * a1 + a * a0) / (4 - a * a);
-  return {p0 + d / 18 * (6 * g - 2 * rho * n0 + sigma * n1), p1 - d / 18 * (6 * g + rho * n0 - 2 * sigma * n1)};
+[[gnu::flatten]] inline EdgeHandles smoothHandles(const Vec3& p0, const Vec3& p1, const Vec3& n0, const Vec3& n1) {
+  const Vec3 chord = p1 - p0;
+  const double d = chord.norm();
+  const Vec3 g = (1 / d) * chord;
+  const double a = n0.dot(n1), a0 = n0.dot(g), a1 = n1.dot(g), six = 6 / (4 - a * a);
+  const double rho = six * (2 * a0 + a * a1), sigma = six * (2 * a1 + a * a0), part = (1.0 / 18) * d;
+  return {p0 + part * (6 * g - 2 * rho * n0 + sigma * n1), p1 - part * (6 * g + rho * n0 - 2 * sigma * n1)};
 }
 
 // The quadratic normal's middle control point on an edge from `p0` to `p1`: the mean of the end normals, mirrored in the plane across the

@@ -2,66 +2,120 @@
 
 #include <numeric>
 
-#include "contact/surface/outward_float.h"
-
 namespace pincer::contact {
+
+namespace {
+
+constexpr float kInsideOut = std::numeric_limits<float>::infinity();
+
+float twiceCentre(const FacingBox& b, std::size_t k) { return b.low[k] + b.high[k]; }
+
+void widen(FacingBox& box, const FacingBox& other) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    box.low[k] = std::min(box.low[k], other.low[k]);
+    box.high[k] = std::max(box.high[k], other.high[k]);
+  }
+  box.cone = joined(box.cone, other.cone);
+  box.hollow = std::max(box.hollow, other.hollow);
+}
+
+float ballRadius(const FacingBox& box) {
+  double diagonal2 = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double edge = static_cast<double>(box.high[k]) - box.low[k];
+    diagonal2 += edge * edge;
+  }
+  return above(0.5 * std::sqrt(diagonal2));
+}
+
+// Leaves of a full child: as few nodes as there can be hold all leaves if all children but the last are full.
+std::int32_t leavesOfChild(std::int32_t leaves) {
+  std::int32_t full = 1;
+  while (kLanes * full < leaves) full *= kLanes;
+  return full;
+}
+
+}  // namespace
 
 FacingTree::FacingTree(const std::vector<FacingBox>& boxes, const std::function<void(double)>& progress)
     : order_(boxes.size()), progress_(progress) {
   std::iota(order_.begin(), order_.end(), 0);
-  nodes_.reserve(boxes.size());
+  for (const FacingBox& box : boxes) {
+    for (std::size_t k = 0; k < 3; ++k) extent_ = std::max<double>({extent_, std::abs(box.low[k]), std::abs(box.high[k])});
+  }
+  nodes_.reserve(boxes.size() / kLanes / 2 + 1);
   nodes_.emplace_back();
-  split(0, 0, static_cast<std::int32_t>(boxes.size()), boxes);
+  build(0, {0, static_cast<std::int32_t>(boxes.size())}, boxes);
   nodes_.shrink_to_fit();
   progress_ = nullptr;
 }
 
-NormalCone FacingTree::split(std::size_t node, std::int32_t begin, std::int32_t end, const std::vector<FacingBox>& boxes) {
+// The place at which the range is halved, a whole number of children on the left; its end if it is one child.
+std::int32_t FacingTree::halve(Range range, std::int32_t child, const std::vector<FacingBox>& boxes) {
+  const std::int32_t children = (range.end - range.begin + child - 1) / child;
+  if (children <= 1) return range.end;
+  const auto box = [&](std::int32_t item) -> const FacingBox& { return boxes[static_cast<std::size_t>(item)]; };
+  const auto begin = order_.begin() + range.begin, end = order_.begin() + range.end, middle = begin + child * (children / 2);
+  std::array<float, 3> first, last;
+  for (std::size_t k = 0; k < 3; ++k) first[k] = last[k] = twiceCentre(box(*begin), k);
+  for (auto i = begin; i != end; ++i) {
+    const FacingBox& b = box(*i);
+    for (std::size_t k = 0; k < 3; ++k) {
+      first[k] = std::min(first[k], twiceCentre(b, k));
+      last[k] = std::max(last[k], twiceCentre(b, k));
+    }
+  }
+  std::size_t axis = 0;
+  for (std::size_t k = 1; k < 3; ++k) axis = last[k] - first[k] > last[axis] - first[axis] ? k : axis;
+  std::nth_element(begin, middle, end, [&](std::int32_t a, std::int32_t b) {
+    const float ca = twiceCentre(box(a), axis), cb = twiceCentre(box(b), axis);
+    return ca < cb || (ca == cb && a < b);
+  });
+  return range.begin + child * (children / 2);
+}
+
+FacingTree::Bounds FacingTree::boundsOfLeaf(Range range, const std::vector<FacingBox>& boxes) const {
   const auto box = [&](std::int32_t place) -> const FacingBox& {
     return boxes[static_cast<std::size_t>(order_[static_cast<std::size_t>(place)])];
   };
-  const auto twice_centre = [](const FacingBox& b, std::size_t k) { return b.low[k] + b.high[k]; };
-  Node bounds{box(begin).low, box(begin).high, 0, {}, -1 - (8 * begin + std::min(end - begin, kLeafSize))};
-  std::array<float, 3> first, last;
-  for (std::size_t k = 0; k < 3; ++k) first[k] = last[k] = twice_centre(box(begin), k);
-  for (std::int32_t i = begin; i < end; ++i) {
-    const FacingBox& b = box(i);
-    for (std::size_t k = 0; k < 3; ++k) {
-      bounds.low[k] = std::min(bounds.low[k], b.low[k]);
-      bounds.high[k] = std::max(bounds.high[k], b.high[k]);
-      first[k] = std::min(first[k], twice_centre(b, k));
-      last[k] = std::max(last[k], twice_centre(b, k));
+  FacingBox all = box(range.begin);
+  for (std::int32_t i = range.begin + 1; i < range.end; ++i) widen(all, box(i));
+  return {all, ballRadius(all)};
+}
+
+FacingTree::Bounds FacingTree::build(std::size_t node, Range range, const std::vector<FacingBox>& boxes) {
+  const std::int32_t child_size = kLanes * leavesOfChild((range.end - range.begin + kLanes - 1) / kLanes);
+  const std::int32_t middle = halve(range, child_size, boxes);
+  const std::int32_t first = halve({range.begin, middle}, child_size, boxes), last = halve({middle, range.end}, child_size, boxes);
+  const std::array<Range, kLanes> ranges{Range{range.begin, first}, Range{first, middle}, Range{middle, last}, Range{last, range.end}};
+  FacingBox all{};
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const auto i = static_cast<std::size_t>(lane);
+    const auto [begin, end] = ranges[i];
+    Bounds bounds{{{kInsideOut, kInsideOut, kInsideOut}, {-kInsideOut, -kInsideOut, -kInsideOut}, {}, 0}, 0};
+    std::int32_t child = -1 - begin / kLanes;
+    if (end - begin > kLanes) {
+      child = static_cast<std::int32_t>(nodes_.size());
+      nodes_.emplace_back();
+      bounds = build(static_cast<std::size_t>(child), ranges[i], boxes);
+    } else if (end > begin) {
+      bounds = boundsOfLeaf(ranges[i], boxes);
     }
+    if (lane == 0) all = bounds.box;
+    if (lane > 0 && end > begin) widen(all, bounds.box);
+    Node& at = nodes_[node];
+    for (std::size_t k = 0; k < 3; ++k) {
+      at.low[k][lane] = bounds.box.low[k];
+      at.high[k][lane] = bounds.box.high[k];
+    }
+    at.radius[lane] = bounds.radius;
+    at.hollow[lane] = bounds.box.hollow;
+    at.cones.set(lane, FacingTest(bounds.box.cone));
+    at.child[i] = child;
   }
-  double diagonal2 = 0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const double edge = static_cast<double>(bounds.high[k]) - bounds.low[k];
-    diagonal2 += edge * edge;
-  }
-  bounds.radius = above(0.5 * std::sqrt(diagonal2));
-  NormalCone cone = box(begin).cone;
-  if (end - begin <= kLeafSize) {
-    for (std::int32_t i = begin + 1; i < end; ++i) cone = joined(cone, box(i).cone);
-  } else {
-    std::size_t axis = 0;
-    for (std::size_t k = 1; k < 3; ++k) axis = last[k] - first[k] > last[axis] - first[axis] ? k : axis;
-    const std::int32_t middle = begin + (end - begin) / 2;
-    std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end, [&](std::int32_t a, std::int32_t b) {
-      const float ca = twice_centre(boxes[static_cast<std::size_t>(a)], axis), cb = twice_centre(boxes[static_cast<std::size_t>(b)], axis);
-      return ca < cb || (ca == cb && a < b);
-    });
-    const std::size_t left = nodes_.size();
-    bounds.left = static_cast<std::int32_t>(left);
-    nodes_.resize(left + 2);
-    const NormalCone first_cone = split(left, begin, middle, boxes);
-    cone = joined(first_cone, split(left + 1, middle, end, boxes));
-  }
-  constexpr std::int32_t kReported = 4096;  // every item is in one node of between this and twice as many
-  const bool is_reported = end - begin >= kReported && end - begin < 2 * kReported;
-  if (progress_ && is_reported) progress_(static_cast<double>(end) / static_cast<double>(boxes.size()));
-  bounds.cone = FacingTest(cone);
-  nodes_[node] = bounds;
-  return cone;
+  constexpr std::int32_t kReported = 4096;  // every item is in few nodes of more than this
+  if (progress_ && range.end - range.begin >= kReported) progress_(static_cast<double>(range.end) / static_cast<double>(boxes.size()));
+  return {all, ballRadius(all)};
 }
 
 }  // namespace pincer::contact

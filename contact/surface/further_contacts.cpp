@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "contact/surface/lone_contact.h"
 #include "contact/surface/near_parts.h"
 #include "contact/surface/shell_face.h"
 #include "contact/surface/surface_touch.h"
@@ -24,6 +25,8 @@ bool isOnFeatureOf(const SurfaceNet& net, const Foot& foot, std::int32_t triangl
   return shares_all;
 }
 
+bool isUnset(const Vec3& v) { return v[0] == 0 && v[1] == 0 && v[2] == 0; }
+
 // Cosine of the angle between `n` and the nearest of the triangle's corner normals.
 double closestNormal(const SurfaceNet& net, std::int32_t triangle, const Vec3& n) {
   return std::max({net.normal(triangle, 0).dot(n), net.normal(triangle, 1).dot(n), net.normal(triangle, 2).dot(n)});
@@ -33,6 +36,7 @@ double closestNormal(const SurfaceNet& net, std::int32_t triangle, const Vec3& n
 
 void SurfaceTouch::addFurther() {
   const bool is_new = !isLookGood();
+  if (is_new && lookAlone()) return;
   if (is_new) lookAround();
   NearParts& near = nearParts();
   const double way = wayFromLook();
@@ -46,14 +50,43 @@ void SurfaceTouch::addFurther() {
 // Whether what the last look found is still all that there can be: near enough, and what it left out still belongs to the same contacts.
 bool SurfaceTouch::isLookGood() const {
   const SurfaceLook& look = tracker_.look;
-  if (!(wayFromLook() < look.horizon)) return false;
+  if (!(wayFromLook() < look.horizon) || (look.is_alone && !isAlone())) return false;
   for (int slot = 0; slot < kMaxSurfaceContacts; ++slot) {
-    if (look.n[at(slot)].isZero(0)) continue;
+    if (isUnset(look.n[at(slot)])) continue;
     const bool stays = std::any_of(list_.begin(), list_.end(), [&](const FollowedContact& f) {
-      return f.slot == slot && !f.fades && f.contact.n.dot(look.n[at(slot)]) > kHalfApart;
+      return f.slot == slot && !f.fades && staysOn(look, slot, f.contact.n);
     });
     if (!stays) return false;
   }
+  return true;
+}
+
+// The same where all that is followed is the contact with the normal `n` in that slot.
+bool SurfaceTouch::isLookGoodFor(int slot, const Vec3& n) const {
+  const SurfaceLook& look = tracker_.look;
+  if (!(wayFromLook() < look.horizon)) return false;
+  for (int i = 0; i < kMaxSurfaceContacts; ++i) {
+    if (!isUnset(look.n[at(i)]) && (i != slot || !staysOn(look, slot, n))) return false;
+  }
+  return true;
+}
+
+// Whether a followed contact with the normal `n` is still the one that the look saw in that slot.
+bool SurfaceTouch::staysOn(const SurfaceLook& look, int slot, const Vec3& n) {
+  return n.dot(look.n[at(slot)]) > (look.is_alone ? LoneContact::kCosBeta : kHalfApart);
+}
+
+bool SurfaceTouch::isAlone() const { return lost_.empty() && list_.size() == 1 && !list_.front().fades; }
+
+// A look that finds that nothing but the followed contact can matter for a while.
+bool SurfaceTouch::lookAlone() {
+  constexpr double kLeast = 1.0 / 16, kMost = 1.0 / 4;  // ways worth the look, of its reach
+  if (s_.variant != SurfaceVariant::smooth || !isAlone()) return false;
+  const FollowedContact& f = list_.front();
+  const double way = s_.search.wayAlone(C_, f.contact.n, f.contact.h, reach_, kLeast * reach_, kMost * reach_);
+  if (!(way > 0)) return false;
+  tracker_.look = {C_, reach_, way, way, true, {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()}};
+  tracker_.look.n[at(f.slot)] = f.contact.n;
   return true;
 }
 
@@ -62,7 +95,7 @@ bool SurfaceTouch::isVouched() const { return lost_.empty() && wayFromLook() < t
 
 void SurfaceTouch::lookAround() {
   SurfaceLook& look = tracker_.look;
-  look = {C_, reach_, 0, 0, {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()}};
+  look = {C_, reach_, 0, 0, false, {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()}};
   for (const FollowedContact& f : list_) {
     if (!f.fades && turnsSlowly(f.contact)) look.n[at(f.slot)] = f.contact.n;
   }
@@ -88,7 +121,7 @@ NearParts& SurfaceTouch::nearParts() {
 }
 
 void SurfaceTouch::examine(std::int32_t place) {
-  const PatchBounds& part = s_.search.part(place);
+  const PatchBounds part = s_.search.part(place);
   if (!part.mayHold(C_, reach_, Facing::front)) return;
   const std::int32_t triangle = s_.search.triangleAt(place);
   if (isFollowed(triangle, part) || wasSeen(triangle, part)) return;
@@ -101,7 +134,7 @@ void SurfaceTouch::vouch(NearParts& near) {
   constexpr double kSoon = 0.5;  // of the horizon: later parts aren't worth the closer look
   double way = lost_.empty() ? near.look.horizon : 0;
   for (NearPart& part : near.parts) {
-    const PatchBounds& bounds = s_.search.part(part.place);
+    const PatchBounds bounds = s_.search.part(part.place);
     if (isFollowed(s_.search.triangleAt(part.place), bounds)) {
       const bool stays = bounds.hollow * reach_ < kFits;
       if (!stays) way = std::min(way, std::max<double>(part.approach, kAround * r_));

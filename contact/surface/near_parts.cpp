@@ -22,21 +22,13 @@ void halve(NearParts& found) {
   found.parts.erase(end, found.parts.end());
 }
 
-bool isAlongAny(const FacingTest& cone, const SurfaceLook& look) {
-  static const double kSine = std::sqrt(1 - kHalfApart * kHalfApart);
-  if (cone.cosine < kHalfApart) return false;
-  return std::any_of(look.n.begin(), look.n.end(), [&](const Vec3& n) { return cone.isAround(n, kHalfApart, kSine); });
-}
-
 // Where too many parts matter at once (near the middle of a bowl): those where the flat mesh is nearest among its neighbours, vouched for at this place alone.
 void keepMinima(const SurfaceNet& net, const SurfaceSearch& search, NearParts& found) {
   found.look.horizon = 0;
-  search.visitParts(
-      found.look.p_BC, found.look.reach, kAtOnce, [](const FacingTest&) { return false; },
-      [&](std::int32_t place, double) {
-        if (found.parts.size() < kMostParts && search.minimumOn(net, place, found.look.p_BC, found.look.reach))
-          found.parts.push_back({place, 0, 0});
-      });
+  search.visitParts(found.look.p_BC, found.look.reach, kAtOnce, {}, [&](std::int32_t place, double) {
+    if (found.parts.size() < kMostParts && search.minimumOn(net, place, found.look.p_BC, found.look.reach))
+      found.parts.push_back({place, 0, 0});
+  });
 }
 
 }  // namespace
@@ -46,8 +38,8 @@ void findNearParts(const SurfaceNet& net, const SurfaceSearch& search, const Sur
   found.look = look;
   found.look.horizon = kLookHorizon * look.reach;
   found.parts.clear();
-  const auto isPassed = [&](const FacingTest& cone) { return isAlongAny(cone, look); };
-  search.visitParts(look.p_BC, look.reach, found.look.horizon, isPassed, [&](std::int32_t place, double approach) {
+  const ConesAlong passed(look.n);
+  search.visitParts(look.p_BC, look.reach, found.look.horizon, passed, [&](std::int32_t place, double approach) {
     if (found.parts.size() == kMostParts) halve(found);
     if (approach < found.look.horizon) found.parts.push_back({place, below(approach), below(approach)});
   });

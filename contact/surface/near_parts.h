@@ -12,12 +12,13 @@
 #include <cstdint>
 #include <vector>
 
+#include "contact/surface/four_lanes.h"
 #include "contact/surface/surface_contact.h"
 
 namespace pincer::contact {
 
-constexpr double kApart = 0.998;          // cosine of 3.6 degrees: two contacts differ by more in their normals
-constexpr double kHalfApart = 0.999505;   // of slightly less than half of that
+constexpr double kApart = 0.998;  // cosine of 3.6 degrees: two contacts differ by more in their normals
+constexpr double kHalfApart = ConesAlong::kHalfApart;
 constexpr double kLookHorizon = 1.0 / 8;  // the way for which a look holds, of its reach
 
 struct NearPart {

@@ -82,12 +82,6 @@ struct FacingTest {
     const double outside = cosine * along + sine * across > 0 ? std::min(distance, cosine * across - sine * along) : distance;
     return std::max(0.0, outside - R);
   }
-  // Whether all of it is within the angle of the cosine and sine given, which is no less than its own, of the vector `n`, which is unit or zero.
-  bool isAround(const Vec3& n, double cosine_to, double sine_to) const {
-    const double along = axis[0] * n[0] + axis[1] * n[1] + axis[2] * n[2];
-    return along >=
-           cosine_to * cosine + sine_to * sine;  // cos(a - b) with a the angle given, b the cone's: the axis is no further off than a - b
-  }
 };
 
 }  // namespace pincer::contact

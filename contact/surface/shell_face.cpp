@@ -89,23 +89,18 @@ Vec2 saddleFreeStep(const PatchPoint& x, const Residual& r) {
   return J.moves.solve(divideByEigenvalueSizes(J.p, J.q, J.s, {r.T.dot(J.e1), r.T.dot(J.e2)}));
 }
 
-// Newton's step, as du.T and dv.T.
-struct NewtonStep {
-  Vec3 du, dv;
-  Vec2 d;
-  bool is_usable;
-};
-
-NewtonStep newtonStep(const PatchPoint& x, const Residual& r) {
-  const Vec3 A = x.Su + r.hN * x.Nu, B = x.Sv + r.hN * x.Nv;
+// Newton's step for the residual T = C - S - hN N.
+[[gnu::flatten]] NewtonStep newtonStepFor(const PatchPoint& x, const Vec3& T, double hN) {
+  const Vec3 A = x.Su + hN * x.Nu, B = x.Sv + hN * x.Nv;
   const Vec3 X = B.cross(x.N), Y = x.N.cross(A);
   const double det = A.dot(X), flat = x.Su.dot(x.Sv.cross(x.N)), inverse = 1 / det;
-  NewtonStep step{X * inverse, Y * inverse, {}, false};
-  step.d = {r.T.dot(step.du), r.T.dot(step.dv)};
-  const Vec3 dS = x.Su * step.d.x() + x.Sv * step.d.y();
-  const double along = r.T.dot(dS);
+  NewtonStep step{X * inverse, Y * inverse, 0, 0, T.squaredNorm(), false};
+  step.u = T.dot(step.du);
+  step.v = T.dot(step.dv);
+  const Vec3 dS = x.Su * step.u + x.Sv * step.v;
+  const double along = T.dot(dS);
   step.is_usable = flat > 0 && det > kLeastDeterminant * flat && along > 0 &&
-                   along * along >= kLeastCosine * kLeastCosine * r.T.squaredNorm() * dS.squaredNorm();
+                   along * along >= kLeastCosine * kLeastCosine * step.residual2 * dS.squaredNorm();
   return step;
 }
 
@@ -116,11 +111,17 @@ bool isStable(const PatchPoint& x, const Vec3& C) {
   return !J.is_folded && J.p > 0 && J.p * J.s > J.q * J.q;
 }
 
+NewtonStep newtonStep(const PatchPoint& x, const Vec3& C) {
+  const Vec3 R = C - x.S;
+  const double hN = R.dot(x.N) / x.N.squaredNorm();
+  return newtonStepFor(x, R - hN * x.N, hN);
+}
+
 FaceStep faceStep(const PatchPoint& x, const Vec3& C, StepKind kind) {
   const Residual r = residualOf(x, C);
   if (kind == StepKind::newton) {
-    const NewtonStep step = newtonStep(x, r);
-    const Vec2 d = step.is_usable ? step.d : saddleFreeStep(x, r);
+    const NewtonStep step = newtonStepFor(x, r.T, r.hN);
+    const Vec2 d = step.is_usable ? Vec2(step.u, step.v) : saddleFreeStep(x, r);
     return {r.n, r.h, r.T.norm(), {-d.x() - d.y(), d.x(), d.y()}, step.is_usable, step.du, step.dv};
   }
   const Vec2 d = stepAlongResidual(x, r);

@@ -26,6 +26,15 @@ struct FaceStep {
   Vec3 du, dv;               // of Newton's step: coordinates 1 and 2 change by du.T, dv.T [1/m]; else unset
 };
 
+// Newton's step without the safeguard.
+struct NewtonStep {
+  Vec3 du, dv;       // as above
+  double u, v;       // change of the barycentric coordinates 1 and 2
+  double residual2;  // |T|^2 [m^2]
+  bool is_usable;    // J is clearly positive, and the step leads along T
+};
+NewtonStep newtonStep(const PatchPoint& x, const Vec3& C);
+
 FaceStep faceStep(const PatchPoint& x, const Vec3& C, StepKind kind);
 
 // Whether J is positive: a solution here is a place that the finger stays at, none that it slides away from to either side.

@@ -19,17 +19,38 @@ constexpr int kMaxFeatureVisits = 12;  // of edges and of vertices, each
 double longest(const std::array<double, 3>& db) { return std::max({std::abs(db[0]), std::abs(db[1]), std::abs(db[2])}); }
 
 // The last step, if it stays within the face: its end is so near that the patch is as good as linear.
-bool finish(const PatchPoint& x, const FaceStep& step, const Vec3& C, ShellContact& contact) {
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (contact.foot.b[i] + step.db[i] < 0) return false;
-  }
-  for (std::size_t i = 0; i < 3; ++i) contact.foot.b[i] += step.db[i];
-  const double du = step.db[1], dv = step.db[2];
-  contact.n = (x.N + du * x.Nu + dv * x.Nv).normalized();
-  contact.h = (C - x.S - du * x.Su - dv * x.Sv).dot(contact.n);
+[[gnu::flatten]] bool finish(const PatchPoint& x, double u, double v, const Vec3& C, ShellContact& contact) {
+  const std::array<double, 3> b{contact.foot.b[0] - u - v, contact.foot.b[1] + u, contact.foot.b[2] + v};
+  if (b[0] < 0 || b[1] < 0 || b[2] < 0) return false;
+  contact.foot.b = b;
+  contact.n = (x.N + u * x.Nu + v * x.Nv).normalized();
+  contact.h = (C - x.S - u * x.Su - v * x.Sv).dot(contact.n);
   contact.converged = true;
-  contact.motion = {step.du, step.dv};
   return true;
+}
+
+// Coordinates of the triangle's point nearest to `p` in its plane.
+std::array<double, 3> coordinatesOf(const SurfaceNet& net, std::int32_t triangle, const Vec3& p) {
+  const Vec3& from = net.vertex(triangle, 0);
+  const Vec3 e = net.vertex(triangle, 1) - from, f = net.vertex(triangle, 2) - from, w = p - from;
+  const double ee = e.squaredNorm(), ef = e.dot(f), ff = f.squaredNorm(), we = w.dot(e), wf = w.dot(f);
+  const double inverse = 1 / (ee * ff - ef * ef), u = (ff * we - ef * wf) * inverse, v = (ee * wf - ef * we) * inverse;
+  return {1 - u - v, u, v};
+}
+
+// Carries a foot that is outside of its triangle over smooth edges into the one that it is in, as far as the flat mesh tells.
+bool carryInside(const SurfaceNet& net, Foot& foot, int& crossings) {
+  constexpr int kMostCrossings = 4;
+  for (;; ++crossings) {
+    const auto least = std::min_element(foot.b.begin(), foot.b.end());
+    if (*least >= 0) return true;
+    const int edge = (static_cast<int>(least - foot.b.begin()) + 1) % 3;
+    if (!(crossings < kMostCrossings) || net.isSharp(foot.triangle, edge)) return false;
+    Vec3 p = Vec3::Zero();
+    for (int i = 0; i < 3; ++i) p += foot.b[static_cast<std::size_t>(i)] * net.vertex(foot.triangle, i);
+    const std::int32_t other = net.neighbour(foot.triangle, edge).triangle;
+    foot = {other, coordinatesOf(net, other, p)};
+  }
 }
 
 class ShellWalk {
@@ -109,7 +130,8 @@ void ShellWalk::stepOnFace() {
 bool ShellWalk::polish(const PatchPoint& x, const FaceStep& step) {
   ShellContact contact;
   contact.foot = foot_;
-  if (!finish(x, step, C_, contact)) return false;
+  if (!finish(x, step.db[1], step.db[2], C_, contact)) return false;
+  contact.motion = {step.du, step.dv};
   result_ = contact;
   state_ = State::ended;
   return true;
@@ -265,12 +287,14 @@ ShellContact solveShellBeside(const SurfaceNet& net, PatchCache& cache, const Ve
   ShellContact contact;
   const double du = motion.du.dot(dC), dv = motion.dv.dot(dC);
   contact.foot = {start.triangle, {start.b[0] - du - dv, start.b[1] + du, start.b[2] + dv}};
-  if (*std::min_element(contact.foot.b.begin(), contact.foot.b.end()) < 0) return contact;
-  const PatchPoint x = evaluate(net.cell(start.triangle, cache).patch, contact.foot.b[1], contact.foot.b[2]);
-  const FaceStep step = faceStep(x, C, StepKind::newton);
-  if (!step.is_newton || !(step.residual < kNear * net.length())) return contact;
+  if (!carryInside(net, contact.foot, contact.cost.crossings)) return contact;
+  const PatchPoint x = evaluate(net.cell(contact.foot.triangle, cache).patch, contact.foot.b[1], contact.foot.b[2]);
+  const NewtonStep step = newtonStep(x, C);
+  const double nearly = kNear * net.length();
+  if (!step.is_usable || !(step.residual2 < nearly * nearly)) return contact;
   contact.cost.steps = 1;
-  finish(x, step, C, contact);
+  contact.motion = {step.du, step.dv};
+  finish(x, step.u, step.v, C, contact);
   return contact;
 }
 

@@ -50,8 +50,8 @@ struct ShellContact {
 // Walks from `start` to a solution for centre `C`. Allocates nothing, throws nothing.
 ShellContact solveShell(const SurfaceNet& net, PatchCache& cache, const Vec3& C, const Foot& start);
 
-// The solution beside the place to which `start` moves with a centre that has moved by `dC` [m], if one Newton step leads there; else not
-// converged. What most ticks need: one look at one patch.
+// The solution beside the place to which `start` moves with a centre that has moved by `dC` [m], over smooth edges as on the flat mesh, if one
+// Newton step leads there; else not converged. What most ticks need: one look at one patch.
 ShellContact solveShellBeside(const SurfaceNet& net, PatchCache& cache, const Vec3& C, const Foot& start, const FootMotion& motion,
                               const Vec3& dC);
 

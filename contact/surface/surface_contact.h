@@ -61,6 +61,7 @@ struct SurfaceLook {
   double reach = 0;          // further contacts were wanted no further than this from it [m]
   double horizon = 0;        // the centre's way for which what it found is all that may be met [m]; 0: look again
   double vouched = 0;        // the centre's way for which none of it is met but what is known [m]
+  bool is_alone = false;     // nothing may be met but the one contact that was followed (lone_contact.h)
   // The normals of the contacts that were followed, by slot, zero without one: while they have hardly turned, what faces along them is theirs.
   std::array<Vec3, kMaxSurfaceContacts> n = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
 };

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "contact/surface/edge_cubic.h"
+#include "contact/surface/lone_contact.h"
 #include "contact/surface/outward_float.h"
 
 namespace pincer::contact {
@@ -38,12 +39,16 @@ class ConeFinder {
     const Vec3 facet = (p.b030 - p.b300).cross(p.b003 - p.b300);
     normals_ = {p.n200, p.n020, p.n002, p.n110, p.n011, p.n101, facet.normalized()};
     for (int i = 0; i < 3; ++i) {
-      if (kindAt(t, i) == kBorder) return {};
+      if (kindAt(t, i) == kBorder) {
+        has_border_ = true;
+        return {};
+      }
       if (kindAt(t, i) == kSharp) net_.visitCorners({t, i}, [&](const CellCorner& c) { addNormal(net_.normal(c.triangle, c.corner)); });
       if (cell.sharp[static_cast<std::size_t>(i)]) addOtherSide(t, i);
     }
     return coneOf(normals_);
   }
+  bool hasBorder() const { return has_border_; }  // among what was looked at
 
  private:
   static constexpr char kSmooth = 0, kSharp = 1, kBorder = 2;
@@ -61,15 +66,16 @@ class ConeFinder {
   const SurfaceNet& net_;
   std::vector<char> kind_;  // per vertex
   std::vector<Vec3> normals_;
+  bool has_border_ = false;
 };
 
-FacingBox boxAround(const Patch& patch, const NormalCone& cone) {
+FacingBox boxAround(const Patch& patch, const NormalCone& cone, float hollow) {
   Vec3 low = patch.b300, high = low;
   for (const Vec3& p : controlPoints(patch)) {
     low = low.cwiseMin(p);
     high = high.cwiseMax(p);
   }
-  return {{below(low[0]), below(low[1]), below(low[2])}, {above(high[0]), above(high[1]), above(high[2])}, cone};
+  return {{below(low[0]), below(low[1]), below(low[2])}, {above(high[0]), above(high[1]), above(high[2])}, cone, hollow};
 }
 
 double hollowOf(const SurfaceNet& net, std::int32_t t, const SurfaceCell& cell) {
@@ -100,49 +106,89 @@ SurfaceSearch::SurfaceSearch(const SurfaceNet& net, NetInspector& inspector, con
   constexpr std::int32_t kReported = 1 << 14;
   ConeFinder cones(net);
   std::vector<FacingBox> boxes;
-  std::vector<Leaf> unordered;
+  std::vector<PatchBounds> unordered;
   boxes.reserve(static_cast<std::size_t>(net.size()));
   unordered.reserve(static_cast<std::size_t>(net.size()));
   for (std::int32_t t = 0; t < net.size(); ++t) {
     const SurfaceCell cell = net.build(t);
     inspector.see(t, cell.patch);
     const NormalCone cone = cones.find(t, cell);
-    boxes.push_back(boxAround(cell.patch, cone));
     const Vec3 centre = (cell.patch.b300 + cell.patch.b030 + cell.patch.b003) / 3;
-    Leaf leaf{{static_cast<float>(centre[0]), static_cast<float>(centre[1]), static_cast<float>(centre[2])}, 0, 0, 0, FacingTest(cone)};
+    PatchBounds part{
+        {static_cast<float>(centre[0]), static_cast<float>(centre[1]), static_cast<float>(centre[2])}, 0, 0, 0, FacingTest(cone)};
     double radius2 = 0;
-    for (const Vec3& p : controlPoints(cell.patch)) radius2 = std::max(radius2, (p - leaf.middle()).squaredNorm());
-    leaf.radius = above(std::sqrt(radius2));
-    leaf.bulge = above(bulgeOf(cell.patch));
-    leaf.hollow = above(hollowOf(net, t, cell));
-    unordered.push_back(leaf);
+    for (const Vec3& p : controlPoints(cell.patch)) radius2 = std::max(radius2, (p - part.middle()).squaredNorm());
+    part.radius = above(std::sqrt(radius2));
+    part.bulge = above(bulgeOf(cell.patch));
+    part.hollow = above(hollowOf(net, t, cell));
+    unordered.push_back(part);
+    boxes.push_back(boxAround(cell.patch, cone, part.hollow));
     if (progress && t % kReported == 0) progress(kPatches * t / net.size());
   }
   const auto tree_progress = [&](double share) { progress(kPatches + (1 - kPatches) * share); };
   tree_ = FacingTree(boxes, progress ? std::function<void(double)>(tree_progress) : nullptr);
-  leaves_.reserve(unordered.size());
-  for (const std::int32_t t : tree_.order()) leaves_.push_back(unordered[static_cast<std::size_t>(t)]);
+  is_closed_ = !cones.hasBorder();
+  constexpr float kNowhere = std::numeric_limits<float>::infinity();
+  const PatchBounds none{{kNowhere, kNowhere, kNowhere}, 0, 0, 0, FacingTest(NormalCone{})};
+  const auto& order = tree_.order();
+  groups_.resize((order.size() + kLanes - 1) / kLanes);
+  for (std::size_t i = 0; i < kLanes * groups_.size(); ++i) {
+    groups_[i / kLanes].set(static_cast<int>(i % kLanes), i < order.size() ? unordered[static_cast<std::size_t>(order[i])] : none);
+  }
+}
+
+void SurfaceSearch::PatchGroup::set(int lane, const PatchBounds& part) {
+  for (std::size_t k = 0; k < 3; ++k) centre[k][lane] = part.centre[k];
+  radius[lane] = part.radius;
+  bulge[lane] = part.bulge;
+  hollow[lane] = part.hollow;
+  cones.set(lane, part.cone);
+}
+
+PatchBounds SurfaceSearch::PatchGroup::at(int lane) const {
+  return {{centre[0][lane], centre[1][lane], centre[2][lane]}, radius[lane], bulge[lane], hollow[lane], cones.at(lane)};
 }
 
 SurfaceSeed SurfaceSearch::nearest(const SurfaceNet& net, PatchCache& cache, const Vec3& p, double bound, Facing facing) const {
   SurfaceSeed seed{{}, bound, false};
   double bound2 = bound * bound;
   int visits = 0;
-  tree_.visitFacing(p, bound2, facing, [&](std::int32_t place_in_order) {
-    const Leaf& at = part(place_in_order);
-    if (!at.mayHold(p, seed.distance, facing)) return true;
-    const std::int32_t triangle = triangleAt(place_in_order);
+  const LanesPoint x(p);
+  const Lanes rounded = LanesPoint::toLanes(tree_.rounding(p));
+  const auto look = [&](std::int32_t triangle, double bulge) {
+    ++visits;
     const FlatPoint flat = closestOnFacet(net, triangle, p);
-    const double reach = seed.distance + at.bulge;
-    if (flat.distance2 >= reach * reach) return ++visits < kMaxVisits;
+    const double reach = seed.distance + bulge;
+    if (flat.distance2 >= reach * reach) return;
     const double distance2 = (p - place(net.cell(triangle, cache).patch, flat.b[1], flat.b[2])).squaredNorm();
-    if (distance2 < bound2) {
-      bound2 = distance2;
-      seed = {{triangle, flat.b}, std::sqrt(distance2), true};
+    if (distance2 >= bound2) return;
+    bound2 = distance2;
+    seed = {{triangle, flat.b}, std::sqrt(distance2), true};
+  };
+  tree_.visitFacing(p, bound2, facing, [&](std::int32_t leaf) {
+    const PatchGroup& patches = group(leaf);
+    const LaneMask may_hold = patches.mayHold(x, LanesPoint::toLanes(seed.distance), rounded, facing);
+    for (int lane = 0; lane < kLanes; ++lane) {
+      if (may_hold[lane]) look(triangleAt(kLanes * leaf + lane), patches.bulge[lane]);
     }
-    return ++visits < kMaxVisits;
+    return visits < kMaxVisits;
   });
   return seed;
+}
+
+double SurfaceSearch::wayAlone(const Vec3& p, const Vec3& n, double h, double reach, double least, double most) const {
+  if (!is_closed_ || !(h > most)) return 0;
+  LoneContact lone(p, n, h, reach, most, tree_.rounding(p));
+  tree_.visitWhere([&](const FacingTree::Children& c) { return lone.mayMatter(c.centre(), c.radius, c.hollow, c.cones); },
+                   [&](std::int32_t leaf) {
+                     const PatchGroup& patches = group(leaf);
+                     const LaneMask may_matter = lone.mayMatter(patches.centre, patches.radius, patches.hollow, patches.cones);
+                     for (int lane = 0; lane < kLanes; ++lane) {
+                       if (may_matter[lane]) lone.show(patches.at(lane));
+                     }
+                     return lone.way() >= least;
+                   });
+  return lone.way() >= least ? lone.way() : 0;
 }
 
 std::optional<Foot> SurfaceSearch::minimumOn(const SurfaceNet& net, std::int32_t place, const Vec3& p, double reach) const {
@@ -162,9 +208,12 @@ float SurfaceSearch::wayToMinimumOn(const SurfaceNet& net, std::int32_t place, c
 
 bool SurfaceSearch::isHidden(const SurfaceNet& net, const Vec3& a, const Vec3& b) const {
   bool is_hidden = false;
-  tree_.visitInBox(a.cwiseMin(b), a.cwiseMax(b), [&](std::int32_t place) {
-    const std::int32_t t = triangleAt(place);
-    is_hidden = meets(a, b, net.vertex(t, 0), net.vertex(t, 1), net.vertex(t, 2));
+  tree_.visitInBox(a.cwiseMin(b), a.cwiseMax(b), [&](std::int32_t leaf) {
+    const std::int32_t end = std::min(kLanes * (leaf + 1), static_cast<std::int32_t>(tree_.order().size()));
+    for (std::int32_t place = kLanes * leaf; place < end && !is_hidden; ++place) {
+      const std::int32_t t = triangleAt(place);
+      is_hidden = meets(a, b, net.vertex(t, 0), net.vertex(t, 1), net.vertex(t, 2));
+    }
     return !is_hidden;
   });
   return is_hidden;

@@ -51,11 +51,11 @@ class SurfaceSearch {
   SurfaceSeed nearest(const SurfaceNet& net, PatchCache& cache, const Vec3& p, double bound, Facing facing) const;
 
   // Calls visit(place, approach) on the patches that `p` may come to be nearer to than `reach` and to face before it has moved by `horizon` > 0
-  // [m], which may shrink meanwhile, each with how far it has to move for that at least. Branches of the tree and patches for whose cone
-  // isPassed(cone) are left out. Allocates nothing.
-  template <class IsPassed, class Visit>
-  void visitParts(const Vec3& p, double reach, const double& horizon, IsPassed&& isPassed, Visit&& visit) const;
-  const PatchBounds& part(std::int32_t place) const { return leaves_[static_cast<std::size_t>(place)]; }
+  // [m], which may shrink meanwhile, each with how far it has to move for that at least. Branches of the tree and patches whose cones are
+  // `passed` are left out. Allocates nothing.
+  template <class Visit>
+  void visitParts(const Vec3& p, double reach, const double& horizon, const ConesAlong& passed, Visit&& visit) const;
+  PatchBounds part(std::int32_t place) const { return group(place / kLanes).at(place % kLanes); }
   std::int32_t triangleAt(std::int32_t place) const { return tree_.order()[static_cast<std::size_t>(place)]; }
 
   // The place of that patch's flat triangle that is nearest to `p`, if it is nearer than `reach` (less what the patch bulges), `p` is in
@@ -65,15 +65,33 @@ class SurfaceSearch {
   // How far `p` has to move at least until there is one, rounded down [m].
   float wayToMinimumOn(const SurfaceNet& net, std::int32_t place, const Vec3& p, double reach) const;
 
+  // How far `p` may move before it can come to face anything nearer than `reach` but the contact with the unit normal `n` that it is at the
+  // height `h` over, at most `most`; 0 where that is less than `least` [m], or not known: near edges, in hollows, on open surfaces
+  // (lone_contact.h). Allocates nothing.
+  double wayAlone(const Vec3& p, const Vec3& n, double h, double reach, double least, double most) const;
+
   // Whether the flat triangles hide `a` from `b`. Allocates nothing.
   bool isHidden(const SurfaceNet& net, const Vec3& a, const Vec3& b) const;
 
-  std::size_t memoryBytes() const { return tree_.memoryBytes() + leaves_.capacity() * sizeof(Leaf); }
+  std::size_t memoryBytes() const { return tree_.memoryBytes() + groups_.capacity() * sizeof(PatchGroup); }
 
  private:
-  using Leaf = PatchBounds;
+  // The patches of a leaf side by side; of a lane without one the centre is at infinity.
+  struct PatchGroup {
+    std::array<Lanes, 3> centre;
+    Lanes radius, bulge, hollow;
+    LaneCones cones;
+
+    void set(int lane, const PatchBounds& part);
+    PatchBounds at(int lane) const;
+    // Which of them mayHold, after `p` has moved by less than `way` [m].
+    LaneMask mayHold(const LanesPoint& p, Lanes bound, Lanes way, Facing facing) const;
+  };
+  const PatchGroup& group(std::int32_t leaf) const { return groups_[static_cast<std::size_t>(leaf)]; }
+
   FacingTree tree_;
-  std::vector<Leaf> leaves_;  // in the tree's order
+  std::vector<PatchGroup> groups_;  // of the tree's leaves
+  bool is_closed_ = false;
 };
 
 inline bool PatchBounds::mayHold(const Vec3& p, double bound, Facing facing) const {
@@ -98,12 +116,32 @@ inline double PatchBounds::approach(const Vec3& p, double bound) const {
   return std::max(cone.approach(along, centre2, radius), std::sqrt(centre2) - radius - bound);
 }
 
-template <class IsPassed, class Visit>
-void SurfaceSearch::visitParts(const Vec3& p, double reach, const double& horizon, IsPassed&& isPassed, Visit&& visit) const {
-  tree_.visitNear(p, reach, horizon, isPassed, [&](std::int32_t place) {
-    const Leaf& at = part(place);
-    const double approach = at.approach(p, reach);
-    if (approach < horizon && !isPassed(at.cone)) visit(place, approach);
+inline LaneMask SurfaceSearch::PatchGroup::mayHold(const LanesPoint& p, Lanes bound, Lanes way, Facing facing) const {
+  Lanes centre2{}, along{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Lanes D = p.x[k] - centre[k];
+    centre2 += D * D;
+    along += cones.axis[k] * D;
+  }
+  const Lanes R = radius + way, outer = bound + R;
+  LaneMask may_face = cones.mayFace(along, centre2, R);
+  if (facing == Facing::both) may_face |= cones.mayFace(-along, centre2, R);
+  return may_face & (centre2 < outer * outer);
+}
+
+template <class Visit>
+void SurfaceSearch::visitParts(const Vec3& p, double reach, const double& horizon, const ConesAlong& passed, Visit&& visit) const {
+  const LanesPoint x(p);
+  const double rounded = tree_.rounding(p);
+  tree_.visitNear(p, reach, horizon, passed, [&](std::int32_t leaf) {
+    const PatchGroup& patches = group(leaf);
+    const Lanes way = LanesPoint::toLanes(horizon + rounded);
+    const LaneMask is_near = patches.mayHold(x, LanesPoint::toLanes(reach), way, Facing::front) & ~passed.hold(patches.cones);
+    for (int lane = 0; lane < kLanes; ++lane) {
+      if (!is_near[lane]) continue;
+      const double approach = patches.at(lane).approach(p, reach);
+      if (approach < horizon) visit(kLanes * leaf + lane, approach);
+    }
   });
 }
 

@@ -43,15 +43,19 @@ class SurfaceTouch {
         cache_(cache) {}
 
   SurfaceContacts run() {
+    SurfaceContacts found;
+    if (followAlone(found)) return found;
     followSlots();
     if (list_.empty() && !lost_.empty()) findLost();
     if (!(nearestHeight() < reach_) && lost_.empty()) takeNearest();
     if (eases_) fadeLost();
     if (nearestHeight() < reach_ && !isVouched()) addFurther();
-    return write();
+    write(found);
+    return found;
   }
 
  private:
+  bool followAlone(SurfaceContacts& found);
   void followSlots();
   bool continues(const SurfaceSlot& kept, const ShellContact& contact) const;
   void lose(int slot);
@@ -69,14 +73,19 @@ class SurfaceTouch {
   bool wasSeen(std::int32_t triangle, const PatchBounds& part) const;
   double wayFromLook() const { return (C_ - tracker_.look.p_BC).norm() + std::max(0.0, reach_ - tracker_.look.reach); }
   bool isLookGood() const;
+  bool isLookGoodFor(int slot, const Vec3& n) const;
   bool isVouched() const;
+  static bool staysOn(const SurfaceLook& look, int slot, const Vec3& n);
+  bool isAlone() const;
+  bool lookAlone();
   void lookAround();
   bool turnsSlowly(const ShellContact& contact) const;
   NearParts& nearParts();
   void examine(std::int32_t place);
   void vouch(NearParts& near);
   void keepDeepestFurther(const ShellContact& candidate);
-  SurfaceContacts write();
+  void write(SurfaceContacts& found);
+  void keepCentre(const ShellContact& main);
 
   bool touches() const { return nearestHeight() < r_; }
   double nearestHeight() const {
@@ -88,10 +97,11 @@ class SurfaceTouch {
   ShellContact follow(const Foot& foot) const { return followContact(s_.variant, s_.net, cache_, C_, r_, foot); }
   ShellContact followSlot(int slot, const Foot& start) const {
     const SurfaceSlot& kept = keptIn(slot);
-    if (s_.variant != SurfaceVariant::smooth || kept.du.isZero(0)) return follow(start);
+    if (s_.variant != SurfaceVariant::smooth || !knowsMotion(kept)) return follow(start);
     const ShellContact beside = solveShellBeside(s_.net, cache_, C_, start, {kept.du, kept.dv}, C_ - tracker_.p_BC_last);
     return beside.converged ? beside : follow(start);
   }
+  static bool knowsMotion(const SurfaceSlot& slot) { return slot.du != Vec3(Vec3::Zero()); }
   const SurfaceSlot& keptIn(int slot) const { return tracker_.slots[at(slot)]; }
   Foot footOf(int slot) const {
     const SurfaceSlot& kept = keptIn(slot);

@@ -27,13 +27,13 @@ Vec3 randomPoint(RandomNumbers& random, double size) {
   return {random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size)};
 }
 
-bool nothingIsPassed(const FacingTest&) { return false; }
+const ConesAlong kNothingPassed{};
 
 // Calls visit(foot) on the flat mesh's minima nearer than `reach` whose patches may face the point.
 template <class Visit>
 void visitMinima(const Searched& s, const Vec3& p, double reach, Visit&& visit) {
   constexpr double kAtOnce = 1e-300;
-  s.search.visitParts(p, reach, kAtOnce, nothingIsPassed, [&](std::int32_t place, double) {
+  s.search.visitParts(p, reach, kAtOnce, kNothingPassed, [&](std::int32_t place, double) {
     if (!s.search.part(place).mayHold(p, reach, Facing::front)) return;
     if (const auto foot = s.search.minimumOn(s.net, place, p, reach)) visit(*foot);
   });
@@ -51,7 +51,7 @@ TEST(SurfaceSearch, VouchesForThePointsAround) {
     for (int i = 0; i < 300; ++i) {
       const Vec3 p = randomPoint(random, 0.05);
       std::map<std::int32_t, double> around;  // triangles, and the way until they matter
-      s.search.visitParts(p, kBound, kAroundPoint, nothingIsPassed, [&](std::int32_t place, double approach) {
+      s.search.visitParts(p, kBound, kAroundPoint, kNothingPassed, [&](std::int32_t place, double approach) {
         around[s.search.triangleAt(place)] = std::max<double>(approach, s.search.wayToMinimumOn(s.net, place, p, kBound));
       });
       for (const auto& [triangle, way] : around) later += way > 0;
@@ -152,6 +152,45 @@ TEST(NormalCone, HoldsWhatItWasMadeOf) {
     for (const Vec3& d : n) ASSERT_GE(all.axis.dot(d), all.cosine - 1e-12);
   }
   EXPECT_TRUE(coneOf(std::array{Vec3(1, 0, 0), Vec3(-1, 0.1, 0), Vec3(0, -1, 0)}).isFull());
+}
+
+// The tests of four at once leave out none that the tests one by one hold.
+TEST(FourLanes, HoldWhatEachHolds) {
+  RandomNumbers random(5);
+  int held = 0, left_out = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const Vec3 D = randomPoint(random, 0.02), axis = randomPoint(random, 1).normalized();
+    const FacingTest cone(NormalCone{axis, random.uniform(-0.2, 1)});
+    const double along = axis.cast<float>().cast<double>().dot(D), R = random.uniform(0, 0.005);
+    LaneCones cones{};
+    cones.set(i % kLanes, cone);
+    const LaneMask may = cones.mayFace(inAllLanes(static_cast<float>(along)), inAllLanes(static_cast<float>(D.squaredNorm())),
+                                       inAllLanes(static_cast<float>(R)));
+    if (cone.mayFace(along, D.squaredNorm(), R)) {
+      ++held;
+      ASSERT_TRUE(may[i % kLanes]) << i;
+    }
+    left_out += !may[i % kLanes];
+  }
+  EXPECT_GT(held, 5000);
+  EXPECT_GT(left_out, 5000);
+}
+
+// What is left out as belonging to a followed contact has all its normals within half of the angle at which two contacts are two.
+TEST(FourLanes, ConesAlongANormalAreAlongAllOfTheirs) {
+  RandomNumbers random(7);
+  int along = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const Vec3 n = randomPoint(random, 1).normalized(), axis = (n + 0.03 * randomPoint(random, 1)).normalized();
+    const double alpha = random.uniform(0, 0.04);
+    LaneCones cones{};
+    for (int lane = 0; lane < kLanes; ++lane) cones.set(lane, FacingTest(NormalCone{axis, std::cos(alpha)}));
+    const ConesAlong passed({n, Vec3::Zero(), Vec3::Zero()});
+    if (!passed.hold(cones)[0]) continue;
+    ++along;
+    ASSERT_LE(std::acos(std::min(1.0, n.dot(axis))) + alpha, std::acos(ConesAlong::kHalfApart) + 1e-6);
+  }
+  EXPECT_GT(along, 1000);
 }
 
 // A place x in the ball that C lies over, on a normal in the cone, is never left out.
