@@ -29,6 +29,7 @@ struct ArmCapabilities {
 struct ArmSample {
   double time = 0;                        // device clock [s]
   bool valid = false;                     // false: nothing in here may be used
+  bool gave_up = false;                   // the device took its force away by itself after it was armed: its deadline passed
   Vec3 p_DF = Vec3::Zero();               // fingertip centre [m]
   std::optional<Vec3> v_DF;               // measured velocity [m/s]
   std::optional<Quat> q_DF;               // gimbal orientation

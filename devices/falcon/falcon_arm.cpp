@@ -16,6 +16,10 @@ constexpr std::uint16_t kBaud9600 = 0x4138, kBaud140000 = 0x15, kBaudNormal = 0x
 constexpr std::uint16_t kEightBits = 8, kNoFlow = 0, kRtsLow = 0x200, kDtrLow = 0x100, kDtrHigh = 0x101;
 constexpr std::size_t kChunk = 62;  // of the image: a USB packet without the FTDI's status bytes
 constexpr int kTimeout = 1000;      // [ms]
+constexpr int kStatus = 2;          // bytes of the chip's before each packet
+constexpr int kEmptyPackets = 40;   // without a word: at its latency of 16 ms 0.6 s
+constexpr int kAnswerPackets = 8;   // in which an answer comes
+constexpr int kGreetings = 8;
 constexpr std::array<std::uint8_t, 3> kHello{0x0a, 0x43, 0x0d};
 constexpr std::array<std::uint8_t, 4> kHelloBack{0x0a, 0x44, 0x2c, 0x0d};
 constexpr double kCountsPerTorque = 10000;  // [1/(N m)], libnifalcon's
@@ -23,6 +27,26 @@ constexpr double kMostCounts = 4096;        // of a torque
 constexpr int kLostAnswers = 50;            // in a row: the Falcon is gone
 
 }  // namespace
+
+// A packet that says something, status bytes and all: the chip sends its status alone whenever its latency timer runs out. How long it is;
+// at most the status: it says nothing any more.
+int FalconSession::hear(std::span<std::uint8_t> bytes) {
+  int got = 0;
+  for (int i = 0; i < kEmptyPackets && got >= 0 && got <= kStatus; ++i) got = port_.read(bytes, kTimeout);
+  return got;
+}
+
+// Whether `words` come; what else comes before them belongs to an earlier question.
+bool FalconSession::hears(std::span<const std::uint8_t> words) {
+  std::array<std::uint8_t, 64> bytes{};
+  for (int i = 0; i < kAnswerPackets; ++i) {
+    const int got = hear(bytes);
+    if (got <= kStatus) return false;
+    const auto end = bytes.begin() + got;
+    if (std::search(bytes.begin() + kStatus, end, words.begin(), words.end()) != end) return true;
+  }
+  return false;
+}
 
 // An answer to a zero order means that a firmware runs already.
 bool FalconSession::runs() {
@@ -50,20 +74,10 @@ bool FalconSession::enterLoader() {
                    port_.control(kBaud, kBaud9600) && port_.control(kData, kEightBits) && port_.control(kFlow, kNoFlow) &&
                    port_.control(kModem, kRtsLow) && port_.control(kModem, kDtrLow) && port_.control(kModem, kDtrHigh);
   if (!set) return false;
-  std::array<std::uint8_t, 64> bytes{};
   bool greeted = false;
-  for (int i = 0; i < 100 && !greeted; ++i) {
-    if (!port_.write(kHello)) return false;
-    const int got = port_.read(bytes, kTimeout);
-    if (got < 0) return false;
-    // The greeting may come with a zero before it.
-    const auto end = bytes.begin() + got;
-    greeted = got >= 6 && std::search(bytes.begin() + 2, end, kHelloBack.begin(), kHelloBack.end()) != end;
-  }
-  if (!greeted || !port_.control(kModem, kDtrLow) || !port_.control(kBaud, kBaud140000)) return false;
+  for (int i = 0; i < kGreetings && !greeted; ++i) greeted = port_.write(kHello) && hears(kHelloBack);
   constexpr std::array<std::uint8_t, 1> kLetter{0x41};
-  if (!port_.write(kLetter)) return false;
-  return port_.read(bytes, kTimeout) == 3 && bytes[2] == 0x41;
+  return greeted && port_.control(kModem, kDtrLow) && port_.control(kBaud, kBaud140000) && port_.write(kLetter) && hears(kLetter);
 }
 
 // The loader sends back every byte of the image.
@@ -73,10 +87,10 @@ bool FalconSession::load(std::span<const std::uint8_t> firmware) {
     const auto chunk = firmware.subspan(at, std::min(kChunk, firmware.size() - at));
     if (!port_.write(chunk)) return false;
     for (std::size_t back = 0; back < chunk.size();) {
-      const int got = port_.read(bytes, kTimeout);
-      if (got <= 2 || back + static_cast<std::size_t>(got) - 2 > chunk.size()) return false;
-      if (!std::equal(bytes.begin() + 2, bytes.begin() + got, chunk.begin() + static_cast<std::ptrdiff_t>(back))) return false;
-      back += static_cast<std::size_t>(got) - 2;
+      const int got = hear(bytes);
+      if (got <= kStatus || back + static_cast<std::size_t>(got - kStatus) > chunk.size()) return false;
+      if (!std::equal(bytes.begin() + kStatus, bytes.begin() + got, chunk.begin() + static_cast<std::ptrdiff_t>(back))) return false;
+      back += static_cast<std::size_t>(got - kStatus);
     }
     at += chunk.size();
   }
@@ -91,7 +105,7 @@ bool FalconSession::enterNormalMode() {
 std::optional<Answer> FalconSession::exchange(const Orders& orders) {
   if (!port_.write(packetOf(orders))) return std::nullopt;
   std::array<std::uint8_t, 64> bytes{};
-  for (int i = 0; i < 4; ++i) {  // the answer may come in pieces, or after a packet of status bytes only
+  for (int i = 0; i < kAnswerPackets; ++i) {  // the answer may come in pieces, or after packets of status bytes only
     const int got = port_.read(bytes, 10);
     if (got < 0) return std::nullopt;
     if (const auto answer = reader_.read(std::span(bytes).first(static_cast<std::size_t>(got)))) return answer;
@@ -101,7 +115,7 @@ std::optional<Answer> FalconSession::exchange(const Orders& orders) {
 
 FalconArm::FalconArm(std::unique_ptr<FalconPort> port, std::vector<std::uint8_t> firmware) : port_(std::move(port)), session_(*port_) {
   const std::string problem = session_.start(firmware);
-  if (!problem.empty()) throw std::runtime_error(problem);
+  if (!problem.empty()) throw std::runtime_error("USB port " + port_->place() + ": " + problem);
   capabilities_.peak_force = 9;
   capabilities_.continuous_force = 4;
   capabilities_.resolution = 60e-6;
@@ -119,8 +133,8 @@ FalconArm::~FalconArm() {
 }
 
 ArmSample FalconArm::sample() {
-  readings_.take();
-  const Reading& r = readings_.latest();
+  readings_.update();
+  const Reading& r = readings_.current();
   ArmSample sample;
   sample.time = 1e-9 * static_cast<double>(r.ns - epoch_ns_);
   sample.valid = r.valid && state() == DeviceState::kReady;
@@ -131,7 +145,10 @@ ArmSample FalconArm::sample() {
   return sample;
 }
 
-void FalconArm::commandForce(const Vec3& f_D) { wishes_.put({f_D.allFinite() ? f_D : Vec3::Zero(), usb::monotonicNs()}); }
+void FalconArm::commandForce(const Vec3& f_D) {
+  wishes_.writable() = {f_D.allFinite() ? f_D : Vec3::Zero(), usb::monotonicNs()};
+  wishes_.publish();
+}
 
 bool FalconArm::read(const Answer& answer, Reading& reading) const {
   const Vec3 angles(angleOf(answer.counts[0]), angleOf(answer.counts[1]), angleOf(answer.counts[2]));
@@ -153,8 +170,8 @@ Orders FalconArm::ordersNow(const Reading& last, bool homed) {
   Orders orders;
   orders.homing = !homed;
   orders.lamps = homed ? 4 : 2;
-  wishes_.take();
-  const Wish& wish = wishes_.latest();
+  wishes_.update();
+  const Wish& wish = wishes_.current();
   const bool may = homed && last.valid && !stopped_.load(std::memory_order_acquire) && usb::monotonicNs() - wish.ns < kForceLife;
   if (!may) return orders;
   const Vec3 torque = last.J.transpose() * wish.f_D;
@@ -177,7 +194,8 @@ void FalconArm::run() {
     homed = homed || answer->homed == 7;
     read(*answer, reading);
     reading.valid = reading.valid && homed;
-    readings_.put(reading);
+    readings_.writable() = reading;
+    readings_.publish();
     if (homed) state_ = DeviceState::kReady;
   }
   if (silent >= kLostAnswers) state_ = DeviceState::kFaulted;

@@ -15,7 +15,7 @@
 #include "devices/arm/arm.h"
 #include "devices/falcon/falcon_kinematics.h"
 #include "devices/falcon/falcon_packet.h"
-#include "devices/usb/mailbox.h"
+#include "devices/triple_buffer.h"
 
 namespace pincer::devices::falcon {
 
@@ -25,6 +25,7 @@ inline constexpr std::int64_t kForceLife = 4'000'000;  // [ns]
 class FalconPort {
  public:
   virtual ~FalconPort() = default;
+  virtual std::string place() const = 0;  // where it is plugged in, as "1-2"
   // A vendor request without data; false if it failed.
   virtual bool control(std::uint8_t request, std::uint16_t value) = 0;
   virtual bool write(std::span<const std::uint8_t> bytes) = 0;
@@ -32,8 +33,15 @@ class FalconPort {
   virtual int read(std::span<std::uint8_t> bytes, int timeout_ms) = 0;
 };
 
-// The first Falcon on USB. Throws std::runtime_error with a sentence and the remedy. Implemented by falcon_port_libusb.cpp.
-std::unique_ptr<FalconPort> openFalconPort();
+struct FalconPlace {
+  std::string port;    // bus-port, as "1-2" or "1-2.3" behind a hub
+  std::string serial;  // of its FTDI chip; empty where there is none, or no right to read it
+};
+
+// Every Falcon on USB, in the order of the ports; and the one at a port. Both throw std::runtime_error with a sentence and the remedy.
+// Implemented by falcon_port_libusb.cpp.
+std::vector<FalconPlace> listFalcons();
+std::unique_ptr<FalconPort> openFalconPort(const std::string& port);
 
 // What is said to a Falcon, without a thread.
 class FalconSession {
@@ -46,6 +54,8 @@ class FalconSession {
   std::optional<Answer> exchange(const Orders& orders);
 
  private:
+  int hear(std::span<std::uint8_t> bytes);
+  bool hears(std::span<const std::uint8_t> words);
   bool runs();
   bool enterLoader();
   bool load(std::span<const std::uint8_t> firmware);
@@ -61,7 +71,7 @@ class FalconArm final : public Arm {
   FalconArm(std::unique_ptr<FalconPort> port, std::vector<std::uint8_t> firmware);
   ~FalconArm() override;
 
-  std::string identity() const override { return "Novint Falcon"; }
+  std::string identity() const override { return "Novint Falcon at " + port_->place(); }
   const ArmCapabilities& capabilities() const override { return capabilities_; }
   DeviceState state() const override { return state_.load(std::memory_order_acquire); }
   ArmSample sample() override;
@@ -93,8 +103,8 @@ class FalconArm final : public Arm {
   std::atomic<DeviceState> state_{DeviceState::kConnecting};
   std::atomic<bool> stopped_{true}, end_{false};
   std::atomic<std::int64_t> epoch_ns_{0};
-  usb::Mailbox<Reading> readings_;
-  usb::Mailbox<Wish> wishes_;
+  TripleBuffer<Reading> readings_;
+  TripleBuffer<Wish> wishes_;
   std::thread thread_;
 };
 

@@ -1,5 +1,7 @@
 #include "devices/gate/force_gate.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -34,12 +36,19 @@ bool isFresh(const GateLimits& limits, const GateInput& in, double newest) {
 Trip findTrip(const GateLimits& limits, const GateInput& in, const GateState& state) {
   if (!in.f_D.allFinite() || !in.v_DF.allFinite()) return Trip::kNotFinite;
   if (!in.physics_ok) return Trip::kException;
-  if (!in.sample.valid) return Trip::kInvalidSample;
+  if (!in.sample.valid) return in.sample.gave_up ? Trip::kGaveUp : Trip::kInvalidSample;
   if (!isFinite(in.sample)) return Trip::kNotFinite;
   if (!(in.v_DF.norm() <= limits.top_speed)) return Trip::kOverSpeed;
   if (!clockIsSound(limits, in.dt)) return Trip::kMissedDeadline;
   if (!isFresh(limits, in, state.sample_time)) return Trip::kStaleSample;
   return Trip::kNone;
+}
+
+// What was beyond its limit.
+double measuredAt(Trip cause, const GateInput& in) {
+  if (cause == Trip::kOverSpeed) return in.v_DF.norm();
+  if (cause == Trip::kMissedDeadline) return in.dt;
+  return cause == Trip::kStaleSample ? in.now - in.sample.time : 0;
 }
 
 double ramp(const GateLimits& limits, double armed_for) { return armed_for < limits.ramp_time ? armed_for / limits.ramp_time : 1.0; }
@@ -71,6 +80,45 @@ Vec3 shaped(const GateLimits& limits, const GateInput& in, const GateState& stat
   return withinTorque(limits, in.sample, f);
 }
 
+struct TripWords {
+  const char* what;
+  const char* remedy;
+};
+
+constexpr const char* kBusyRemedy =
+    "close other programs, permit real-time priority (docs/devices.md), or allow longer stalls with --watchdog; then arm again.";
+
+TripWords wordsOf(Trip trip) {
+  switch (trip) {
+    case Trip::kNone:
+      return {"No trip", "forces are on, or were never armed; arm the arm to feel forces."};
+    case Trip::kNotFinite:
+      return {"A force, velocity or position was not a number", "keep the log, then arm again."};
+    case Trip::kOverSpeed:
+      return {"The fingertip was too fast", "hold the arm, then arm again."};
+    case Trip::kStaleSample:
+      return {"The arm's last sample was too old, or its clock ran backward",
+              "check the arm's cable; if the computer is busy, close other programs, permit real-time priority (docs/devices.md), or allow "
+              "older samples with --watchdog; then arm again."};
+    case Trip::kInvalidSample:
+      return {"The arm's sample was marked unusable", "check cable and power (pincer devices list), then arm again."};
+    case Trip::kGaveUp:
+      return {"The arm took its force away by itself, because no command came before its deadline", kBusyRemedy};
+    case Trip::kMissedDeadline:
+      return {"The servo loop stalled", kBusyRemedy};
+    case Trip::kException:
+      return {"The simulation reported a fault", "read the log, then arm again."};
+    case Trip::kOperator:
+      return {"The operator switched the forces off", "arm again to feel forces."};
+  }
+  return {"Unknown trip", "arm again."};
+}
+
+std::string sentence(Trip trip, const std::string& measured) {
+  const TripWords words = wordsOf(trip);
+  return fmt::format("{}{}{}: {}", words.what, measured, trip == Trip::kNone ? "" : ". Forces are zero and stay so", words.remedy);
+}
+
 }  // namespace
 
 GateLimits within(GateLimits limits, const ArmCapabilities& arm) {
@@ -98,26 +146,15 @@ std::optional<std::string> problemWith(const GateLimits& limits) {
   return std::nullopt;
 }
 
-std::string describe(Trip trip) {
-  switch (trip) {
-    case Trip::kNone:
-      return "No trip: forces are on, or were never armed; arm the arm to feel forces.";
-    case Trip::kNotFinite:
-      return "A force, velocity or position was not a number; forces stay zero: keep the log, then re-arm.";
-    case Trip::kOverSpeed:
-      return "The fingertip was faster than the limit; forces stay zero: hold the arm, then re-arm.";
-    case Trip::kStaleSample:
-      return "The arm's last sample was too old or its clock ran backward; forces stay zero: check the cable, then re-arm.";
-    case Trip::kInvalidSample:
-      return "The arm's sample was marked unusable; forces stay zero: check cable and power, then re-arm.";
-    case Trip::kMissedDeadline:
-      return "The servo loop stalled; forces stay zero: close other programs or run with real-time priority, then re-arm.";
-    case Trip::kException:
-      return "The simulation reported a fault; forces stay zero: read the log, then re-arm.";
-    case Trip::kOperator:
-      return "The operator switched the forces off; they stay zero until you re-arm.";
-  }
-  return "Unknown trip; forces stay zero until you re-arm.";
+std::string describe(Trip trip) { return sentence(trip, ""); }
+
+std::string describe(const GateLimits& limits, const GateState& state) {
+  const auto measured = [&](double scale, const char* unit, double limit) {
+    return fmt::format(" ({:.3g} {}, limit {:.3g})", scale * state.tripped_at, unit, scale * limit);
+  };
+  if (state.tripped_at == 0) return describe(state.trip);
+  if (state.trip == Trip::kOverSpeed) return sentence(state.trip, measured(1, "m/s", limits.top_speed));
+  return sentence(state.trip, measured(1e3, "ms", limits.watchdog_time));
 }
 
 void arm(GateState& state) {
@@ -136,7 +173,10 @@ void trip(GateState& state, Trip cause) {
 Vec3 gateForce(const GateLimits& limits, const GateInput& in, GateState& state) {
   if (state.armed) {
     const Trip cause = findTrip(limits, in, state);
-    if (cause != Trip::kNone) trip(state, cause);
+    if (cause != Trip::kNone) {
+      trip(state, cause);
+      state.tripped_at = measuredAt(cause, in);
+    }
   }
   if (state.armed) {
     state.sample_time = in.sample.time;

@@ -41,18 +41,32 @@ GateLimits within(GateLimits limits, const ArmCapabilities& arm);
 // What is wrong with `limits`, as a sentence with field, value and range; absent if nothing is.
 std::optional<std::string> problemWith(const GateLimits& limits);
 
-enum class Trip : std::uint8_t { kNone, kNotFinite, kOverSpeed, kStaleSample, kInvalidSample, kMissedDeadline, kException, kOperator };
-std::string describe(Trip trip);  // one sentence: what happened, what it means, what to do
+enum class Trip : std::uint8_t {
+  kNone,
+  kNotFinite,
+  kOverSpeed,
+  kStaleSample,
+  kInvalidSample,
+  kGaveUp,
+  kMissedDeadline,
+  kException,
+  kOperator
+};
+std::string describe(Trip trip);  // what happened, what it means, what to do
 
 // State of the gate of one arm; a plain value.
 struct GateState {
   bool armed = false;
-  Trip trip = Trip::kNone;                                        // why it is latched; kNone while armed or never armed
-  double armed_for = 0;                                           // [s]
-  double heat = 0;                                                // integral of (f^2 - f_cont^2), >= 0 [N^2 s]
-  Vec3 f_D = Vec3::Zero();                                        // last force let through [N]
+  Trip trip = Trip::kNone;  // why it is latched; kNone while armed or never armed
+  double tripped_at = 0;    // what was beyond its limit then: speed [m/s], age or time [s]; 0: nothing
+  double armed_for = 0;     // [s]
+  double heat = 0;          // integral of (f^2 - f_cont^2), >= 0 [N^2 s]
+  Vec3 f_D = Vec3::Zero();  // last force let through [N]
   double sample_time = -std::numeric_limits<double>::infinity();  // of the last sample trusted since arming [s]
 };
+
+// The same of a gate that has tripped, with what was measured and its limit.
+std::string describe(const GateLimits& limits, const GateState& state);
 
 struct GateInput {
   Vec3 f_D = Vec3::Zero();   // wanted force [N]

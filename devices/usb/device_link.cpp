@@ -33,10 +33,14 @@ std::size_t DeviceLink::calibrationSize() {
   return entry_count_;
 }
 
-void DeviceLink::writeCalibration(const CalibrationEntry& entry) {
+// Forgotten here until the device says what it keeps.
+bool DeviceLink::writeCalibration(const std::string& name, double value) {
   const std::lock_guard lock(slow_);
-  entries_.erase(entry.index);
-  to_write_.push_back(entry);
+  const auto found = std::find_if(entries_.begin(), entries_.end(), [&](const auto& e) { return e.second.name == name; });
+  if (found == entries_.end()) return false;
+  to_write_.push_back({found->first, 0, name, value});
+  entries_.erase(found);
+  return true;
 }
 
 void DeviceLink::attach(std::int64_t now, std::uint32_t sequence) {
@@ -142,7 +146,7 @@ bool DeviceLink::nextFrame(Frame& frame, std::int64_t now) {
       frame.type = FrameType::kIdentify;
       return true;
     }
-    if (takeCommand(frame)) return true;
+    if (takeCommand(frame, now)) return true;
     if (now - asked_at_ < kCalibrationPeriod || !nextCalibration(frame)) return false;
     asked_at_ = now;
     return true;

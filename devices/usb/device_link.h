@@ -35,6 +35,7 @@ class DeviceLink {
   DeviceLink& operator=(const DeviceLink&) = delete;
 
   const Identity& deviceIdentity() const { return identity_; }
+  std::string nameOfDevice() const { return identity_.model + " " + identity_.serial; }
   DeviceState linkState() const { return state_.load(std::memory_order_acquire); }
   LinkCounts counts() const;
   Status status() const;
@@ -44,8 +45,8 @@ class DeviceLink {
   // Calibration values of the device, as far as they have come; asks for the missing ones. Never in a tick.
   std::map<std::string, double> calibration();
   std::size_t calibrationSize();  // how many the device has; 0: not known yet
-  // Asks the device to keep `value` under the name of entry `index`. Never in a tick.
-  void writeCalibration(const CalibrationEntry& entry);
+  // Asks the device to keep `value` under a name that it has told; false if it hasn't. Never in a tick.
+  bool writeCalibration(const std::string& name, double value);
 
   // From the USB thread.
   bool attached() const { return attached_; }
@@ -60,8 +61,9 @@ class DeviceLink {
   // A state frame that is newer than all before; false if its payload isn't sound.
   virtual bool takeState(const Frame& frame, std::int64_t sent) = 0;
   virtual bool takeCapabilities(const Frame& frame) = 0;
-  // The newest command, once; `stop`: to be sent before anything else.
-  virtual bool takeCommand(Frame& frame) = 0;
+  // The newest command, once, unless it is too old.
+  virtual bool takeCommand(Frame& frame, std::int64_t now) = 0;
+  // Whether a stop is to be sent, before anything else.
   virtual bool takeStop() { return false; }
 
   double sinceEpoch(std::int64_t ns) const { return 1e-9 * static_cast<double>(ns - epoch_ns_.load(std::memory_order_relaxed)); }

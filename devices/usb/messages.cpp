@@ -5,7 +5,7 @@
 namespace pincer::devices::usb {
 namespace {
 
-constexpr double kNano = 1e-9, kMicro = 1e-6, kTick = 1e-4;          // [m], [N] or [m/s], [s]
+constexpr double kNano = 1e-9, kMicro = 1e-6;                        // [m], [N] or [m/s]
 constexpr double kReach = 2, kForce = 100, kSpeed = 50, kPad = 0.1;  // [m], [N], [m/s], [m]
 constexpr double kGimbalStep = 1.0 / 16384;
 constexpr double kTorqueStep = 1e-4, kTorque = 6.5;  // [N m]
@@ -102,7 +102,7 @@ Frame toFrame(const ArmCommand& m) {
   Frame frame = frameOf(FrameType::kArmCommand);
   PayloadWriter(frame.payload)
       .putVector<3>(m.f_D, kMicro, kForce)
-      .putScaled<std::uint16_t>(m.deadline, kTick, 0.1)
+      .putScaled<std::uint16_t>(m.deadline, kDeadlineStep, 0.1)
       .put(m.arming)
       .put(static_cast<std::uint8_t>(m.signal));
   return frame;
@@ -113,7 +113,7 @@ std::optional<ArmCommand> armCommandIn(const Frame& frame) {
   PayloadReader in(frame.payload);
   ArmCommand m;
   m.f_D = in.takeVector<3>(kMicro, kForce);
-  m.deadline = in.takeScaled<std::uint16_t>(kTick, kTick, 0.1);
+  m.deadline = in.takeScaled<std::uint16_t>(kDeadlineStep, kDeadlineStep, 0.1);
   m.arming = in.take<std::uint16_t>();
   m.signal = takeSignal(in);
   return whole(in, m);
@@ -160,7 +160,7 @@ Frame toFrame(const DisplayCommand& m) {
       .putVector<2>(m.place_L, kNano, kPad)
       .put(static_cast<std::uint8_t>(m.parked))
       .put(static_cast<std::uint8_t>(m.signal))
-      .putScaled<std::uint16_t>(m.deadline, kTick, 1);
+      .putScaled<std::uint16_t>(m.deadline, kDeadlineStep, 1);
   return frame;
 }
 
@@ -171,7 +171,7 @@ std::optional<DisplayCommand> displayCommandIn(const Frame& frame) {
   m.place_L = in.takeVector<2>(kNano, kPad);
   m.parked = takeFlag(in);
   m.signal = takeSignal(in);
-  m.deadline = in.takeScaled<std::uint16_t>(kTick, kTick, 1);
+  m.deadline = in.takeScaled<std::uint16_t>(kDeadlineStep, kDeadlineStep, 1);
   return whole(in, m);
 }
 

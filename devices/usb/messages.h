@@ -33,6 +33,8 @@ struct Identity {
   bool operator==(const Identity&) const = default;
 };
 
+inline constexpr double kDeadlineStep = 1e-4;  // of deadlines on the wire [s]
+
 struct ArmCommand {
   Vec3 f_D = Vec3::Zero();   // [N], each component within +-100
   double deadline = 0.004;   // after which the arm goes limp unless a newer command came [s], (0, 0.1]

@@ -4,15 +4,13 @@
 
 namespace pincer::devices::usb {
 
-std::string UsbArm::identity() const { return deviceIdentity().model + " " + deviceIdentity().serial; }
-
 ArmSample UsbArm::sample() {
-  readings_.take();
-  const auto& [state, sent_ns] = readings_.latest();
+  const auto& [state, sent_ns] = latestReading();
   ArmSample sample;
   sample.time = sinceEpoch(sent_ns);
-  const bool gave_up = state.limp && arming_ != 0 && state.arming == arming_;
-  sample.valid = linkState() == DeviceState::kReady && state.valid && !gave_up;
+  const bool ready = linkState() == DeviceState::kReady;
+  sample.gave_up = ready && state.limp && arming_ != 0 && state.arming == arming_;
+  sample.valid = ready && state.valid && !sample.gave_up;
   if (!sample.valid) return sample;
   sample.p_DF = state.p_DF;
   sample.v_DF = state.v_DF;
@@ -26,9 +24,8 @@ ArmSample UsbArm::sample() {
 
 void UsbArm::commandForce(const Vec3& f_D) {
   const bool may = armed_.load(std::memory_order_acquire) && f_D.allFinite();
-  commands_.put({may ? f_D : Vec3::Zero(), deadline_, may ? arming_ : std::uint16_t{0}, signal_});
+  post({may ? f_D : Vec3::Zero(), deadline_, may ? arming_ : std::uint16_t{0}, signal_});
   signal_ = Signal::kNone;
-  waker_.wake();
 }
 
 void UsbArm::arm() {
@@ -40,7 +37,7 @@ void UsbArm::arm() {
 void UsbArm::stop() noexcept {
   armed_.store(false, std::memory_order_release);
   stop_.store(true, std::memory_order_release);
-  waker_.wake();
+  wakeUsb();
 }
 
 void UsbArm::attach(std::int64_t now, std::uint32_t sequence) {
@@ -53,31 +50,11 @@ void UsbArm::detach() {
   DeviceLink::detach();
 }
 
-bool UsbArm::takeState(const Frame& frame, std::int64_t sent) {
-  const auto state = armStateIn(frame);
-  if (!state) return false;
-  readings_.put({*state, sent});
-  answered(state->answers);
-  return true;
-}
-
-bool UsbArm::takeCapabilities(const Frame& frame) {
-  const auto capabilities = armCapabilitiesIn(frame);
-  if (!capabilities) return false;
-  if (!has_capabilities_) capabilities_ = *capabilities;  // a device keeps them; the servo may be reading
-  return has_capabilities_ = true;
-}
-
 // Whatever was asked before a stop or an unplugging is not force any more.
-bool UsbArm::takeCommand(Frame& frame) {
-  if (!commands_.take()) return false;
-  ArmCommand command = commands_.latest();
-  if (!armed_.load(std::memory_order_acquire)) {
-    command.f_D = Vec3::Zero();
-    command.arming = 0;
-  }
-  frame = toFrame(command);
-  return true;
+void UsbArm::checkCommand(ArmCommand& command) {
+  if (armed_.load(std::memory_order_acquire)) return;
+  command.f_D = Vec3::Zero();
+  command.arming = 0;
 }
 
 }  // namespace pincer::devices::usb

@@ -4,20 +4,18 @@
 // arming count that it hasn't refused). Every command dies in the device after its deadline, so a computer that stops is zero force.
 #pragma once
 #include "devices/arm/arm.h"
-#include "devices/usb/device_link.h"
-#include "devices/usb/mailbox.h"
-#include "devices/usb/waker.h"
+#include "devices/usb/stream_link.h"
 
 namespace pincer::devices::usb {
 
 inline constexpr double kForceDeadline = 4e-3;  // unless set otherwise [s]
 
-class UsbArm final : public Arm, public DeviceLink {
+class UsbArm final : public Arm, public StreamLink<ArmWire> {
  public:
-  UsbArm(Identity identity, Waker& waker) : DeviceLink(std::move(identity)), waker_(waker) {}
+  using StreamLink::StreamLink;
 
-  std::string identity() const override;
-  const ArmCapabilities& capabilities() const override { return capabilities_; }  // sound from the first time that state() is kReady
+  std::string identity() const override { return nameOfDevice(); }
+  const ArmCapabilities& capabilities() const override { return toldCapabilities(); }
   DeviceState state() const override { return linkState(); }
   // From the servo thread, as commandForce and arm. Invalid while unplugged, and once the device went limp on its own after arm().
   ArmSample sample() override;
@@ -33,24 +31,13 @@ class UsbArm final : public Arm, public DeviceLink {
   void detach() override;
 
  private:
-  struct Reading {
-    ArmState state;
-    std::int64_t sent_ns = 0;
-  };
-
-  bool takeState(const Frame& frame, std::int64_t sent) override;
-  bool takeCapabilities(const Frame& frame) override;
-  bool takeCommand(Frame& frame) override;
+  void checkCommand(ArmCommand& command) override;
   bool takeStop() override { return stop_.exchange(false, std::memory_order_acq_rel); }
 
-  Waker& waker_;
-  ArmCapabilities capabilities_;
-  bool has_capabilities_ = false;
-  Mailbox<Reading> readings_;     // USB thread -> servo
-  Mailbox<ArmCommand> commands_;  // servo -> USB thread
   std::atomic<bool> armed_{false}, stop_{false};
+  // Servo thread only.
   double deadline_ = kForceDeadline;
-  std::uint16_t arming_ = 0;  // servo thread only
+  std::uint16_t arming_ = 0;
   Signal signal_ = Signal::kNone;
 };
 

@@ -1,5 +1,4 @@
-// usb_bus: packets to and from every pincer device on the machine's USB ports. Implemented by usb_bus_libusb.cpp, the only file that knows
-// libusb.
+// usb_bus: packets to and from every pincer device on the machine's USB ports. Implemented by usb_bus_libusb.cpp.
 //
 // One thread does everything: it waits for transfers, plugs and wake(); transfers are asynchronous, and what libusb calls back only marks
 // them as done. A port that stalls is cleared and goes on; one whose transfers fail eight times in a row, or that is unplugged, is closed.
@@ -34,20 +33,16 @@ class UsbPorts {
 
 constexpr int kMaxPorts = 16;
 
+// Its thread lives as long as it does.
 class UsbBus {
  public:
-  // Starts the thread. Throws std::runtime_error when libusb can't start.
-  UsbBus(UsbPorts& ports, Clock clock);
-  ~UsbBus();
-  UsbBus(const UsbBus&) = delete;
-  UsbBus& operator=(const UsbBus&) = delete;
-
+  virtual ~UsbBus() = default;
   // There is something to send. From any thread; never waits, allocates nothing.
-  void wake() noexcept;
-
- private:
-  class Thread;
-  std::unique_ptr<Thread> thread_;
+  virtual void wake() noexcept = 0;
 };
+
+// Those of libusb. Throws std::runtime_error when libusb can't start.
+std::unique_ptr<UsbBus> openUsbBus(UsbPorts& ports, Clock clock);
+using OpenBus = std::function<std::unique_ptr<UsbBus>(UsbPorts&, Clock)>;
 
 }  // namespace pincer::devices::usb

@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "devices/usb/port_name.h"
 #include "devices/usb/usb_bus.h"
 
 namespace pincer::devices::usb {
@@ -85,9 +86,7 @@ void LIBUSB_CALL markDone(libusb_transfer* transfer) {
   t.port->done[t.port->done_count++] = &t;
 }
 
-std::string placeOf(libusb_device* device) {
-  return "USB device " + std::to_string(libusb_get_bus_number(device)) + "-" + std::to_string(libusb_get_port_number(device));
-}
+std::string placeOf(libusb_device* device) { return "USB device " + portName(device); }
 
 std::string openProblem(libusb_device* device, int error) {
   if (error == LIBUSB_ERROR_ACCESS) {
@@ -102,15 +101,25 @@ std::string openProblem(libusb_device* device, int error) {
 
 }  // namespace
 
+std::string portName(libusb_device* device) {
+  std::array<std::uint8_t, 7> ports{};  // the most that USB allows
+  const int depth = libusb_get_port_numbers(device, ports.data(), static_cast<int>(ports.size()));
+  std::string text = std::to_string(libusb_get_bus_number(device));
+  for (int i = 0; i < depth; ++i) text += (i == 0 ? "-" : ".") + std::to_string(ports[static_cast<std::size_t>(i)]);
+  return text;
+}
+
 std::int64_t monotonicNs() {
   timespec t;
   clock_gettime(CLOCK_MONOTONIC, &t);
   return static_cast<std::int64_t>(t.tv_sec) * 1'000'000'000 + t.tv_nsec;
 }
 
-class UsbBus::Thread {
+namespace {
+
+class LibusbBus final : public UsbBus {
  public:
-  Thread(UsbPorts& ports, Clock clock) : ports_(ports), clock_(std::move(clock)) {
+  LibusbBus(UsbPorts& ports, Clock clock) : ports_(ports), clock_(std::move(clock)) {
     wake_fd_ = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
     if (wake_fd_ < 0) throw std::runtime_error("USB: no more file descriptors. Close other programs.");
     if (const int error = libusb_init(&context_); error != 0) {
@@ -119,17 +128,17 @@ class UsbBus::Thread {
     }
     thread_ = std::thread([this] { run(); });
   }
-  ~Thread() {
+  ~LibusbBus() override {
     stop_ = true;
     wake();
     thread_.join();
     libusb_exit(context_);
     ::close(wake_fd_);
   }
-  Thread(const Thread&) = delete;
-  Thread& operator=(const Thread&) = delete;
+  LibusbBus(const LibusbBus&) = delete;
+  LibusbBus& operator=(const LibusbBus&) = delete;
 
-  void wake() noexcept {
+  void wake() noexcept override {
     const std::uint64_t one = 1;
     [[maybe_unused]] const auto written = ::write(wake_fd_, &one, sizeof one);  // it can only be full, and then it wakes anyway
   }
@@ -160,11 +169,11 @@ class UsbBus::Thread {
     if (libusb_has_capability(LIBUSB_CAP_HAS_HOTPLUG) == 0) return false;
     const auto events = static_cast<libusb_hotplug_event>(LIBUSB_HOTPLUG_EVENT_DEVICE_ARRIVED | LIBUSB_HOTPLUG_EVENT_DEVICE_LEFT);
     return libusb_hotplug_register_callback(context_, events, LIBUSB_HOTPLUG_ENUMERATE, kVendorId, kProductId, LIBUSB_HOTPLUG_MATCH_ANY,
-                                            &Thread::plugged, this, nullptr) == 0;
+                                            &LibusbBus::plugged, this, nullptr) == 0;
   }
   static int LIBUSB_CALL plugged(libusb_context*, libusb_device* device, libusb_hotplug_event event, void* self) {
-    auto& thread = *static_cast<Thread*>(self);
-    (event == LIBUSB_HOTPLUG_EVENT_DEVICE_ARRIVED ? thread.arrived_ : thread.left_).push_back(libusb_ref_device(device));
+    auto& bus = *static_cast<LibusbBus*>(self);
+    (event == LIBUSB_HOTPLUG_EVENT_DEVICE_ARRIVED ? bus.arrived_ : bus.left_).push_back(libusb_ref_device(device));
     return 0;
   }
   // Where the system doesn't: once a second.
@@ -369,8 +378,8 @@ class UsbBus::Thread {
   std::thread thread_;
 };
 
-UsbBus::UsbBus(UsbPorts& ports, Clock clock) : thread_(std::make_unique<Thread>(ports, std::move(clock))) {}
-UsbBus::~UsbBus() = default;
-void UsbBus::wake() noexcept { thread_->wake(); }
+}  // namespace
+
+std::unique_ptr<UsbBus> openUsbBus(UsbPorts& ports, Clock clock) { return std::make_unique<LibusbBus>(ports, std::move(clock)); }
 
 }  // namespace pincer::devices::usb

@@ -23,15 +23,15 @@ std::size_t countReady(const std::map<std::string, std::unique_ptr<Device>>& dev
 }
 
 template <typename Device>
-Device& foundOrMade(std::map<std::string, std::unique_ptr<Device>>& devices, const Identity& identity, Waker& waker) {
+Device& foundOrMade(std::map<std::string, std::unique_ptr<Device>>& devices, const Identity& identity, UsbThread& usb) {
   const auto found = devices.find(identity.serial);
   if (found != devices.end()) return *found->second;
-  return *devices.emplace(identity.serial, std::make_unique<Device>(identity, waker)).first->second;
+  return *devices.emplace(identity.serial, std::make_unique<Device>(identity, usb)).first->second;
 }
 
 }  // namespace
 
-UsbHost::UsbHost(Clock clock) : bus_(std::make_unique<UsbBus>(static_cast<UsbPorts&>(*this), std::move(clock))) {
+UsbHost::UsbHost(Clock clock, const OpenBus& open) : clock_(std::move(clock)), bus_(open(*this, clock_)) {
   waking_.store(bus_.get(), std::memory_order_release);
   bus_->wake();
 }
@@ -125,10 +125,10 @@ void UsbHost::meet(Port& port, const Frame& frame, std::int64_t now) {
 
 // Null where another kind of device with other properties has the serial number.
 DeviceLink* UsbHost::linkOf(const Identity& identity) {
-  Waker& waker = *this;
+  UsbThread& usb = *this;
   const std::lock_guard lock(slow_);
-  DeviceLink& link = identity.kind == DeviceKind::kArm ? static_cast<DeviceLink&>(foundOrMade(arms_, identity, waker))
-                                                       : static_cast<DeviceLink&>(foundOrMade(displays_, identity, waker));
+  DeviceLink& link = identity.kind == DeviceKind::kArm ? static_cast<DeviceLink&>(foundOrMade(arms_, identity, usb))
+                                                       : static_cast<DeviceLink&>(foundOrMade(displays_, identity, usb));
   link.setEpoch(epoch_ns_);
   return link.deviceIdentity() == identity ? &link : nullptr;
 }

@@ -12,14 +12,14 @@
 #include "devices/usb/usb_arm.h"
 #include "devices/usb/usb_bus.h"
 #include "devices/usb/usb_display.h"
-#include "devices/usb/waker.h"
+#include "devices/usb/usb_thread.h"
 
 namespace pincer::devices::usb {
 
-class UsbHost final : private UsbPorts, private Waker {
+class UsbHost final : private UsbPorts, private UsbThread {
  public:
   // Starts the USB thread. Throws std::runtime_error when libusb can't start.
-  explicit UsbHost(Clock clock = monotonicNs);
+  explicit UsbHost(Clock clock = monotonicNs, const OpenBus& open = openUsbBus);
   ~UsbHost() override;
   UsbHost(const UsbHost&) = delete;
   UsbHost& operator=(const UsbHost&) = delete;
@@ -53,11 +53,13 @@ class UsbHost final : private UsbPorts, private Waker {
   void problem(const std::string& text) override;
   void searched() override;
   void wake() noexcept override;
+  std::int64_t now() const override { return clock_(); }
 
   void meet(Port& port, const Frame& frame, std::int64_t now);
   bool readyNow(std::size_t arms, std::size_t displays) const;
   DeviceLink* linkOf(const Identity& identity);
 
+  const Clock clock_;
   std::array<Port, kMaxPorts> ports_;  // USB thread only
   std::atomic<std::int64_t> stray_{0};
   mutable std::mutex slow_;

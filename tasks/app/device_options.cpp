@@ -20,7 +20,9 @@ void addDeviceOptions(CLI::App& command, DeviceRunOptions& options) {
   command.add_option("--devices", options.devices, "What the fingers wear: simulated devices and participant, or real ones and a person")
       ->check(CLI::IsMember({"sim", "usb", "falcon", "mouse", "replay"}))
       ->capture_default_str();
-  command.add_option("--arms", options.which.arms, "Serial numbers of the arms of index finger and thumb (default: in their order)")
+  command
+      .add_option("--arms", options.which.arms,
+                  "Serial numbers (of Falcons: or USB ports) of the arms of index finger and thumb (default: in their order)")
       ->delimiter(',');
   command.add_option("--displays", options.which.displays, "Serial numbers of their displays")->delimiter(',');
   command
@@ -51,9 +53,9 @@ std::unique_ptr<HandDevices> openDevices(const DeviceRunOptions& options, ServoO
 }
 
 bool operatorArms(const DeviceRunOptions& options, const std::string& why) {
+  fmt::print(stderr, "{}\n", why);
   if (options.yes) return true;
-  fmt::print(stderr, "Forces are off: {}. Fingers in place, emergency stop at hand? Enter switches forces on, Ctrl-D ends the session. ",
-             why);
+  fmt::print(stderr, "Forces are off. Fingers in place, emergency stop at hand? Enter switches forces on, Ctrl-D ends the session. ");
   std::string line;
   return static_cast<bool>(std::getline(std::cin, line));
 }

@@ -1,12 +1,9 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
-#include <chrono>
 #include <cstdlib>
-#include <functional>
 #include <memory>
-#include <optional>
-#include <thread>
 
 #include "contact/error.h"
 #include "devices/usb/usb_host.h"
@@ -21,57 +18,29 @@ namespace {
 using devices::usb::DeviceLink;
 using devices::usb::UsbHost;
 
+constexpr double kPatience = 2;  // with a device [s]
+
 struct CalibrateArguments {
   std::string serial, save, load;
   std::vector<std::string> set;
 };
 
-bool waitUntil(const std::function<bool()>& done) {
-  for (int i = 0; i < 400; ++i) {
-    if (done()) return true;
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  }
-  return false;
-}
-
 DeviceLink& readyDevice(UsbHost& host, const std::string& serial) {
   DeviceLink* found = nullptr;
-  waitUntil([&] {
-    for (auto* arm : host.arms()) found = arm->deviceIdentity().serial == serial ? arm : found;
-    for (auto* display : host.displays()) found = display->deviceIdentity().serial == serial ? display : found;
-    return found != nullptr && found->linkState() == devices::DeviceState::kReady;
-  });
+  waitUntil(
+      [&] {
+        for (auto* arm : host.arms()) found = arm->deviceIdentity().serial == serial ? arm : found;
+        for (auto* display : host.displays()) found = display->deviceIdentity().serial == serial ? display : found;
+        return found != nullptr && found->linkState() == devices::DeviceState::kReady;
+      },
+      kPatience);
   if (found != nullptr) return *found;
   throw DeviceError(fmt::format("No device {} is ready on USB. See what is there: pincer devices list", serial));
 }
 
-std::map<std::string, double> valuesOf(DeviceLink& device) {
-  std::map<std::string, double> values;
-  const bool whole = waitUntil([&] {
-    values = device.calibration();
-    return device.calibrationSize() > 0 && values.size() == device.calibrationSize();
-  });
-  if (!whole)
-    throw DeviceError(fmt::format("{} doesn't tell its calibration. Unplug it, plug it in again.", device.deviceIdentity().serial));
-  return values;
-}
+using NamedValue = std::pair<std::string, double>;
 
-void changeValue(DeviceLink& device, const std::string& name, double value) {
-  checkCalibrationValue(name, value);
-  const auto values = valuesOf(device);
-  const auto found = values.find(name);
-  if (found == values.end()) {
-    throw InputError(fmt::format("calibration: {} has no value \"{}\". See which it has: pincer devices calibrate {}",
-                                 device.deviceIdentity().serial, name, device.deviceIdentity().serial));
-  }
-  const auto index = static_cast<std::uint8_t>(std::distance(values.begin(), found));
-  device.writeCalibration({index, 0, name, value});
-  if (!waitUntil([&] { return device.calibration()[name] == value; })) {
-    throw DeviceError(fmt::format("{} didn't take {}. Unplug it, plug it in again.", device.deviceIdentity().serial, name));
-  }
-}
-
-std::pair<std::string, double> assignment(const std::string& text) {
+NamedValue assignment(const std::string& text) {
   const std::size_t equals = text.find('=');
   char* end = nullptr;
   const std::string number = equals == std::string::npos ? "" : text.substr(equals + 1);
@@ -82,24 +51,46 @@ std::pair<std::string, double> assignment(const std::string& text) {
   return {text.substr(0, equals), value};
 }
 
-int calibrate(const CalibrateArguments& arguments) {
-  const auto usb = startUsb();
-  UsbHost& host = *usb;
-  DeviceLink& device = readyDevice(host, arguments.serial);
+// What is to be changed, in this order; all of it checked before anything is.
+std::vector<NamedValue> changesOf(const CalibrateArguments& arguments) {
+  std::vector<NamedValue> changes;
   if (!arguments.load.empty()) {
     const DeviceCalibration file = readCalibration(arguments.load);
     if (file.serial != arguments.serial) {
-      throw InputError(fmt::format("{}: it is the calibration of {}, not of {}.", arguments.load, file.serial, arguments.serial));
+      throw InputError(fmt::format("{}: it is the calibration of {}, not of {}. Load that device's file.", arguments.load, file.serial,
+                                   arguments.serial));
     }
-    for (const auto& [name, value] : file.values) changeValue(device, name, value);
+    changes.assign(file.values.begin(), file.values.end());
   }
-  for (const std::string& text : arguments.set) {
-    const auto [name, value] = assignment(text);
-    changeValue(device, name, value);
+  for (const std::string& text : arguments.set) changes.push_back(assignment(text));
+  for (const auto& [name, value] : changes) checkCalibrationValue(name, value);
+  return changes;
+}
+
+void requireNames(const DeviceCalibration& kept, const std::vector<NamedValue>& changes) {
+  for (const auto& [name, value] : changes) {
+    if (kept.values.contains(name)) continue;
+    std::vector<std::string> names;
+    for (const auto& [known, unused] : kept.values) names.push_back(known);
+    throw InputError(fmt::format("calibration: {} has no value \"{}\". It has {}.", kept.serial, name, fmt::join(names, ", ")));
   }
-  const auto values = valuesOf(device);
-  for (const auto& [name, value] : values) fmt::print("{:<20} {}\n", name, value);
-  if (!arguments.save.empty()) writeCalibration({arguments.serial, values}, arguments.save);
+}
+
+int calibrate(const CalibrateArguments& arguments) {
+  const std::vector<NamedValue> changes = changesOf(arguments);
+  const auto usb = startUsb();
+  DeviceLink& device = readyDevice(*usb, arguments.serial);
+  DeviceCalibration kept = keptCalibration(device);
+  if (kept.values.empty()) throw DeviceError(fmt::format("{} keeps no calibration values.", arguments.serial));
+  requireNames(kept, changes);
+  for (const auto& [name, value] : changes) {
+    device.writeCalibration(name, value);
+    if (!waitUntil([&] { return device.calibration()[name] == value; }, kPatience))
+      throw DeviceError(fmt::format("{} didn't take {}. Unplug it, plug it in again.", arguments.serial, name));
+  }
+  kept = keptCalibration(device);
+  for (const auto& [name, value] : kept.values) fmt::print("{:<20} {}\n", name, value);
+  if (!arguments.save.empty()) writeCalibration(kept, arguments.save);
   return kExitOk;
 }
 
@@ -107,7 +98,7 @@ int calibrate(const CalibrateArguments& arguments) {
 
 void addDevicesCalibrate(CLI::App& devices, int& exit_code) {
   auto arguments = std::make_shared<CalibrateArguments>();
-  CLI::App* command = devices.add_subcommand("calibrate", "Shows, changes, saves and loads a device's calibration values");
+  CLI::App* command = devices.add_subcommand("calibrate", "Shows, changes, saves and loads the calibration values that a device keeps");
   command->add_option("serial", arguments->serial, "Of the device: pincer devices list")->required();
   command->add_option("--set", arguments->set, "NAME=VALUE [m or rad]; more than once for several");
   command->add_option("--save", arguments->save, "Writes all values to this file");

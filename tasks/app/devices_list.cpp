@@ -5,6 +5,7 @@
 #include <memory>
 #include <thread>
 
+#include "devices/falcon/falcon_arm.h"
 #include "devices/usb/usb_host.h"
 #include "tasks/app/app.h"
 #include "tasks/app/devices_commands.h"
@@ -35,6 +36,12 @@ void listDisplay(const devices::usb::UsbDisplay& display) {
              1e6 * can.resolution, 1e3 * can.speed);
 }
 
+// Found, not opened: that would take its firmware, and homing.
+void listFalcon(const devices::falcon::FalconPlace& place) {
+  fmt::print("falcon   {:<12} {:<16} {:<10} pincer run ... --devices falcon --arms {}\n", place.port, "Novint Falcon",
+             place.serial.empty() ? "-" : place.serial, place.port);
+}
+
 template <typename Device>
 void writeDevice(const Device& device, const char* kind, JsonWriter& json) {
   json.beginObject().key("kind").value(kind).key("serial").value(device.deviceIdentity().serial);
@@ -42,11 +49,14 @@ void writeDevice(const Device& device, const char* kind, JsonWriter& json) {
   json.key("state").value(devices::nameOf(device.linkState())).endObject();
 }
 
-void printJson(UsbHost& host) {
+void printJson(UsbHost& host, const std::vector<devices::falcon::FalconPlace>& falcons) {
   JsonWriter json;
   json.beginObject().key("devices").beginArray();
   for (const auto* arm : host.arms()) writeDevice(*arm, "arm", json);
   for (const auto* display : host.displays()) writeDevice(*display, "display", json);
+  for (const auto& falcon : falcons) {
+    json.beginObject().key("kind").value("falcon").key("port").value(falcon.port).key("serial").value(falcon.serial).endObject();
+  }
   json.endArray().key("problems").beginArray();
   for (const std::string& problem : host.problems()) json.value(problem);
   fmt::print("{}\n", json.endArray().endObject().text());
@@ -56,13 +66,15 @@ int listDevices(const DevicesListArguments& arguments) {
   const auto usb = startUsb();
   UsbHost& host = *usb;
   if (host.waitFor(1, 0, arguments.timeout)) std::this_thread::sleep_for(std::chrono::milliseconds(200));  // the others, too
+  const auto falcons = devices::falcon::listFalcons();
   if (arguments.json) {
-    printJson(host);
+    printJson(host, falcons);
   } else {
     for (const auto* arm : host.arms()) listArm(*arm);
     for (const auto* display : host.displays()) listDisplay(*display);
+    for (const auto& falcon : falcons) listFalcon(falcon);
     for (const std::string& problem : host.problems()) fmt::print("{}\n", problem);
-    if (host.arms().empty() && host.displays().empty() && host.problems().empty()) {
+    if (host.arms().empty() && host.displays().empty() && falcons.empty() && host.problems().empty()) {
       fmt::print(
           "No device of pincer's USB protocol is plugged in. Check cable and power; `lsusb` must show 1209:0001 (docs/devices.md).\n");
     }

@@ -24,6 +24,7 @@ using devices::usb::UsbHost;
 struct DevicesTestArguments {
   std::string serial;
   double seconds = 3, force = 0;
+  double watchdog_ms = 5;
 };
 
 // Streams and commands for a while: zero force (or a small one along z), tactors on a slow circle.
@@ -31,7 +32,13 @@ class DeviceTest final : public ServoCycle {
  public:
   DeviceTest(UsbHost& host, std::vector<UsbArm*> arms, std::vector<UsbDisplay*> displays, const DevicesTestArguments& arguments)
       : host_(host), arms_(std::move(arms)), displays_(std::move(displays)), arguments_(arguments), gates_(arms_.size()) {
-    for (UsbArm* arm : arms_) before_.push_back(arm->counts());
+    for (UsbArm* arm : arms_) {
+      before_.push_back(arm->counts());
+      devices::GateLimits limits;
+      limits.watchdog_time = 1e-3 * kOldestSample * arguments.watchdog_ms;
+      limits_.push_back(devices::within(limits, arm->capabilities()));
+      arm->setDeadline(1e-3 * kArmDeadline * arguments.watchdog_ms);
+    }
     for (UsbDisplay* display : displays_) before_.push_back(display->counts());
     if (arguments.force == 0) return;
     for (std::size_t i = 0; i < arms_.size(); ++i) devices::arm(gates_[i]), arms_[i]->arm();
@@ -57,7 +64,7 @@ class DeviceTest final : public ServoCycle {
     for (std::size_t i = 0; i < arms_.size(); ++i) {
       well &= line(*arms_[i], before_[i]);
       if (gates_[i].trip == devices::Trip::kNone) continue;
-      fmt::print("  {}\n", devices::describe(gates_[i].trip));
+      fmt::print("  {}\n", devices::describe(limits_[i], gates_[i]));
       well = false;
     }
     for (std::size_t i = 0; i < displays_.size(); ++i) well &= line(*displays_[i], before_[arms_.size() + i]);
@@ -70,7 +77,7 @@ class DeviceTest final : public ServoCycle {
     in.sample = arms_[i]->sample();
     in.now = now;
     in.f_D = Vec3(0, 0, arguments_.force);
-    arms_[i]->commandForce(devices::gateForce(limits_, in, gates_[i]));
+    arms_[i]->commandForce(devices::gateForce(limits_[i], in, gates_[i]));
   }
   template <typename Device>
   bool line(Device& device, const LinkCounts& before) {
@@ -89,7 +96,7 @@ class DeviceTest final : public ServoCycle {
   std::vector<UsbArm*> arms_;
   std::vector<UsbDisplay*> displays_;
   const DevicesTestArguments& arguments_;
-  devices::GateLimits limits_;
+  std::vector<devices::GateLimits> limits_;
   std::vector<devices::GateState> gates_;
   std::vector<LinkCounts> before_;
   std::int64_t epoch_ = 0, ticks_ = 0;
@@ -119,7 +126,7 @@ int testDevices(const DevicesTestArguments& arguments) {
                           : fmt::format("No device {} is ready on USB. See what is there: pincer devices list", arguments.serial));
   }
   DeviceTest test(host, arms, displays, arguments);
-  const ServoOptions servo{.real_time = true};
+  const ServoOptions servo{.real_time = true, .watchdog = 1e-3 * arguments.watchdog_ms};
   const ServoReport report = runServo(servo, test, interrupted);
   test.cutForces();
   fmt::print("{}\n", servoText(report, 1 / servo.rate));
@@ -136,6 +143,9 @@ void addDevicesTest(CLI::App& devices, int& exit_code) {
   command->add_option("--seconds", arguments->seconds, "How long [s]")->check(CLI::Range(0.1, 3600.0))->capture_default_str();
   command->add_option("--force", arguments->force, "Pushes along the arm's z axis, through the gate [N]; nobody may wear it")
       ->check(CLI::Range(-1.0, 1.0))
+      ->capture_default_str();
+  command->add_option("--watchdog", arguments->watchdog_ms, "So long may the program stall before forces are cut [ms]")
+      ->check(CLI::Range(2.0, 100.0))
       ->capture_default_str();
   command->footer("\nThe tactors move; without --force the arms don't.\n\nExample:\n  pincer devices test --seconds 10");
   command->callback([arguments, &exit_code] { exit_code = testDevices(*arguments); });

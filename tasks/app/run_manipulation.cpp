@@ -132,7 +132,7 @@ Stage setStage(const ManipulationArguments& arguments, ManipulationSessionOption
   if (stage.window) options.host = stage.window->host();
   if (choice != "sim") options.devices = choice;
   if (stage.devices) {
-    options.host.hands = [devices = stage.devices.get(), oldest = 0.6 * options.servo.watchdog](HandTrial& trial) {
+    options.host.hands = [devices = stage.devices.get(), oldest = kOldestSample * options.servo.watchdog](HandTrial& trial) {
       return std::make_unique<LiveHands>(trial, *devices, oldest);
     };
     options.host.arm = [asked = arguments.devices](const std::string& why) { return operatorArms(asked, why); };

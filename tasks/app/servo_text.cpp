@@ -24,7 +24,10 @@ std::string servoText(const ServoReport& report, double period) {
                                  report.wall, report.missed, 100 * static_cast<double>(report.missed) / due);
   text += percentiles("began late by", report.lateness) + "\n" + percentiles("took", report.duration);
   for (const StageTimes& stage : report.stages) text += "\n" + percentiles(("  " + stage.name).c_str(), stage.times);
-  if (report.watchdog_tripped) text += "\nThe watchdog cut the forces: ticks stalled for longer than it allows. Close other programs.";
+  if (report.watchdog_tripped)
+    text +=
+        "\nThe watchdog cut the forces: the loop stalled for longer than it allows. Close other programs, permit real-time priority "
+        "(docs/devices.md), or allow longer stalls with --watchdog.";
   if (!report.note.empty()) text += "\n" + report.note;
   return text;
 }

@@ -100,8 +100,9 @@ void HandTrial::leadHome() {
 }
 
 bool HandTrial::faulted(double now, std::uint32_t status) {
-  for (const MountState& mount : state_.mounts) {
-    if (mount.gate.trip != devices::Trip::kNone) trip_ = mount.gate.trip;
+  for (std::size_t i = 0; i < state_.mounts.size() && trip_ == devices::Trip::kNone; ++i) {
+    trip_ = state_.mounts[i].gate.trip;
+    tripped_ = i;
   }
   if (trip_ == devices::Trip::kNone && (status & engine::kStateNotFinite) == 0) return false;
   cutForces(trip_ == devices::Trip::kNone ? devices::Trip::kNotFinite : trip_);
@@ -168,10 +169,17 @@ void HandTrial::cutForces(devices::Trip cause) {
   for (FingerOutputs& output : scratch_.outputs) output.f_D.setZero();
 }
 
+// A loop that stalls isn't one finger's affair.
+std::string HandTrial::fault() const {
+  if (trip_ == devices::Trip::kNone) return "";
+  const std::string why = devices::describe(scene_.model.mounts[tripped_].gate, state_.mounts[tripped_].gate);
+  return trip_ == devices::Trip::kMissedDeadline ? why : fmt::format("{}: {}", scene_.model.grasp.fingers[tripped_].name, why);
+}
+
 void HandTrial::finish() {
   for (const Event& event : events_) {
     const bool tripped = trip_ != devices::Trip::kNone && std::string(event.kind) == "gate_trip";
-    sink_.event({head_.trial, event.time, event.kind, tripped ? devices::describe(trip_) : event.detail});
+    sink_.event({head_.trial, event.time, event.kind, tripped ? fault() : event.detail});
   }
   const auto triple = [](const Vec3& v) { return std::array<double, 3>{v.x(), v.y(), v.z()}; };
   for (const Reading& r : readings_) {

@@ -41,6 +41,8 @@ class HandTrial {
   const TickState& state() const { return state_; }
   const TickScratch& scratch() const { return scratch_; }
   double simulatedTime() const { return last_; }  // [s]
+  // Why the forces were cut, with the remedy; empty: they weren't. Once the trial is over.
+  std::string fault() const;
 
   // The tactors stay where they are, whatever the condition says. Before the first step.
   void parkTactors();
@@ -112,6 +114,7 @@ class HandTrial {
   std::int64_t tick_ = 0;
   const char* outcome_ = "fault";
   devices::Trip trip_ = devices::Trip::kNone;
+  std::size_t tripped_ = 0;  // the finger
   Histogram tick_times_;
   std::vector<Event> events_;
   std::vector<Reading> readings_;

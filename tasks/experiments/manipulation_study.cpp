@@ -129,10 +129,10 @@ std::unique_ptr<Participant> makeParticipant(const ManipulationStudy& study, con
 
 namespace {
 
-// One trial by whoever does it. `clean`: no gate tripped.
+// One trial by whoever does it. `fault`: why a gate tripped; empty: none did.
 struct DoneTrial {
   ServoReport servo;
-  bool clean = true;
+  std::string fault;
 };
 DoneTrial runTrial(const ManipulationStudy& study, HandTrial& trial, const ManipulationTrial& spec, const ServoOptions& servo,
                    const std::atomic<bool>& interrupted, const StudyHooks& hooks, const TrialProgress& at) {
@@ -143,8 +143,7 @@ DoneTrial runTrial(const ManipulationStudy& study, HandTrial& trial, const Manip
   DoneTrial done;
   done.servo = hooks.host.serve ? hooks.host.serve(cycle, at.done, at.total) : runServo(servo, cycle, interrupted);
   hands->stop();
-  const auto& mounts = trial.state().mounts;
-  done.clean = std::all_of(mounts.begin(), mounts.end(), [](const MountState& m) { return m.gate.trip == devices::Trip::kNone; });
+  done.fault = trial.fault();
   return done;
 }
 
@@ -158,7 +157,7 @@ std::size_t runManipulationStudy(const ManipulationStudy& study, const ServoOpti
     if (hooks.progress) hooks.progress({done, trials.size()});
   };
   std::size_t done = hooks.finished.size();
-  if (hooks.host.arm && !hooks.host.arm("the session begins")) return done;
+  if (hooks.host.arm && !hooks.host.arm("The session begins.")) return done;
   report(done);
   for (const ManipulationTrial& spec : trials) {
     if (hooks.finished.contains(spec.trial())) continue;
@@ -168,8 +167,7 @@ std::size_t runManipulationStudy(const ManipulationStudy& study, const ServoOpti
     if (ended.servo.interrupted) break;
     trial->finish();
     report(++done);
-    const bool goes_on =
-        ended.clean || done == trials.size() || !hooks.host.arm || hooks.host.arm("a fault cut the forces in the last trial");
+    const bool goes_on = ended.fault.empty() || done == trials.size() || !hooks.host.arm || hooks.host.arm(ended.fault);
     if (!goes_on) break;
   }
   return done;

@@ -66,6 +66,7 @@ ShapeTrial::ShapeTrial(const ShapeTrialSetup& setup, ShapeExplorer& explorer, St
       scratch_(model_),
       arm_(shapeArm()),
       inputs_(1) {
+  model_.mounts[0].gate = devices::within(model_.mounts[0].gate, arm_.capabilities());
   explorer_.begin(shapeCues(setup));
   const ShapeAction action = explorer_.act({arm_.sample(), Vec3::Zero(), display_.sample()}, 0, Cue::kNone);
   arm_.setHand(action.finger.pull);

@@ -34,6 +34,7 @@ class ShapeTrial final : public ServoCycle {
 
   // Once the servo has returned.
   bool answered() const { return answered_; }
+  const devices::GateLimits& gate() const { return model_.mounts[0].gate; }
   void measure(ResponseRecord& response) const;
 
  private:

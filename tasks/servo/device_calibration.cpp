@@ -47,8 +47,10 @@ void writeCalibration(const DeviceCalibration& calibration, const std::string& p
   writeAtomically(path, text + "\n  }\n}\n");
 }
 
+bool calibrationIsSound(double value) { return std::abs(value) <= 10; }  // false for NaN
+
 void checkCalibrationValue(const std::string& name, double value) {
-  if (std::abs(value) <= 10) return;  // false for NaN
+  if (calibrationIsSound(value)) return;
   throw InputError(fmt::format("calibration: {} = {} is out of range [-10, 10]. Lengths are in metres, angles in radians.", name, value));
 }
 

@@ -22,6 +22,9 @@ class DeviceError : public std::runtime_error {
 // Tones for a person, on devices that have a buzzer or a lamp.
 enum class DeviceTone { kStart, kSuccess, kEnd };
 
+// Of the time that the loop may stall (--watchdog): so old may a sample be, and after so long does a USB arm go limp by itself.
+inline constexpr double kOldestSample = 0.6, kArmDeadline = 0.8;
+
 class HandDevices {
  public:
   virtual ~HandDevices() = default;
@@ -50,7 +53,7 @@ struct DeviceOptions {
   std::vector<std::string> arms, displays;  // serial numbers, per finger; empty: in the order of the serial numbers
   bool needs_displays = true;               // false: a finger may go without
   double timeout = 3;                       // for devices that are plugged in to become ready [s]
-  double watchdog = 5e-3;                   // so long may the program stall before forces are cut [s]; arms go limp after 0.8 of it
+  double watchdog = 5e-3;                   // so long may the program stall before forces are cut [s]
   std::vector<std::string> calibrations;    // usb: files of arms (device_calibration.h)
   std::string recording;                    // replay: a session's store, or a CSV file of samples (pincer export)
   std::string firmware;                     // falcon: the maker's image

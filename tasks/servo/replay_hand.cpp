@@ -22,6 +22,7 @@ std::vector<std::string> csvCells(const std::string& line) {
   std::vector<std::string> cells;
   std::stringstream stream(line);
   for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
+  if (!cells.empty() && cells.back().ends_with('\r')) cells.back().pop_back();  // as other systems end a line
   return cells;
 }
 
@@ -102,11 +103,12 @@ class ReplayRecording {
     const auto time = columnOf(header, "time_s"), trial = columnOf(header, "trial");
     if (!time) throw InputError(path + ":1: column time_s is missing. `pincer export` writes it.");
     for (int i = 0; i < fingers; ++i) columns_.push_back(columnsOf(path, header, i));
-    std::string first_trial;
+    const auto trialOf = [&](const std::vector<std::string>& row) { return trial && *trial < row.size() ? row[*trial] : ""; };
+    std::optional<std::string> first_trial;
     for (int number = 2; std::getline(file, line); ++number) {
       const auto row = csvCells(line);
-      if (trial && number == 2) first_trial = row.at(*trial);
-      if (trial && row.at(*trial) != first_trial) break;
+      if (!first_trial) first_trial = trialOf(row);
+      if (trialOf(row) != *first_trial) break;
       for (std::size_t i = 0; i < places_.size(); ++i) {
         const auto at = [&](std::size_t k) { return numberIn(path, number, row, columns_[i].at[k]); };
         places_[i].push_back({numberIn(path, number, row, *time), Vec3(at(0), at(1), at(2))});

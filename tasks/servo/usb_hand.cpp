@@ -2,6 +2,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <chrono>
+#include <numbers>
+#include <thread>
 
 #include "contact/error.h"
 #include "devices/usb/usb_host.h"
@@ -40,9 +43,9 @@ class UsbHand final : public HandDevices {
     for (std::size_t i = 0; i < fingers; ++i) {
       arms_.push_back(chosenDevice(host_.arms(), options.arms, i, "arm"));
       displays_.push_back(chosenDevice(host_.displays(), options.displays, i, "display"));
-      arms_.back()->setDeadline(0.8 * options.watchdog);
+      arms_.back()->setDeadline(kArmDeadline * options.watchdog);
     }
-    bases_.resize(fingers);
+    for (UsbArm* arm : arms_) bases_.push_back(armBaseIn(keptCalibration(*arm)));
     for (const std::string& path : options.calibrations) calibrate(path);
   }
   ArmBase base(int finger) const override { return bases_[static_cast<std::size_t>(finger)]; }
@@ -53,12 +56,19 @@ class UsbHand final : public HandDevices {
   std::vector<std::string> describe() override {
     std::vector<std::string> lines;
     for (std::size_t i = 0; i < arms_.size(); ++i) {
-      lines.push_back(fmt::format("finger {}: {}, {}", i, arms_[i]->identity(), displays_[i] ? displays_[i]->identity() : "no display"));
+      lines.push_back(fmt::format("finger {}: {}, {}{}", i, arms_[i]->identity(), displays_[i] ? displays_[i]->identity() : "no display",
+                                  describe(bases_[i])));
     }
     return lines;
   }
 
  private:
+  static std::string describe(const ArmBase& base) {
+    if (base.offset_W.isZero(0) && base.turn == 0) return "";
+    return fmt::format("; its base is off by {:.1f}, {:.1f}, {:.1f} mm and turned by {:.1f} degrees", 1e3 * base.offset_W.x(),
+                       1e3 * base.offset_W.y(), 1e3 * base.offset_W.z(), 180 / std::numbers::pi * base.turn);
+  }
+  // A file counts over what the arm itself keeps.
   void calibrate(const std::string& path) {
     const DeviceCalibration calibration = readCalibration(path);
     const auto found =
@@ -89,6 +99,37 @@ class UsbHand final : public HandDevices {
 }  // namespace
 
 std::unique_ptr<HandDevices> openUsbHand(const DeviceOptions& options) { return std::make_unique<UsbHand>(options); }
+
+bool waitUntil(const std::function<bool()>& done, double timeout) {
+  const auto until = std::chrono::steady_clock::now() + std::chrono::duration<double>(timeout);
+  while (!done()) {
+    if (std::chrono::steady_clock::now() > until) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  return true;
+}
+
+DeviceCalibration keptCalibration(devices::usb::DeviceLink& device) {
+  DeviceCalibration kept;
+  kept.serial = device.deviceIdentity().serial;
+  const auto whole = [&] {
+    kept.values = device.calibration();
+    return device.calibrationSize() > 0 && kept.values.size() == device.calibrationSize();
+  };
+  if (!waitUntil([&] { return whole() || device.calibrationSize() > 0; }, 1)) return kept;
+  if (!waitUntil(whole, 3)) {
+    throw DeviceError(fmt::format("{} tells only {} of its {} calibration values. Unplug it and plug it in again.", kept.serial,
+                                  kept.values.size(), device.calibrationSize()));
+  }
+  for (const auto& [name, value] : kept.values) {
+    if (calibrationIsSound(value)) continue;
+    throw DeviceError(
+        fmt::format("{}: its calibration value {} = {} is out of range [-10, 10] (m or rad). Set it: pincer devices calibrate "
+                    "{} --set {}=VALUE",
+                    kept.serial, name, value, kept.serial, name));
+  }
+  return kept;
+}
 
 std::unique_ptr<UsbHost> startUsb() {
   try {

@@ -6,6 +6,7 @@
 
 #include "devices/usb/usb_host.h"
 #include "tests/emulation/emulated_bus.h"
+#include "tests/emulation/firmware.h"
 #include "tests/emulation/usbfs_interpose.h"
 
 namespace pincer::tests {

@@ -89,7 +89,7 @@ TEST_F(UsbFaults, ADeviceThatOnlyFailsIsGivenUpAndComesBackWhenPluggedInAgain) {
 TEST_F(UsbFaults, ADeviceThatIsSilentIsNamed) {
   UsbBench bench;
   const auto firmware = bench.addArm("A1");
-  bench.bus.device(0).with([](auto& f) { f.setSilent(true); });
+  bench.bus.device(0).with([&] { firmware->setSilent(true); });
   UsbHost host(bench.clock());
   ASSERT_TRUE(eventually([&] {
     bench.advance(10e-3);

@@ -12,7 +12,7 @@ namespace pincer::tests {
 class FaultyServo {
   template <typename F>
   auto with(F f) {
-    return bench_.bus.device(0).with([&](auto&) { return f(); });
+    return bench_.bus.device(0).with(f);
   }
   std::int64_t heard() {
     return with([&] { return firmware_.commands() + firmware_.badFrames(); });
@@ -37,7 +37,8 @@ class FaultyServo {
     asked_ = devices::gateForce(limits_, in, gate_);
     arm_->commandForce(asked_);
     // The USB thread gets a chance, not a guarantee: a lost command is one of the faults.
-    for (int spin = 0; spin < 200 && heard() == before; ++spin) std::this_thread::yield();
+    const auto until = std::chrono::steady_clock::now() + std::chrono::milliseconds(2);  // where a machine is busy, one yield takes 50
+    while (heard() == before && std::chrono::steady_clock::now() < until) std::this_thread::yield();
     look();
   }
   devices::usb::UsbArm& arm() { return *arm_; }

@@ -57,10 +57,10 @@ TEST_F(Usb, CarriesTwoArmsAndTwoDisplaysAtOneKilohertzWithoutLosingAFrame) {
     }
     for (auto* display : displays) display->command({false, Vec2(1e-6 * i, 0)});
     ASSERT_TRUE(eventually([&] {
-      return bench.bus.device(0).with([&](auto&) { return first->commands(); }) - before[0] >= i &&
-             bench.bus.device(1).with([&](auto&) { return second->commands(); }) - before[1] >= i &&
-             bench.bus.device(2).with([&](auto&) { return left->commands(); }) - before[2] >= i &&
-             bench.bus.device(3).with([&](auto&) { return right->commands(); }) - before[3] >= i;
+      return bench.bus.device(0).with([&] { return first->commands(); }) - before[0] >= i &&
+             bench.bus.device(1).with([&] { return second->commands(); }) - before[1] >= i &&
+             bench.bus.device(2).with([&] { return left->commands(); }) - before[2] >= i &&
+             bench.bus.device(3).with([&] { return right->commands(); }) - before[3] >= i;
     })) << "tick "
         << i;
   }
@@ -83,9 +83,9 @@ TEST_F(Usb, AnArmTakesNoForceBeforeItIsArmed) {
   ASSERT_TRUE(findAll(bench, host, 1, 0));
   auto* arm = host.arms()[0];
   const auto send = [&](const Vec3& f) {
-    const auto before = bench.bus.device(0).with([&](auto&) { return firmware->commands(); });
+    const auto before = bench.bus.device(0).with([&] { return firmware->commands(); });
     arm->commandForce(f);
-    ASSERT_TRUE(eventually([&] { return bench.bus.device(0).with([&](auto&) { return firmware->commands(); }) > before; }));
+    ASSERT_TRUE(eventually([&] { return bench.bus.device(0).with([&] { return firmware->commands(); }) > before; }));
   };
   send(Vec3(1, 0, 0));
   EXPECT_EQ(firmware->force(), Vec3::Zero());
@@ -93,7 +93,7 @@ TEST_F(Usb, AnArmTakesNoForceBeforeItIsArmed) {
   send(Vec3(1, 0, 0));
   EXPECT_EQ(firmware->force(), Vec3(1, 0, 0));
   arm->stop();
-  ASSERT_TRUE(eventually([&] { return bench.bus.device(0).with([&](auto&) { return firmware->limp(); }); }));
+  ASSERT_TRUE(eventually([&] { return bench.bus.device(0).with([&] { return firmware->limp(); }); }));
   EXPECT_EQ(firmware->force(), Vec3::Zero());
   send(Vec3(1, 0, 0));
   EXPECT_EQ(firmware->force(), Vec3::Zero()) << "stopped arms stay limp until they are armed again";
@@ -111,7 +111,7 @@ TEST_F(Usb, AnArmThatHearsNothingGoesLimpWithinFiveMillisecondsAndStaysSo) {
   auto* arm = host.arms()[0];
   arm->arm();
   arm->commandForce(Vec3(0, 0, 2));
-  ASSERT_TRUE(eventually([&] { return bench.bus.device(0).with([&](auto&) { return firmware->force().z() == 2; }); }));
+  ASSERT_TRUE(eventually([&] { return bench.bus.device(0).with([&] { return firmware->force().z() == 2; }); }));
   for (int i = 0; i < 3; ++i) bench.advance(1e-3);
   EXPECT_EQ(firmware->force().z(), 2);
   bench.advance(1e-3);
@@ -126,6 +126,41 @@ TEST_F(Usb, AnArmThatHearsNothingGoesLimpWithinFiveMillisecondsAndStaysSo) {
   EXPECT_EQ(firmware->force(), Vec3::Zero());
   arm->arm();
   EXPECT_TRUE(arm->sample().valid);
+}
+
+// The deadline began when the command was sent, not when it was asked for: a stall of program and USB thread kept the force for longer.
+TEST_F(Usb, ACommandThatWasHeldUpDiesWhenItWouldHaveAnyway) {
+  UsbBench bench;
+  const auto firmware = bench.addArm("A1");
+  std::atomic<bool> held{false};
+  UsbHost host([&, servo = std::this_thread::get_id()] {
+    while (held && std::this_thread::get_id() != servo) std::this_thread::sleep_for(std::chrono::microseconds(100));
+    return bench.now_ns.load();
+  });
+  ASSERT_TRUE(findAll(bench, host, 1, 0));
+  auto* arm = host.arms()[0];
+  const auto force = [&] { return bench.bus.device(0).with([&] { return firmware->force().z(); }); };
+  const auto millisecondsOfForce = [&](int held_up) {
+    arm->arm();
+    held = true;
+    arm->commandForce(Vec3(0, 0, 2));
+    for (int i = 0; i < held_up; ++i) bench.advance(1e-3);
+    held = false;
+    const bool came = eventually([&] { return force() == 2; });
+    int ms = held_up;
+    for (; came && force() > 0 && ms < 20; ++ms) bench.advance(1e-3);
+    return came ? ms : -1;
+  };
+  for (const int held_up : {0, 1, 2, 3}) EXPECT_EQ(millisecondsOfForce(held_up), 4) << "held up for " << held_up << " ms";
+  const auto commands = firmware->commands();
+  arm->arm();
+  held = true;
+  arm->commandForce(Vec3(0, 0, 2));
+  for (int i = 0; i < 5; ++i) bench.advance(1e-3);
+  held = false;
+  arm->commandForce(Vec3(0, 0, 1));  // the next goes out
+  ASSERT_TRUE(eventually([&] { return force() == 1; }));
+  EXPECT_EQ(firmware->commands(), commands + 1) << "older than its deadline: never sent";
 }
 
 TEST_F(Usb, UnpluggedArmIsZeroForceInTheNextTickAndStreamsAgainButForcelessWhenPluggedIn) {
@@ -170,7 +205,7 @@ TEST_F(Usb, UnpluggedArmIsZeroForceInTheNextTickAndStreamsAgainButForcelessWhenP
   EXPECT_EQ(firmware->force(), Vec3::Zero()) << "force came back without an operator";
   ASSERT_TRUE(eventually([&] {
     armedTick();
-    return bench.bus.device(0).with([&](auto&) { return firmware->force().z(); }) > 0.01;
+    return bench.bus.device(0).with([&] { return firmware->force().z(); }) > 0.01;
   }));
   EXPECT_EQ(arm->counts().unplugs, 1);
   EXPECT_EQ(arm->counts().connects, 2);
@@ -184,7 +219,7 @@ TEST_F(Usb, ADisplayParksWhenTheProgramFallsSilent) {
   auto* display = host.displays()[0];
   EXPECT_TRUE(display->command({false, Vec2(0.05, 0)})) << "out of reach";
   EXPECT_FALSE(display->command({false, Vec2(0.005, 0)}));
-  ASSERT_TRUE(eventually([&] { return bench.bus.device(0).with([&](auto&) { return !firmware->parked(); }); }));
+  ASSERT_TRUE(eventually([&] { return bench.bus.device(0).with([&] { return !firmware->parked(); }); }));
   for (int i = 0; i < 60; ++i) bench.advance(1e-3);
   EXPECT_FALSE(firmware->parked());
   for (int i = 0; i < 60; ++i) bench.advance(1e-3);
@@ -192,22 +227,24 @@ TEST_F(Usb, ADisplayParksWhenTheProgramFallsSilent) {
   ASSERT_TRUE(eventually([&] { return display->sample().place_L && display->sample().place_L->x() > 1e-3; }));
 }
 
+// A value was written to the place of its name among the names, whatever index the device keeps it at.
 TEST_F(Usb, ReadsAndWritesTheDevicesCalibration) {
   UsbBench bench;
   const auto firmware = bench.addArm("A1");
   UsbHost host(bench.clock());
   ASSERT_TRUE(findAll(bench, host, 1, 0));
   auto* arm = host.arms()[0];
-  ASSERT_TRUE(eventually([&] {
+  const auto whole = [&] {
     bench.advance(1e-3);
-    return arm->calibration().size() == 3;
-  }));
-  arm->writeCalibration({1, 0, "base_y", 0.125});
-  ASSERT_TRUE(eventually([&] {
-    bench.advance(1e-3);
-    return arm->calibration()["base_y"] == 0.125;
-  }));
-  EXPECT_EQ(firmware->calibration()["base_y"], 0.125);
+    return arm->calibration().size() == 4;
+  };
+  ASSERT_TRUE(eventually(whole));
+  EXPECT_FALSE(arm->writeCalibration("gain", 1)) << "it keeps no such value";
+  ASSERT_TRUE(arm->writeCalibration("base_turn", 0.125));
+  ASSERT_TRUE(eventually([&] { return whole() && arm->calibration()["base_turn"] == 0.125; }));
+  EXPECT_EQ(firmware->calibration()[3], std::pair(std::string("base_turn"), 0.125));
+  EXPECT_EQ(firmware->calibration()[0], std::pair(std::string("base_x"), 0.0));
+  EXPECT_EQ(firmware->badFrames(), 0);
 }
 
 TEST_F(Usb, ADeviceThatReportsAFaultIsNoLongerReady) {
@@ -216,7 +253,7 @@ TEST_F(Usb, ADeviceThatReportsAFaultIsNoLongerReady) {
   UsbHost host(bench.clock());
   ASSERT_TRUE(findAll(bench, host, 1, 0));
   auto* arm = host.arms()[0];
-  bench.bus.device(0).with([&](auto& f) { f.setState(DeviceState::kFaulted, devices::usb::kEmergencyStop); });
+  bench.bus.device(0).with([&] { firmware->setState(DeviceState::kFaulted, devices::usb::kEmergencyStop); });
   ASSERT_TRUE(eventually([&] {
     bench.advance(1e-3);
     return arm->state() == DeviceState::kFaulted;
@@ -228,15 +265,15 @@ TEST_F(Usb, ADeviceThatReportsAFaultIsNoLongerReady) {
 // It was read in the order of the transfers' places, not of their coming: every other pair of frames counted as late.
 TEST_F(Usb, TransfersThatCompleteTogetherAreReadInTheOrderOfTheirCompletion) {
   UsbBench bench;
-  bench.addArm("A1");
+  const auto firmware = bench.addArm("A1");
   UsbHost host(bench.clock());
   ASSERT_TRUE(findAll(bench, host, 1, 0));
   auto* arm = host.arms()[0];
   auto accepted = arm->counts().accepted;
   for (int round = 0; round < 100; ++round) {
     const int frames = 2 + round % 4;  // so that the next to come back is now the one, now the other
-    bench.bus.device(0).with([&](auto& firmware) {
-      for (int i = 0; i < frames; ++i) firmware.advance(2e-3);
+    bench.bus.device(0).with([&] {
+      for (int i = 0; i < frames; ++i) firmware->advance(2e-3);
     });
     bench.bus.device(0).advance(1e-4);
     ASSERT_TRUE(eventually([&] { return arm->counts().accepted >= accepted + frames; })) << "round " << round;
@@ -251,8 +288,8 @@ TEST_F(Usb, AProgramThatGetsNoProcessorForAWhileLosesNoFrame) {
   UsbBench bench;
   bench.addArm("A1");
   std::atomic<bool> held{false};
-  UsbHost host([&] {  // the USB thread asks for the time: where the machine holds it up
-    while (held) std::this_thread::sleep_for(std::chrono::microseconds(100));
+  UsbHost host([&, servo = std::this_thread::get_id()] {  // the USB thread asks for the time: where the machine holds it up
+    while (held && std::this_thread::get_id() != servo) std::this_thread::sleep_for(std::chrono::microseconds(100));
     return bench.now_ns.load();
   });
   ASSERT_TRUE(findAll(bench, host, 1, 0));

@@ -8,7 +8,6 @@
 #include <thread>
 #include <vector>
 
-#include "tests/emulation/firmware.h"
 #include "tests/emulation/usbfs_device.h"
 
 namespace pincer::emulation {
@@ -24,13 +23,13 @@ class EmulatedBus {
   static std::string obstacle();
 
   // A device, plugged in. Its number.
-  int add(std::shared_ptr<Firmware> firmware);
+  int add(std::shared_ptr<UsbGadget> gadget);
   void unplug(int device);
   void plug(int device);
   // Makes the device of the next plugging in, so that faults can be put at its first transfers.
   void prepare(int device);
   UsbfsDevice& device(int device) { return *slots_[static_cast<std::size_t>(device)].device; }
-  // Descriptors and endpoints that the device shows from its next plugging in on; hexadecimal. Empty: sound ones.
+  // Descriptors that the device shows from its next plugging in on; hexadecimal. Empty: its own.
   void setDescriptors(int device, const std::string& hex) { slots_[static_cast<std::size_t>(device)].descriptors = hex; }
 
   // All devices' time; in steps of the caller's, or as the wall clock goes, every millisecond.
@@ -41,7 +40,7 @@ class EmulatedBus {
 
  private:
   struct Slot {
-    std::shared_ptr<Firmware> firmware;
+    std::shared_ptr<UsbGadget> gadget;
     std::shared_ptr<UsbfsDevice> device;
     std::string node, path, descriptors;
     bool plugged = false, prepared = false;

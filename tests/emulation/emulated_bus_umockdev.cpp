@@ -13,14 +13,6 @@
 namespace pincer::emulation {
 namespace {
 
-// Device, configuration, vendor interface, endpoints 0x01 and 0x81 (interrupt, 64 bytes, every frame).
-constexpr const char* kDescriptors =
-    "120100020000004009120100000101020301"
-    "09022000010100C032"
-    "0904000002FF000000"
-    "07050103400001"
-    "07058103400001";
-
 void require(bool ok, GError* error, const char* what) {
   if (ok) return;
   const std::string message = std::string(what) + ": " + (error != nullptr ? error->message : "failed");
@@ -48,9 +40,9 @@ EmulatedBus::~EmulatedBus() {
   for (std::size_t i = 0; i < slots_.size(); ++i) unplug(static_cast<int>(i));
 }
 
-int EmulatedBus::add(std::shared_ptr<Firmware> firmware) {
+int EmulatedBus::add(std::shared_ptr<UsbGadget> gadget) {
   Slot slot;
-  slot.firmware = std::move(firmware);
+  slot.gadget = std::move(gadget);
   slot.path = fmt::format("/devices/pci0000:00/0000:00:14.0/usb1/1-{}", slots_.size() + 1);
   slots_.push_back(std::move(slot));
   const int device = static_cast<int>(slots_.size()) - 1;
@@ -60,7 +52,7 @@ int EmulatedBus::add(std::shared_ptr<Firmware> firmware) {
 
 void EmulatedBus::prepare(int device) {
   Slot& slot = slots_[static_cast<std::size_t>(device)];
-  slot.device = std::make_shared<UsbfsDevice>(slot.firmware);
+  slot.device = std::make_shared<UsbfsDevice>(slot.gadget);
   slot.prepared = true;
 }
 
@@ -69,16 +61,16 @@ void EmulatedBus::plug(int device) {
   if (slot.plugged) return;
   const int address = next_address_;
   next_address_ = next_address_ == 120 ? 2 : next_address_ + 1;  // as Linux counts them up
-  slot.firmware->powerUp();
+  slot.gadget->powerUp();
   if (!slot.prepared) prepare(device);
   slot.prepared = false;
   slot.node = fmt::format("/dev/bus/usb/001/{:03}", address);
   attachUsbfs(slot.node, slot.device);
   const std::string description = fmt::format(
       "P: {}\nN: bus/usb/001/{:03}\nE: SUBSYSTEM=usb\nE: DRIVER=usb\nE: BUSNUM=001\nE: DEVNUM={:03}\nE: DEVNAME=/dev/bus/usb/001/{:03}\n"
-      "E: DEVTYPE=usb_device\nE: PRODUCT=1209/1/100\nA: bConfigurationValue=1\\n\nA: busnum=1\\n\nA: devnum={}\\n\nA: speed=12\\n\n"
+      "E: DEVTYPE=usb_device\nA: bConfigurationValue=1\\n\nA: busnum=1\\n\nA: devnum={}\\n\nA: speed=12\\n\n"
       "H: descriptors={}\n",
-      slot.path, address, address, address, address, slot.descriptors.empty() ? kDescriptors : slot.descriptors);
+      slot.path, address, address, address, address, slot.descriptors.empty() ? slot.gadget->descriptors() : slot.descriptors);
   GError* error = nullptr;
   require(umockdev_testbed_add_from_string(testbed_->testbed, description.c_str(), &error) != 0, error, "emulated device");
   slot.plugged = true;

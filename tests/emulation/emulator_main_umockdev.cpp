@@ -1,8 +1,8 @@
 // device_emulator: runs an unmodified program that finds emulated arms and displays on its USB ports.
 //
-//   device_emulator [--arms N] [--displays N] [--hand] [--unplug SECONDS] [--stop SECONDS] PROGRAM ARGUMENTS...
+//   device_emulator [--arms N] [--displays N] [--falcons N] [--hand] [--unplug SECONDS] [--stop SECONDS] PROGRAM ARGUMENTS...
 //
-// The same firmware as in the tests, in a process of its own. --hand: a simulated participant wears them and picks up the sphere.
+// The same firmware as in the tests, in a process of its own. Falcons take any image of 1,000 bytes. --hand: a simulated participant wears them and picks up the sphere.
 // --unplug: pulls the first arm out after so many seconds and plugs it in again half a second later. --stop: so many seconds after the first
 // force of a motor the program is stopped (SIGSTOP) for half a second; says when the motors had no force any more.
 #include <fmt/format.h>
@@ -25,24 +25,19 @@
 #include <thread>
 
 #include "tests/emulation/emulated_hand.h"
+#include "tests/emulation/falcon_gadget.h"
 #include "tests/emulation/remote_port.h"
 
 namespace pincer::emulation {
 namespace {
 
 using Time = std::chrono::steady_clock;
+constexpr std::size_t kFalconImage = 1000;  // [bytes]
 constexpr std::chrono::milliseconds kPeriod(1);
 constexpr std::chrono::milliseconds kAway(500);  // unplugged, or stopped
 
-constexpr const char* kDescriptors =
-    "120100020000004009120100000101020301"
-    "09022000010100C032"
-    "0904000002FF000000"
-    "07050103400001"
-    "07058103400001";
-
 struct Options {
-  int arms = 2, displays = 2;
+  int arms = 2, displays = 2, falcons = 0;
   bool hand = false;
   double unplug = 0, stop = 0;
   char** program = nullptr;
@@ -75,13 +70,13 @@ class ShownPorts {
   ShownPorts& operator=(const ShownPorts&) = delete;
 
   // The node of the device now at the port.
-  std::string add(std::size_t port) {
+  std::string add(std::size_t port, const std::string& descriptors) {
     const int address = next_address_++;
     const std::string description = fmt::format(
         "P: {}\nN: bus/usb/001/{:03}\nE: SUBSYSTEM=usb\nE: DRIVER=usb\nE: BUSNUM=001\nE: DEVNUM={:03}\nE: DEVNAME=/dev/bus/usb/001/{:03}\n"
-        "E: DEVTYPE=usb_device\nE: PRODUCT=1209/1/100\nA: bConfigurationValue=1\\n\nA: busnum=1\\n\nA: devnum={}\\n\nA: speed=12\\n\n"
+        "E: DEVTYPE=usb_device\nA: bConfigurationValue=1\\n\nA: busnum=1\\n\nA: devnum={}\\n\nA: speed=12\\n\n"
         "H: descriptors={}\n",
-        pathOf(port), address, address, address, address, kDescriptors);
+        pathOf(port), address, address, address, address, descriptors);
     if (umockdev_testbed_add_from_string(testbed_, description.c_str(), nullptr) == 0) giveUp("device");
     return fmt::format("/dev/bus/usb/001/{:03}", address);
   }
@@ -102,6 +97,8 @@ class Emulator {
     for (int i = 0; i < options.displays; ++i) displays_.push_back(std::make_shared<DisplayFirmware>(fmt::format("CLD{}", i + 1)));
     for (const auto& arm : arms_) ports_.push_back(std::make_unique<RemotePort>(arm));
     for (const auto& display : displays_) ports_.push_back(std::make_unique<RemotePort>(display));
+    for (int i = 0; i < options.falcons; ++i)
+      ports_.push_back(std::make_unique<RemotePort>(std::make_shared<FalconGadget>(fmt::format("FALCON{}", i + 1), kFalconImage)));
     nodes_.resize(ports_.size());
     for (std::size_t i = 0; i < ports_.size(); ++i) plug(i, false);
     if (options.hand && options.arms == 2 && options.displays == 2) hand_ = std::make_unique<EmulatedHand>(arms_, displays_);
@@ -157,7 +154,7 @@ class Emulator {
   // `tells`: a program may be listening for plugs.
   void plug(std::size_t i, bool tells) {
     ports_[i]->plug();
-    nodes_[i] = shown_.add(i);
+    nodes_[i] = shown_.add(i, ports_[i]->descriptors());
     if (tells) shown_.tell(i, "add");
   }
   void unplugWhenDue() {
@@ -222,6 +219,7 @@ Options optionsOf(int argc, char** argv) {
     if (name == "--displays") options.displays = static_cast<int>(value());
     if (name == "--unplug") options.unplug = value();
     if (name == "--stop") options.stop = value();
+    if (name == "--falcons") options.falcons = static_cast<int>(value());
     if (name == "--hand") options.hand = true;
   }
   options.program = argv + i;
@@ -240,7 +238,9 @@ Options optionsOf(int argc, char** argv) {
 int run(int argc, char** argv) {
   const Options options = optionsOf(argc, argv);
   if (options.program[0] == nullptr) {
-    fmt::print(stderr, "device_emulator [--arms N] [--displays N] [--hand] [--unplug SECONDS] [--stop SECONDS] PROGRAM ARGUMENTS...\n");
+    fmt::print(
+        stderr,
+        "device_emulator [--arms N] [--displays N] [--falcons N] [--hand] [--unplug SECONDS] [--stop SECONDS] PROGRAM ARGUMENTS...\n");
     return 2;
   }
   // A device doesn't wait for this computer: its thread goes first, if that is permitted.

@@ -1,7 +1,6 @@
 #include "tests/emulation/firmware.h"
 
 #include <algorithm>
-#include <iterator>
 #include <utility>
 
 namespace pincer::emulation {
@@ -26,6 +25,15 @@ devices::SimCldSettings displaySettings(const std::string& serial) {
 }  // namespace
 
 Firmware::Firmware(usb::Identity identity) : identity_(std::move(identity)) { status_.state = devices::DeviceState::kReady; }
+
+// Device, configuration, vendor interface, endpoints 0x01 and 0x81 (interrupt, 64 bytes, every frame).
+std::string Firmware::descriptors() const {
+  return "120100020000004009120100000101020301"
+         "09022000010100C032"
+         "0904000002FF000000"
+         "07050103400001"
+         "07058103400001";
+}
 
 void Firmware::powerUp() {
   replies_.clear();
@@ -77,13 +85,13 @@ void Firmware::identify() {
 
 bool Firmware::answerCalibration(const usb::Frame& frame) {
   const auto asked = usb::calibrationIn(frame);
-  if (!asked) return false;
-  if (frame.type == usb::FrameType::kWriteCalibration) calibration_[asked->name] = asked->value;
-  if (asked->index >= calibration_.size()) return false;
-  const auto entry =
-      frame.type == usb::FrameType::kWriteCalibration ? calibration_.find(asked->name) : std::next(calibration_.begin(), asked->index);
-  const auto index = static_cast<std::uint8_t>(std::distance(calibration_.begin(), entry));
-  reply(usb::toFrame(usb::CalibrationEntry{index, static_cast<std::uint8_t>(calibration_.size()), entry->first, entry->second},
+  if (!asked || asked->index >= calibration_.size()) return false;
+  auto& [name, value] = calibration_[asked->index];
+  if (frame.type == usb::FrameType::kWriteCalibration) {
+    if (asked->name != name) return false;
+    value = asked->value;
+  }
+  reply(usb::toFrame(usb::CalibrationEntry{asked->index, static_cast<std::uint8_t>(calibration_.size()), name, value},
                      usb::FrameType::kCalibration));
   return true;
 }
@@ -113,16 +121,16 @@ void Firmware::stream() {
   reply(state());
 }
 
-bool Firmware::take(usb::FrameBytes& packet) {
-  if (replies_.empty()) return false;
+std::size_t Firmware::take(Packet& packet) {
+  if (replies_.empty()) return 0;
   packet = replies_.front();
   replies_.pop_front();
-  return true;
+  return packet.size();
 }
 
 ArmFirmware::ArmFirmware(const std::string& serial)
     : Firmware({usb::DeviceKind::kArm, 1, 1000, "pincer emu arm", serial, usb::Linkage::kPremium}), plant_(armSettings(serial)) {
-  calibration() = {{"base_x", 0.0}, {"base_y", 0.0}, {"base_z", 0.0}};
+  calibration() = {{"base_x", 0.0}, {"base_y", 0.0}, {"base_z", 0.0}, {"base_turn", 0.0}};
 }
 
 void ArmFirmware::powerUp() {
@@ -132,7 +140,11 @@ void ArmFirmware::powerUp() {
   setForce(Vec3::Zero());
 }
 
-usb::Frame ArmFirmware::capabilities() const { return usb::toFrame(plant_.capabilities()); }
+usb::Frame ArmFirmware::capabilities() const {
+  devices::ArmCapabilities told = plant_.capabilities();
+  if (told_torque_) told.peak_torque = told_torque_;
+  return usb::toFrame(told);
+}
 
 usb::Frame ArmFirmware::state() {
   const devices::ArmSample sample = plant_.sample();

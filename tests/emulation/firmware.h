@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <deque>
-#include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,25 +13,25 @@
 #include "devices/cld/sim_cld.h"
 #include "devices/usb/frame_order.h"
 #include "devices/usb/messages.h"
+#include "tests/emulation/usb_gadget.h"
 
 namespace pincer::emulation {
 
 namespace usb = devices::usb;
 
-class Firmware {
+class Firmware : public UsbGadget {
  public:
   explicit Firmware(usb::Identity identity);
-  virtual ~Firmware() = default;
 
-  void received(std::span<const std::uint8_t> packet);
-  void advance(double dt);  // [s]
-  // The next packet for the host; false if there is none.
-  bool take(usb::FrameBytes& packet);
-  // As after it was plugged in.
-  virtual void powerUp();
+  std::string descriptors() const override;
+  void received(std::span<const std::uint8_t> packet) override;
+  void advance(double dt) override;
+  std::size_t take(Packet& packet) override;
+  void powerUp() override;
 
   const usb::Identity& identity() const { return identity_; }
-  std::map<std::string, double>& calibration() { return calibration_; }
+  // By index; kept while it is without power.
+  std::vector<std::pair<std::string, double>>& calibration() { return calibration_; }
   void setState(devices::DeviceState state, std::uint32_t faults = 0);
   // For tests: a device that is silent, or whose clock runs fast.
   void setSilent(bool silent) { silent_ = silent; }
@@ -58,7 +58,7 @@ class Firmware {
   void stream();
 
   usb::Identity identity_;
-  std::map<std::string, double> calibration_;
+  std::vector<std::pair<std::string, double>> calibration_;
   usb::FrameOrder order_;
   std::deque<usb::FrameBytes> replies_;
   std::uint32_t sequence_ = 0;
@@ -73,6 +73,8 @@ class ArmFirmware final : public Firmware {
   void powerUp() override;
   devices::SimArm& plant() { return plant_; }
   bool limp() const { return limp_; }
+  // That the arm tells of its joints from now on [N m].
+  void tellPeakTorque(const Vec3& torque) { told_torque_ = torque; }
   Vec3 force() const { return force_; }  // being commanded to the motors [N]
   // Whether `p_DF` is a position that was sent among the last ones.
   bool hasSent(const Vec3& p_DF) const;
@@ -93,6 +95,7 @@ class ArmFirmware final : public Firmware {
   double dies_at_ = 0;  // [s]
   usb::Signal signal_ = usb::Signal::kNone;
   std::deque<Vec3> sent_;
+  std::optional<Vec3> told_torque_;
 };
 
 class DisplayFirmware final : public Firmware {

@@ -21,7 +21,7 @@ int run(int argc, char** argv) {
   for (const char* serial : {"CLD1", "CLD2"}) bus.add(displays.emplace_back(std::make_shared<DisplayFirmware>(serial)));
   EmulatedHand hand(arms, displays);
   bus.runInRealTime([&] {
-    const auto locked = [&](int device, const auto& inner) { bus.device(device).with([&](auto&) { inner(); }); };
+    const auto locked = [&](int device, const auto& inner) { bus.device(device).with(inner); };
     locked(0, [&] { locked(1, [&] { locked(2, [&] { locked(3, [&] { hand.act(); }); }); }); });
   });
   const int exit_code = tasks::runApp(argc, argv);

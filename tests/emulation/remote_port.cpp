@@ -34,8 +34,8 @@ void answerOpen(int connection, std::int32_t error, int fd) {
 }  // namespace
 
 void RemotePort::plug() {
-  firmware_->powerUp();
-  device_ = std::make_unique<UsbfsDevice>(firmware_);
+  gadget_->powerUp();
+  device_ = std::make_unique<UsbfsDevice>(gadget_);
   device_->catchUp();  // its time begins
 }
 

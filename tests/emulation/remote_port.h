@@ -12,13 +12,14 @@ namespace pincer::emulation {
 
 class RemotePort {
  public:
-  explicit RemotePort(std::shared_ptr<Firmware> firmware) : firmware_(std::move(firmware)) {}
+  explicit RemotePort(std::shared_ptr<UsbGadget> gadget) : gadget_(std::move(gadget)) {}
   ~RemotePort() { hangUp(); }
   RemotePort(const RemotePort&) = delete;
   RemotePort& operator=(const RemotePort&) = delete;
 
   void plug();
   void unplug();
+  std::string descriptors() const { return gadget_->descriptors(); }
   bool plugged() const { return device_ != nullptr; }
   // Whoever has opened the device; a descriptor to poll, or -1.
   int connection() const { return connection_; }
@@ -39,7 +40,7 @@ class RemotePort {
   void flush();
   void hangUp();
 
-  std::shared_ptr<Firmware> firmware_;
+  std::shared_ptr<UsbGadget> gadget_;
   std::unique_ptr<UsbfsDevice> device_;
   std::map<std::uint64_t, std::unique_ptr<Transfer>> transfers_;
   int connection_ = -1, pipe_ = -1;  // pipe_: the read end of what the program polls

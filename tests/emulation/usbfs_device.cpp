@@ -6,18 +6,21 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <vector>
 
 #include "devices/usb/byte_order.h"
 
 namespace pincer::emulation {
 namespace {
 
-constexpr unsigned kIn = 0x81, kOut = 0x01;
+namespace usb = devices::usb;
 
-void resign(usb::FrameBytes& bytes) { usb::store<std::uint16_t>(bytes, 62, usb::crc16(std::span(bytes).first(62))); }
+constexpr unsigned kIn = 0x81;
+
+void resign(Packet& bytes) { usb::store<std::uint16_t>(bytes, 62, usb::crc16(std::span(bytes).first(62))); }
 
 // The packet as the fault leaves it; sound to the last bit where the fault isn't one of content.
-usb::FrameBytes spoiled(usb::FrameBytes bytes, TransferFault fault, std::int64_t index) {
+Packet spoiled(Packet bytes, TransferFault fault, std::int64_t index) {
   if (fault == TransferFault::kGarbled) bytes[static_cast<std::size_t>(index % 64)] ^= static_cast<std::uint8_t>(1 << (index % 8));
   if (fault == TransferFault::kWrongMagic) bytes[0] = 'X', resign(bytes);
   if (fault == TransferFault::kWrongVersion) bytes[2] = 2, resign(bytes);
@@ -114,7 +117,7 @@ int UsbfsDevice::submit(Urb urb) {
     finish(urb);
     return 0;
   }
-  if (u.endpoint == kOut) return takeOut(urb);
+  if (u.endpoint == gadget_->outEndpoint()) return takeOut(urb);
   waiting_.push_back(urb);
   pump();
   return 0;
@@ -163,18 +166,19 @@ void UsbfsDevice::keepTime() {
   constexpr std::chrono::milliseconds kStep(1), kMost(100);
   const auto now = std::chrono::steady_clock::now();
   if (now - *time_ > kMost) {
-    firmware_->advance(std::chrono::duration<double>(now - *time_ - kStep).count());
+    gadget_->advance(std::chrono::duration<double>(now - *time_ - kStep).count());
     time_ = now - kStep;
   }
-  bool moved = false;
-  for (; now - *time_ >= kStep; *time_ += kStep) firmware_->advance(1e-3), moved = true;
-  if (moved) pump();
+  for (; now - *time_ >= kStep; *time_ += kStep) {
+    gadget_->advance(1e-3);
+    pump();  // the bus fills waiting transfers whether this computer has a processor for us or not
+  }
 }
 
 void UsbfsDevice::advance(double dt) {
   const std::lock_guard lock(mutex_);
   time_.reset();
-  firmware_->advance(dt);
+  gadget_->advance(dt);
   if (!gone_) pump();
 }
 
@@ -213,28 +217,28 @@ void UsbfsDevice::pump() {
 
 // Whether the transfer ended.
 bool UsbfsDevice::completeIn(Urb urb) {
-  usb::FrameBytes bytes;
+  HeldPacket packet;
   while (true) {
     if (!held_.empty()) {
-      bytes = held_.front();
+      packet = held_.front();
       held_.pop_front();
-    } else if (!firmware_->take(bytes)) {
+    } else if (packet.size = gadget_->take(packet.bytes); packet.size == 0) {
       return false;
     }
-    if (alterIn(bytes, *urb.urb, faultAt(true))) break;
+    if (alterIn(packet, *urb.urb, faultAt(true))) break;
   }
   finish(urb);
   return true;
 }
 
 // False: nothing arrives, the transfer waits on.
-bool UsbfsDevice::alterIn(usb::FrameBytes& bytes, usbdevfs_urb& urb, TransferFault fault) {
-  int length = static_cast<int>(usb::kFrameSize);
+bool UsbfsDevice::alterIn(HeldPacket& packet, usbdevfs_urb& urb, TransferFault fault) {
+  int length = static_cast<int>(packet.size);
   switch (fault) {
     case TransferFault::kLost:
       return false;
     case TransferFault::kLate:
-      late_ = bytes;
+      late_ = packet;
       has_late_ = true;
       return false;
     case TransferFault::kStall:
@@ -257,17 +261,17 @@ bool UsbfsDevice::alterIn(usb::FrameBytes& bytes, usbdevfs_urb& urb, TransferFau
       length = 0;
       break;
     case TransferFault::kDuplicate:
-      held_.push_front(bytes);
+      held_.push_front(packet);
       break;
     default:
-      bytes = spoiled(bytes, fault, in_count_);
+      packet.bytes = spoiled(packet.bytes, fault, in_count_);
   }
   if (has_late_) {
     held_.push_front(late_);
     has_late_ = false;
   }
   length = std::min(length, urb.buffer_length);
-  std::memcpy(urb.buffer, bytes.data(), static_cast<std::size_t>(length));
+  std::memcpy(urb.buffer, packet.bytes.data(), static_cast<std::size_t>(length));
   urb.actual_length = length;
   return true;
 }
@@ -276,14 +280,14 @@ int UsbfsDevice::takeOut(Urb urb) {
   usbdevfs_urb& u = *urb.urb;
   const TransferFault fault = faultAt(false);
   if (fault == TransferFault::kSubmitFails) return -ENOMEM;
-  usb::FrameBytes bytes{};
+  Packet bytes{};
   const auto length = std::min<std::size_t>(bytes.size(), static_cast<std::size_t>(u.buffer_length));
   std::memcpy(bytes.data(), u.buffer, length);
   u.actual_length = u.buffer_length;
-  const auto deliver = [&](std::size_t count) { firmware_->received(std::span(bytes).first(count)); };
+  const auto deliver = [&](std::size_t count) { gadget_->received(std::span(bytes).first(count)); };
   switch (fault) {
     case TransferFault::kStall:
-      halted_.insert(kOut);
+      halted_.insert(u.endpoint);
       u.status = -EPIPE;
       break;
     case TransferFault::kProtocolError:
@@ -312,17 +316,25 @@ int UsbfsDevice::takeOut(Urb urb) {
   return 0;
 }
 
-// String descriptors; everything else of the control endpoint Linux answers itself.
+// Vendor requests and string descriptors; everything else of the control endpoint Linux answers itself.
 void UsbfsDevice::control(usbdevfs_urb& urb) {
-  const auto* setup = static_cast<const std::uint8_t*>(urb.buffer);
-  if (setup[0] != 0x80 || setup[1] != 6 || setup[3] != 3) {
+  auto* bytes = static_cast<std::uint8_t*>(urb.buffer);
+  if (bytes[0] == 0x40) {
+    urb.status = gadget_->control(bytes[1], static_cast<std::uint16_t>(bytes[2] | bytes[3] << 8)) ? 0 : -EPIPE;
+    return;
+  }
+  if (bytes[0] != 0x80 || bytes[1] != 6 || bytes[3] != 3) {
     urb.status = -EPIPE;
     return;
   }
-  const std::array<std::uint8_t, 4> languages{4, 3, 9, 4};
-  const auto length = std::min<int>(4, setup[6] | setup[7] << 8);
-  std::memcpy(static_cast<std::uint8_t*>(urb.buffer) + 8, languages.data(), static_cast<std::size_t>(length));
-  urb.actual_length = length;
+  std::vector<std::uint8_t> text{4, 3, 9, 4};  // the languages: English
+  if (bytes[2] != 0) {
+    text = {0, 3};
+    for (const char c : gadget_->serialText()) text.insert(text.end(), {static_cast<std::uint8_t>(c), 0});
+    text[0] = static_cast<std::uint8_t>(text.size());
+  }
+  urb.actual_length = std::min<int>(static_cast<int>(text.size()), bytes[6] | bytes[7] << 8);
+  std::memcpy(bytes + 8, text.data(), static_cast<std::size_t>(urb.actual_length));
 }
 
 }  // namespace pincer::emulation

@@ -15,7 +15,7 @@
 #include <optional>
 #include <set>
 
-#include "tests/emulation/firmware.h"
+#include "tests/emulation/usb_gadget.h"
 
 namespace pincer::emulation {
 
@@ -48,7 +48,7 @@ struct Urb {
 
 class UsbfsDevice {
  public:
-  explicit UsbfsDevice(std::shared_ptr<Firmware> firmware) : firmware_(std::move(firmware)) {}
+  explicit UsbfsDevice(std::shared_ptr<UsbGadget> gadget) : gadget_(std::move(gadget)) {}
   ~UsbfsDevice();
   UsbfsDevice(const UsbfsDevice&) = delete;
   UsbfsDevice& operator=(const UsbfsDevice&) = delete;
@@ -73,18 +73,23 @@ class UsbfsDevice {
   void injectAt(std::int64_t index, bool in, TransferFault fault);
   std::int64_t faultsDone() const;
   std::int64_t transfers() const;
-  // Access to the firmware while nothing else runs in it.
+  // Does something with the gadget while nothing else runs in it.
   template <typename F>
   auto with(F&& f) {
     const std::lock_guard lock(mutex_);
-    return f(*firmware_);
+    return f();
   }
 
  private:
+  struct HeldPacket {
+    Packet bytes{};
+    std::size_t size = 0;
+  };
+
   void keepTime();
   void pump();
   bool completeIn(Urb urb);
-  bool alterIn(usb::FrameBytes& bytes, usbdevfs_urb& urb, TransferFault fault);
+  bool alterIn(HeldPacket& packet, usbdevfs_urb& urb, TransferFault fault);
   int takeOut(Urb urb);
   void control(usbdevfs_urb& urb);
   void finish(Urb urb);
@@ -92,17 +97,17 @@ class UsbfsDevice {
   TransferFault faultAt(bool in);
 
   mutable std::mutex mutex_;
-  std::shared_ptr<Firmware> firmware_;
+  std::shared_ptr<UsbGadget> gadget_;
   std::deque<Urb> waiting_;  // for packets from the device
   std::deque<Urb> done_;
-  std::deque<usb::FrameBytes> held_;
+  std::deque<HeldPacket> held_;
   std::set<unsigned> halted_;
   std::map<std::int64_t, TransferFault> in_faults_, out_faults_;
   std::int64_t in_count_ = 0, out_count_ = 0, faults_done_ = 0;
   int read_fd_ = -1, write_fd_ = -1;
   std::optional<std::chrono::steady_clock::time_point> time_;  // that the device has reached; absent: the caller's time
   bool raised_ = true, gone_ = false, has_late_ = false;
-  usb::FrameBytes late_{};
+  HeldPacket late_;
 };
 
 }  // namespace pincer::emulation

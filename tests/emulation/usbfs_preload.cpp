@@ -10,6 +10,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdlib>
+#include <cstring>
 
 #include "tests/emulation/usbfs_device.h"
 #include "tests/emulation/usbfs_wire.h"

@@ -44,12 +44,14 @@ int request(Port& port, unsigned long code, void* argument) {
           USBDEVFS_CAP_ZERO_PACKET | USBDEVFS_CAP_BULK_CONTINUATION | USBDEVFS_CAP_NO_PACKET_SIZE_LIM | USBDEVFS_CAP_REAP_AFTER_DISCONNECT;
       return 0;
     case USBDEVFS_CLAIMINTERFACE:
+    case USBDEVFS_DISCONNECT_CLAIM:
     case USBDEVFS_RELEASEINTERFACE:
     case USBDEVFS_SETINTERFACE:
     case USBDEVFS_SETCONFIGURATION:
     case USBDEVFS_RESET:
       return port.gone() ? -ENODEV : 0;
     case USBDEVFS_GETDRIVER:
+    case USBDEVFS_IOCTL:  // to take its driver away, or give it one: it has none
       return -ENODATA;
     case USBDEVFS_CLEAR_HALT:
       return port.clearHalt(*static_cast<unsigned*>(argument));

@@ -16,4 +16,14 @@ inline std::string errorOf(const std::function<void()>& act) {
   return "";
 }
 
+// Of whatever exception.
+inline std::string problemOf(const std::function<void()>& act) {
+  try {
+    act();
+  } catch (const std::exception& e) {
+    return e.what();
+  }
+  return "";
+}
+
 }  // namespace pincer::tests

@@ -37,18 +37,30 @@ Vec3 renderedArmForce(const Vec3& p_D, const Vec3& f_D) {
   return arm.motorForce_D();
 }
 
+// The largest force along `direction` that the arm may render at `p_D`: its peak, or what its joints bear but for 2 %, because the tip gives
+// way a little, and its levers change with it.
+double mostArmForce(const Vec3& p_D, const Vec3& direction) {
+  const devices::SimArm arm;
+  const auto q = premium::inverse(p_D);
+  const double load = (premium::jacobian(*q).transpose() * direction).cwiseQuotient(arm.peakTorque()).cwiseAbs().maxCoeff();
+  return std::min(arm.capabilities().peak_force, 0.98 / load);
+}
+
+double armForceError(const Vec3& p_D, const Vec3& wanted) { return 100 * (renderedArmForce(p_D, wanted) - wanted).norm() / wanted.norm(); }
+
 std::vector<Record> armForceErrors(MeasureContext& context) {
-  double worst = 0;
+  double continuous = 0, most = 0;
   int places = 0;
   overArmWorkspace([&](const Vec3& p_D) {
     if (context.interrupted()) return;
     for (const Vec3& direction : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1), Vec3(-1, 1, -1).normalized()}) {
-      const Vec3 wanted = 1.4 * direction;  // the continuous force: no joint saturates
-      worst = std::max(worst, (renderedArmForce(p_D, wanted) - wanted).norm() / wanted.norm());
+      continuous = std::max(continuous, armForceError(p_D, 1.4 * direction));
+      most = std::max(most, armForceError(p_D, mostArmForce(p_D, direction) * direction));
     }
     context.progress(++places / 729.0);
   });
-  return {atMost("force at the tip, error over 729 places, worst", 100 * worst, "%", 1)};
+  return {atMost("1.4 N at the tip, error over 729 places, worst", continuous, "%", 1),
+          atMost("the most that peak and joints allow, likewise", most, "%", 1)};
 }
 
 // The eigenvalues of J^-T M J^-1.

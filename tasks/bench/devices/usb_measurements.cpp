@@ -54,7 +54,7 @@ std::vector<Record> measureUsb(const DevicesBenchOptions& options, MeasureContex
         fmt::format("bench devices: {} isn't there. It is built with the tests where umockdev is installed: tests/run --quick.", program));
   }
   const std::string command = fmt::format("'{}' {} {}", program, options.seconds, options.cycles);
-  const std::unique_ptr<std::FILE, ClosePipe> pipe(popen(command.c_str(), "r"));
+  std::unique_ptr<std::FILE, ClosePipe> pipe(popen(command.c_str(), "r"));
   std::vector<Record> records;
   std::array<char, 1024> line;
   while (pipe && std::fgets(line.data(), static_cast<int>(line.size()), pipe.get()) != nullptr && !context.interrupted()) {
@@ -62,7 +62,12 @@ std::vector<Record> measureUsb(const DevicesBenchOptions& options, MeasureContex
     if (fields.size() == 6) records.push_back(usbRecord(fields));
     context.progress(std::min(1.0, static_cast<double>(records.size()) / 25));
   }
-  if (records.empty()) throw InputError(fmt::format("bench devices: {} measured nothing; run it by hand to see why.", program));
+  if (context.interrupted()) return records;
+  const int status = pipe ? pclose(pipe.release()) : -1;
+  if (records.empty() || status != 0) {
+    throw InputError(fmt::format("bench devices: {} ended early, after {} figures (status {}); run it by hand to see why.", command,
+                                 records.size(), status));
+  }
   return records;
 }
 

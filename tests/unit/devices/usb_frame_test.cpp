@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <cstdio>
+#include <fstream>
+#include <iterator>
 #include <set>
 
 #include "devices/usb/byte_order.h"
@@ -58,6 +61,7 @@ TEST(UsbFrame, NamesWhyBytesAreNoFrame) {
   std::set<std::string> words;
   for (int e = 0; e <= static_cast<int>(FrameError::kPayload); ++e) words.insert(describe(static_cast<FrameError>(e)));
   EXPECT_EQ(words.size(), 7u);
+  EXPECT_FALSE(words.contains(describe(static_cast<FrameError>(200)))) << "a number that is none of them";
 }
 
 // A CRC of 16 bits finds every error of one or two bits in 62 bytes.
@@ -146,6 +150,16 @@ TEST(UsbClockMap, FollowsASlowClock) {
     EXPECT_LE(sent, now);
     EXPECT_GE(sent, now - 10'000);
   }
+}
+
+// Who isn't root can open what these lines name, and nothing else of ours.
+TEST(UsbFrame, TheUdevRuleNamesTheProtocolsVendorAndProduct) {
+  std::ifstream file(PINCER_SOURCE_DIR "/devices/usb/70-pincer.rules");
+  const std::string rules{std::istreambuf_iterator<char>(file), {}};
+  std::array<char, 64> match{};
+  std::snprintf(match.data(), match.size(), "ATTR{idVendor}==\"%04x\", ATTR{idProduct}==\"%04x\"", kVendorId, kProductId);
+  EXPECT_NE(rules.find(match.data()), std::string::npos) << match.data();
+  EXPECT_NE(rules.find("GROUP=\"plugdev\""), std::string::npos);
 }
 
 }  // namespace

@@ -209,5 +209,45 @@ TEST(UsbMessages, FuzzedPayloadsAreRefusedOrInRange) {
   EXPECT_GT(accepted, 1000) << "the fuzz reaches the accepting side too";
 }
 
+// Where each value stands in the payload: docs/usb-protocol.md.
+TEST(UsbMessages, EachRangeIsLookedAtOnBothSides) {
+  const auto with = [](Frame frame, std::size_t at, auto value) {
+    store(frame.payload, at, value);
+    return frame;
+  };
+  const Frame identity = toFrame(Identity{DeviceKind::kArm, 1, 1000, "arm", "A1"});
+  ASSERT_TRUE(identityIn(identity));
+  for (const int rate : {0, 8001}) EXPECT_FALSE(identityIn(with(identity, 4, static_cast<std::uint16_t>(rate)))) << rate;
+  EXPECT_FALSE(identityIn(with(identity, 6, std::uint32_t{0}))) << "no model";
+  EXPECT_FALSE(identityIn(with(identity, 22, std::uint16_t{0}))) << "no serial number";
+  const Frame status = toFrame(Status{DeviceState::kReady, 0, 0, 0});
+  ASSERT_TRUE(statusIn(status));
+  for (const int state : {0, 1, 5, 255}) EXPECT_FALSE(statusIn(with(status, 0, static_cast<std::uint8_t>(state)))) << state;
+  ArmCapabilities can;
+  can.peak_force = 8;
+  can.continuous_force = 1;
+  can.resolution = 1e-5;
+  can.stiffness_limit = 1000;
+  can.workspace_max_D.setOnes();
+  ASSERT_TRUE(armCapabilitiesIn(toFrame(can)));
+  EXPECT_FALSE(armCapabilitiesIn(with(toFrame(can), 4, std::uint32_t{9'000'000}))) << "more for ever than at the peak";
+  EXPECT_FALSE(armCapabilitiesIn(with(toFrame(can), 28, std::int32_t{0}))) << "a workspace without width";
+  const Frame display = toFrame(TactileCapabilities{1e-5, 0.1, 500, Vec2(0.01, 0)});
+  ASSERT_TRUE(displayCapabilitiesIn(display)) << "a display of one axis";
+  EXPECT_FALSE(displayCapabilitiesIn(with(display, 12, std::int32_t{-1})));
+  EXPECT_FALSE(displayCapabilitiesIn(with(display, 12, std::int32_t{0}))) << "of none";
+  Frame asks = toFrame(CalibrationEntry{2, 0, "", 0}, FrameType::kReadCalibration);
+  ASSERT_TRUE(calibrationIn(asks));
+  EXPECT_FALSE(calibrationIn(with(asks, 22, std::uint64_t{1} << 62))) << "whoever reads sends no value";
+  Frame state = toFrame(fullState());
+  for (std::size_t at = 26; at < 34; at += 2) store(state.payload, at, std::int16_t{0});
+  EXPECT_FALSE(armStateIn(state)) << "a gimbal of length 0";
+}
+
+TEST(UsbMessages, KindsHaveNames) {
+  EXPECT_EQ(nameOf(DeviceKind::kArm), "arm");
+  EXPECT_EQ(nameOf(DeviceKind::kDisplay), "display");
+}
+
 }  // namespace
 }  // namespace pincer::devices::usb

@@ -154,6 +154,18 @@ TEST(ArmBases, ThatDoNotFaceEachOtherAreRefusedByName) {
   EXPECT_THROW(tasks::standArms(behind, {tasks::ArmBase{Vec3(1, 0, 0), 0}, tasks::ArmBase{}}), InputError) << "behind the other one";
 }
 
+// It named the last column as missing.
+TEST(ReplayHand, ReadsATableWhoseLinesEndAsOnOtherSystems) {
+  const TemporaryDirectory folder;
+  const std::string path = folder / "samples.csv";
+  writeText(path,
+            "time_s,f0_p_DF_x_m,f0_p_DF_y_m,f0_p_DF_z_m,f1_p_DF_x_m,f1_p_DF_y_m,f1_p_DF_z_m\r\n"
+            "0,0,0,0,1,0,0\r\n1,0.1,0,0,1,0,0.2\r\n");
+  const auto hand = tasks::openHandDevices(replayOf(path));
+  hand->advanceTo(1);
+  EXPECT_EQ(hand->arm(1).sample().p_DF, Vec3(1, 0, 0.2));
+}
+
 TEST(ReplayHand, NamesWhatIsWrongInTheFile) {
   const TemporaryDirectory folder;
   const std::string path = folder / "samples.csv";
@@ -164,6 +176,11 @@ TEST(ReplayHand, NamesWhatIsWrongInTheFile) {
             "time_s,f0_p_DF_x_m,f0_p_DF_y_m,f0_p_DF_z_m,f1_p_DF_x_m,f1_p_DF_y_m,f1_p_DF_z_m\n"
             "0,0,0,0,0,0,0\n1,0,zero,0,0,0,0\n");
   EXPECT_TRUE(contains(errorOf([&] { tasks::openHandDevices(replayOf(path)); }), ":3: \"zero\""));
+  const std::string header = "trial,time_s,f0_p_DF_x_m,f0_p_DF_y_m,f0_p_DF_z_m,f1_p_DF_x_m,f1_p_DF_y_m,f1_p_DF_z_m\n";
+  writeText(path, header + "1,0,0,0,0,0,0\n");
+  EXPECT_TRUE(contains(errorOf([&] { tasks::openHandDevices(replayOf(path)); }), ":2: \"\" in column 8")) << "a row that is cut off";
+  writeText(path, header);
+  EXPECT_TRUE(contains(errorOf([&] { tasks::openHandDevices(replayOf(path)); }), "no places"));
   EXPECT_THROW(tasks::openHandDevices(replayOf("")), DeviceError);
 }
 

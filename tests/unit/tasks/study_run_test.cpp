@@ -11,6 +11,7 @@
 #include "tasks/experiments/arc_study.h"
 #include "tasks/experiments/localisation.h"
 #include "tasks/experiments/shape_study.h"
+#include "tasks/experiments/shape_trial.h"
 #include "tasks/session/database.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/error_of.h"
@@ -136,6 +137,16 @@ TEST(Study, SolidsAreFeltWithoutAFault) {
     EXPECT_EQ(response->outcome, "answered") << response->stimulus;
     EXPECT_GT(response->contact_share, 0.2) << response->stimulus;
   }
+}
+
+// What the arm's joints bear limited only the gates of arc trials and sessions.
+TEST(Study, WhatTheArmCanDoLimitsTheGateOfAShapeTrial) {
+  ShapeTrialSetup setup;
+  setup.solid = makeSolid(kSolidNames[0], true, {});
+  ShapeExplorer explorer(1);
+  StudyMemory memory;
+  const ShapeTrial trial(setup, explorer, memory);
+  EXPECT_EQ(trial.gate().peak_torque, devices::SimArm().peakTorque());
 }
 
 // A finger pressed into the circle by d gets k d outwards, and the tactor goes where the finger touches.

@@ -146,6 +146,11 @@ INSTANTIATE_TEST_SUITE_P(EveryDoubt, ForceGateTrips,
                                          Doubt{Trip::kNotFinite, [](GateInput& in) { in.sample.time = kNan; }},
                                          Doubt{Trip::kException, [](GateInput& in) { in.physics_ok = false; }},
                                          Doubt{Trip::kInvalidSample, [](GateInput& in) { in.sample.valid = false; }},
+                                         Doubt{Trip::kGaveUp,
+                                               [](GateInput& in) {
+                                                 in.sample.valid = false;
+                                                 in.sample.gave_up = true;
+                                               }},
                                          Doubt{Trip::kOverSpeed, [](GateInput& in) { in.v_DF = Vec3(0, 2.001, 0); }},
                                          Doubt{Trip::kOverSpeed, [](GateInput& in) { in.v_DF = Vec3(1e200, 1e200, 0); }},
                                          Doubt{Trip::kMissedDeadline, [](GateInput& in) { in.dt = 3.1e-3; }},
@@ -182,7 +187,33 @@ TEST(ForceGate, AFrozenArmTripsWithinTheWatchdogTime) {
 TEST(ForceGate, DescribesEveryTripInItsOwnWords) {
   std::set<std::string> sentences;
   for (int t = 0; t <= static_cast<int>(Trip::kOperator); ++t) sentences.insert(describe(static_cast<Trip>(t)));
-  EXPECT_EQ(sentences.size(), 8u);
+  EXPECT_EQ(sentences.size(), 9u);
+  EXPECT_FALSE(sentences.contains(describe(static_cast<Trip>(200)))) << "a number that is none of them";
+}
+
+// A trip on a busy machine said "check the cable", and not what was measured, nor that --watchdog allows more.
+TEST(ForceGate, ATripSaysWhatWasMeasuredItsLimitAndTheRemedy) {
+  const auto tripText = [](void (*spoil)(GateInput&)) {
+    Loop loop;
+    loop.ticks(100, Vec3(1, 0, 0));
+    loop.in.now += loop.in.dt;
+    loop.in.sample.time = loop.in.now;
+    spoil(loop.in);
+    gateForce(loop.limits, loop.in, loop.state);
+    return describe(loop.limits, loop.state);
+  };
+  const auto expect = [](const std::string& text, std::initializer_list<const char*> parts) {
+    for (const char* part : parts) EXPECT_NE(text.find(part), std::string::npos) << text;
+  };
+  expect(tripText([](GateInput& in) { in.now += 4.2e-3; }), {"4.2 ms", "limit 3", "--watchdog", "cable"});
+  expect(tripText([](GateInput& in) { in.dt = 7e-3; }), {"7 ms", "limit 3", "--watchdog"});
+  expect(tripText([](GateInput& in) { in.v_DF = Vec3(0, 2.5, 0); }), {"2.5 m/s", "limit 2"});
+  expect(tripText([](GateInput& in) { in.sample.valid = false; }), {"cable", "pincer devices list"});
+  expect(tripText([](GateInput& in) {
+           in.sample.valid = false;
+           in.sample.gave_up = true;
+         }),
+         {"deadline", "--watchdog"});
 }
 
 TEST(ForceGate, NamesTheLimitThatIsOutOfRange) {
