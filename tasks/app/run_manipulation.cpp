@@ -101,9 +101,10 @@ int showStudy(const ManipulationArguments& arguments, const std::string& directo
   fmt::print("{}\n", arguments.run.json ? summaryJson(summary) : formatTable(summary));
   const auto say = [&](const std::string& line) { fmt::print(arguments.run.json ? stderr : stdout, "{}\n", line); };
   const ServoOptions& servo = arguments.run.servo;
-  if (servo.real_time || arguments.view.view || arguments.devices.devices != "sim") say(servoText(result.servo, 1 / servo.rate));
+  const bool by_the_clock = servo.real_time || arguments.view.view || arguments.devices.devices != "sim";
+  if (by_the_clock) say(servoText(result.servo, 1 / servo.rate));
   say(fmt::format("Session: {}", session.path()));
-  if (!servo.real_time) say(throughputText(static_cast<double>(result.servo.ticks) / servo.rate));
+  if (!by_the_clock) say(throughputText(static_cast<double>(result.servo.ticks) / servo.rate));
   if (result.interrupted) {
     say(fmt::format("Interrupted after {} trials; they are safe. Go on: the same command with --resume --out {}", result.trials,
                     directory));
