@@ -25,8 +25,8 @@ void setInputs(const GraspModel& model, const GraspState& state, std::span<const
     point = {inputs[i].p_WF, inputs[i].v_WF, inputs[i].f_W};
     setRotation(inputs[i], state.fingers[i], model.world.options.h, point, scratch.q_mid_WF[i]);
     const engine::DrivenPointModel& coupling = model.fingers[i].coupling;
-    point.turned = model.fingers[i].along_normal || coupling.twist_stiffness + coupling.twist_damping > 0;
-    if (point.turned) point.n_W = state.fingers[i].n_W;
+    point.turned = model.fingers[i].along_normal;
+    if (point.turned || coupling.twist_stiffness + coupling.twist_damping > 0) point.n_W = state.fingers[i].n_W;
   }
 }
 

@@ -80,6 +80,7 @@ void predictTwist(const DrivenPointModel& point, const PointState& s, const Poin
   const PointAxis axis = implicitAxis(a, s.touching ? 0.5 : 1.0);
   out.inverse_twist = axis.inverse_mass;
   out.twist_rate = axis.v_free;
+  if (out.input_ok) out.R_WA.col(2) = in.n_W;
   out.start.w_W += s.twist_rate * out.R_WA.col(2);
   out.free.w_W += axis.v_free * out.R_WA.col(2);
 }

@@ -19,7 +19,7 @@ bool same(const ContactMemory& a, const ContactMemory& b) {
 }
 bool same(const PointInput& a, const PointInput& b) {
   return a.p_target_W == b.p_target_W && a.v_target_W == b.v_target_W && a.f_W == b.f_W && a.w_W == b.w_W && a.turned == b.turned &&
-         (!a.turned || a.n_W == b.n_W);
+         a.n_W == b.n_W;
 }
 bool same(const MotionInput& a, const MotionInput& b) {
   return a.X_WB.p == b.X_WB.p && same(a.X_WB.q, b.X_WB.q) && a.motion.v_W == b.motion.v_W && a.motion.w_W == b.motion.w_W;

@@ -20,8 +20,7 @@ bool isFinite(const MotionInput& in) {
 }
 
 bool isFinite(const PointInput& in) {
-  Vec3 sum = in.p_target_W + in.v_target_W + in.f_W + in.w_W;  // a NaN or infinity anywhere survives the sum
-  if (in.turned) sum += in.n_W;
+  const Vec3 sum = in.p_target_W + in.v_target_W + in.f_W + in.w_W + in.n_W;  // a NaN or infinity anywhere survives the sum
   return std::isfinite(sum[0] + sum[1] + sum[2]);
 }
 

@@ -11,6 +11,9 @@
 namespace pincer::tasks {
 namespace {
 
+// Of the pads about their contact normals: rigid ones slip in nearly every tick where arms tremble (docs/grasp.md).
+constexpr double kTwistStiffness = 0.3;           // [N m/rad]
+constexpr double kTwistDamping = 1e-3;            // [N m s/rad]
 constexpr double kHomeBeside = 0.045;             // a waiting fingertip is so far beside the object [m]
 constexpr double kFacing = std::numbers::pi / 6;  // so far may an arm look past the other [rad]
 constexpr double kHomeAbove = 0.040;              // and above the pinch place [m]
@@ -41,6 +44,8 @@ grasp::FingerModel fingerModel(const HandSetup& setup, int finger) {
   model.radius = setup.finger_radius;
   model.coupling.stiffness.setConstant(setup.coupling_stiffness);
   model.coupling.damping.setConstant(setup.coupling_damping);
+  model.coupling.twist_stiffness = kTwistStiffness;
+  model.coupling.twist_damping = kTwistDamping;
   return model;
 }
 

@@ -87,6 +87,32 @@ TEST(SoftFinger, TwistSpringCarriesTorsionUntilItSlips) {
   EXPECT_TRUE(f.felt().sliding);
 }
 
+// The spring's axis is the contact's normal, what is locked are the world's axes: a finger that may only press along x held nothing that it
+// could twist on.
+TEST(SoftFinger, LockedAxesStayTheWorldsWhereThePadTwists) {
+  engine::WorldBuilder builder{engine::WorldOptions{}};
+  builder.addBody({"ball", contact::Sphere{0.02}, true, 0.05, {0.8, 0.8, 0, 0}});
+  std::vector<FingerModel> fingers = {tests::softFinger("left"), tests::softFinger("right")};
+  for (FingerModel& f : fingers) {
+    f.coupling.locked = {false, true, true};
+    f.coupling.twist_stiffness = 0.3;
+    f.pad.patch_radius = 5e-3;
+  }
+  tests::GraspWorld w{buildGrasp(builder, fingers), {}};
+  w.state = makeState(w.model, {tests::startAt(Vec3(0, 0, 0.1))}, {Vec3(-0.028, 0, 0.1), Vec3(0.028, 0, 0.1)});
+  GraspScratch scratch(w.model);
+  const auto inputs = tests::squeezing(2e-3);
+  for (int i = 0; i < 1000; ++i) {
+    step(w.model, w.state, scratch, inputs);
+    for (std::size_t k = 0; k < 2; ++k) {
+      EXPECT_EQ(w.state.world.points[k].p_W.y(), inputs[k].p_WF.y());
+      EXPECT_EQ(w.state.world.points[k].p_W.z(), inputs[k].p_WF.z());
+    }
+  }
+  EXPECT_GT(scratch.fingers[0].normal_force, 1);
+  EXPECT_LT(w.state.world.bodies[0].v_W.norm(), 1e-9);
+}
+
 // A rigid finger on a body in its hand: the body turns with it, and with a twist spring it lags by the torque that turns it.
 TEST(SoftFinger, TurnsWhatItHolds) {
   for (const double stiffness : {0.0, 0.5}) {
