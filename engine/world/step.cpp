@@ -8,12 +8,25 @@ namespace {
 
 constexpr double kSlidingSpeed = 1e-9;  // slower than this is rest: well above the solver's residual, far below anything felt [m/s]
 constexpr double kOnCone = 1 - 1e-9;    // of mu r_n, from which friction counts as exhausted
+constexpr double kResidue = 1e-9;       // of the velocity with which a contact opens, ten times the solver's tolerance
 
-void readSolution(const WorldScratch& scratch, int i, Contact& c) {
+double inverseMassOf(const WorldModel& model, const WorldScratch& scratch, const Side& side) {
+  return side.kind == SideKind::kBody ? model.bodies[side.index].inverse_mass : scratch.points[side.index].inverse_mass.mean();
+}
+
+// Whether a contact that opens still has an impulse, below the solver's tolerance: what is in the air would stick with it, and remember how far it
+// flies as slip that is to be undone.
+bool isResidue(const WorldModel& model, const WorldScratch& scratch, const Contact& c) {
+  const double w = inverseMassOf(model, scratch, c.a) + inverseMassOf(model, scratch, c.b);
+  return w * c.r[kNormalRow] < kResidue * c.u_C[kNormalRow];
+}
+
+void readSolution(const WorldModel& model, const WorldScratch& scratch, int i, Contact& c) {
   const int first = scratch.first_row[i], count = scratch.first_row[i + 1] - first;
   c.r.setZero();
   for (int k = 0; k < count; ++k) c.r[k] = scratch.r[first + k];
   c.u_C = Eigen::Map<const Vec3>(&scratch.u[first]);
+  if (isResidue(model, scratch, c)) c.r.setZero();
   c.impulse_W = c.R_WC * c.r.head<3>();
   const double on_cone = kOnCone * c.mu * c.r[2];
   c.sliding = c.active() && tangentNorm2(c.r.data(), count) >= on_cone * on_cone &&
@@ -28,7 +41,7 @@ void solveContacts(const WorldModel& model, const WorldState& state, WorldScratc
   recallContacts(state, scratch);
   fillContacts(model, state, scratch);
   solveIslands(model, scratch);
-  for (std::size_t i = 0; i < scratch.contacts.size(); ++i) readSolution(scratch, static_cast<int>(i), scratch.contacts[i]);
+  for (std::size_t i = 0; i < scratch.contacts.size(); ++i) readSolution(model, scratch, static_cast<int>(i), scratch.contacts[i]);
 }
 
 }  // namespace pincer::engine
