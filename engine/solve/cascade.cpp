@@ -89,6 +89,7 @@ class Search {
     scaleSides(unscaled_, scratch_);
     for (int sweeps = 0; sweeps < options.gauss_seidel_sweeps && !isSpent(); sweeps += kSweepsPerRound) {
       restartFromBest();
+      prepareGaussSeidel(problem_, scratch_);
       sweepGaussSeidel(problem_, kSweepsPerRound, scratch_, current_);
       iterations_ += kSweepsPerRound;
       if (finish(options)) return SolveMethod::kGaussSeidel;
@@ -114,6 +115,7 @@ class Search {
     const bool is_spent = isSpent();
     if (is_spent) scratch_.operations_left = kNoLimit;  // the few sweeps that every tick gets: contacts that are new have no impulse yet
     const int most = is_spent ? kSweepsPerLook : options.large_sweeps;
+    prepareGaussSeidel(problem_, scratch_);
     for (int sweeps = 0; sweeps < most && !(best_.residual <= enough); sweeps += kSweepsPerLook) {
       sweepGaussSeidel(problem_, kSweepsPerLook, scratch_, current_);
       iterations_ += kSweepsPerLook;

@@ -12,14 +12,8 @@ namespace {
 
 constexpr int kWidth = kMaxContactRows;
 
-// W_ii and its inverse, where it has one, of each contact: in ContactTerms::G and K_inverse.
-void prepareContact(const ScaledProblem& problem, int i, ContactTerms& t) {
-  const int rows = problem.rows(i);
-  for (double& w : t.G) w = 0;
-  for (double& w : t.K_inverse) w = 0;
-  for (const ContactSide& side : problem.sides[static_cast<std::size_t>(i)]) {
-    if (side.mover >= 0) addCoupling(side, rows, side, rows, t.G, kWidth);
-  }
+// t.K_inverse = t.G^-1, t.coupling says whether there is one.
+void invertOwn(int rows, ContactTerms& t) {
   double factors[ContactTerms::kSize];
   for (int k = 0; k < rows; ++k) {
     for (int l = 0; l < rows; ++l) factors[l * rows + k] = t.G[kWidth * k + l];
@@ -31,6 +25,17 @@ void prepareContact(const ScaledProblem& problem, int i, ContactTerms& t) {
     solveLdlt(factors, rows, column);
     for (int k = 0; k < rows; ++k) t.K_inverse[kWidth * k + l] = column[k];
   }
+}
+
+// W_ii and its inverse, where it has one, of each contact: in ContactTerms::G and K_inverse.
+void prepareContact(const ScaledProblem& problem, int i, ContactTerms& t) {
+  const int rows = problem.rows(i);
+  std::fill(t.G, t.G + kWidth * rows, 0.0);
+  std::fill(t.K_inverse, t.K_inverse + kWidth * rows, 0.0);
+  for (const ContactSide& side : problem.sides[static_cast<std::size_t>(i)]) {
+    if (side.mover >= 0) addCoupling(side, rows, side, rows, t.G, kWidth);
+  }
+  invertOwn(rows, t);
 }
 
 // y = A x
@@ -76,8 +81,11 @@ void relaxContact(const ScaledProblem& problem, const ContactTerms& t, int i, It
 
 }  // namespace
 
-void sweepGaussSeidel(const ScaledProblem& problem, int sweeps, SolverScratch& scratch, Iterate& it) {
+void prepareGaussSeidel(const ScaledProblem& problem, SolverScratch& scratch) {
   for (int i = 0; i < problem.contactCount(); ++i) prepareContact(problem, i, scratch.terms[static_cast<std::size_t>(i)]);
+}
+
+void sweepGaussSeidel(const ScaledProblem& problem, int sweeps, SolverScratch& scratch, Iterate& it) {
   std::fill(problem.y, problem.y + kMoverFreedoms * problem.movers, 0.0);
   for (int i = 0; i < problem.contactCount(); ++i) {
     addImpulse(problem.sides[static_cast<std::size_t>(i)], problem.rows(i), it.r + problem.firstRow(i), problem.y);

@@ -9,6 +9,9 @@ namespace pincer::engine {
 
 constexpr std::int64_t kPerContactSwept = 250;  // multiplications of a sweep
 
+// Fills scratch.terms with what the sweeps need of each contact; they stay right until Newton's method or the interior point uses `scratch`.
+void prepareGaussSeidel(const ScaledProblem& problem, SolverScratch& scratch);
+
 // `sweeps` passes over all contacts, in order, each at a cost linear in their number. `it` is evaluated on return.
 void sweepGaussSeidel(const ScaledProblem& problem, int sweeps, SolverScratch& scratch, Iterate& it);
 

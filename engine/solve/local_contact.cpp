@@ -1,25 +1,28 @@
 #include "engine/solve/local_contact.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "engine/solve/cone.h"
 
 namespace pincer::engine {
 namespace {
 
-constexpr int kMaxTangents = kMaxContactRows - 1;
-constexpr double kSingular = 1e-14;  // relative: what is added to A so that a direction without mobility has a solution
+constexpr double kSingular = 1e-14;      // relative: what is added to A so that a direction without mobility has a solution
+constexpr double kRootRoundOff = 1e-15;  // relative
+constexpr int kRootSteps = 60;
 
-// The tangential problem that is left when u_n = 0 has been solved for r_n.
+// The tangential problem that is left when u_n = 0 has been solved for r_n. D tangential rows, known to the compiler.
+template <int D>
 class TangentProblem {
  public:
-  TangentProblem(const double* W, int stride, const double* q, int rows, double mu) : d_(rows - 1), mu_(mu) {
+  TangentProblem(const double* W, int stride, const double* q, double mu) : mu_(mu) {
     inverse_W_nn_ = 1 / W[kNormalRow * (stride + 1)];
     q_n_ = q[kNormalRow];
-    for (int k = 0; k < d_; ++k) W_nT_[k] = W[kNormalRow + tangentRow(k) * stride];
-    for (int k = 0; k < d_; ++k) {
+    for (int k = 0; k < D; ++k) W_nT_[k] = W[kNormalRow + tangentRow(k) * stride];
+    for (int k = 0; k < D; ++k) {
       b_[k] = q[tangentRow(k)] - W_nT_[k] * q_n_ * inverse_W_nn_;
-      for (int l = 0; l < d_; ++l) A_[k][l] = W[tangentRow(k) + tangentRow(l) * stride] - W_nT_[k] * W_nT_[l] * inverse_W_nn_;
+      for (int l = 0; l < D; ++l) A_[k][l] = W[tangentRow(k) + tangentRow(l) * stride] - W_nT_[k] * W_nT_[l] * inverse_W_nn_;
       trace_ += A_[k][k];
     }
   }
@@ -27,7 +30,7 @@ class TangentProblem {
   // Sets r_T = -(A + alpha I)^-1 b and r_n; remembers the factors for `excess`.
   void setAlpha(double alpha) {
     factorise(alpha + kSingular * trace_);
-    for (int k = 0; k < d_; ++k) x_[k] = -b_[k];
+    for (int k = 0; k < D; ++k) x_[k] = -b_[k];
     substitute(x_);
     r_n_ = -(q_n_ + dot(W_nT_, x_)) * inverse_W_nn_;
     norm_ = std::sqrt(dot(x_, x_));
@@ -36,8 +39,8 @@ class TangentProblem {
 
   // f = mu r_n / |r_T| - 1 (negative outside the disc) and its derivative by alpha.
   double excess(double& derivative) const {
-    double z[kMaxTangents];
-    std::copy(x_, x_ + d_, z);
+    double z[D];
+    std::copy(x_, x_ + D, z);
     substitute(z);  // dr_T / dalpha = -z
     const double ratio = mu_ * r_n_ / norm_;
     derivative = mu_ * dot(W_nT_, z) * inverse_W_nn_ / norm_ + ratio * dot(x_, z) / (norm_ * norm_);
@@ -45,73 +48,84 @@ class TangentProblem {
   }
 
   // A size of A by which alpha is measured, positive.
-  double magnitude() const { return std::max(trace_ / d_, kSingular / inverse_W_nn_); }
+  double magnitude() const { return std::max(trace_ / D, kSingular / inverse_W_nn_); }
+
+  // The root where A is a multiple of the identity, and friction doesn't lift or press the contact.
+  double firstAlpha() const {
+    const double alpha = std::sqrt(dot(b_, b_)) / (-q_n_ * inverse_W_nn_ * mu_) - trace_ / D;
+    return alpha > 0 && std::isfinite(alpha) ? alpha : magnitude();
+  }
 
   void write(double* r) const {
-    for (int k = 0; k < d_; ++k) r[tangentRow(k)] = x_[k];
+    for (int k = 0; k < D; ++k) r[tangentRow(k)] = x_[k];
     r[kNormalRow] = std::max(0.0, r_n_);
-    projectOntoCone(r, d_ + 1, mu_, r);
+    projectOntoCone(r, D + 1, mu_, r);
   }
 
  private:
-  double dot(const double* a, const double* b) const {
+  static double dot(const double* a, const double* b) {
     double sum = 0;
-    for (int k = 0; k < d_; ++k) sum += a[k] * b[k];
+    for (int k = 0; k < D; ++k) sum += a[k] * b[k];
     return sum;
   }
 
   // L D L^T of A + alpha I.
   void factorise(double alpha) {
-    for (int k = 0; k < d_; ++k)
+    for (int k = 0; k < D; ++k)
       for (int l = 0; l <= k; ++l) {
         double sum = A_[k][l] + (k == l ? alpha : 0);
         for (int i = 0; i < l; ++i) sum -= L_[k][i] * L_[l][i] * pivot_[i];
-        if (k == l)
+        if (k == l) {
           pivot_[k] = std::max(sum, kSingular * magnitude());
-        else
-          L_[k][l] = sum / pivot_[l];
+          inverse_pivot_[k] = 1 / pivot_[k];
+        } else {
+          L_[k][l] = sum * inverse_pivot_[l];
+        }
       }
   }
 
   void substitute(double* x) const {
-    for (int k = 0; k < d_; ++k)
+    for (int k = 0; k < D; ++k)
       for (int i = 0; i < k; ++i) x[k] -= L_[k][i] * x[i];
-    for (int k = d_ - 1; k >= 0; --k) {
-      x[k] /= pivot_[k];
-      for (int i = k + 1; i < d_; ++i) x[k] -= L_[i][k] * x[i];
+    for (int k = D - 1; k >= 0; --k) {
+      x[k] *= inverse_pivot_[k];
+      for (int i = k + 1; i < D; ++i) x[k] -= L_[i][k] * x[i];
     }
   }
 
-  int d_;
   double mu_, inverse_W_nn_, q_n_;
   double trace_ = 0;
-  double W_nT_[kMaxTangents], b_[kMaxTangents], A_[kMaxTangents][kMaxTangents];
-  double L_[kMaxTangents][kMaxTangents], pivot_[kMaxTangents];
-  double x_[kMaxTangents];  // r_T
+  double W_nT_[D], b_[D], A_[D][D];
+  double L_[D][D], pivot_[D], inverse_pivot_[D];
+  double x_[D];  // r_T
   double r_n_ = 0, norm_ = 0;
 };
 
-// Leaves `problem` at the alpha > 0 for which the impulse is on the cone's surface.
-void findSlide(TangentProblem& problem) {
-  double low = 0;
-  double high = problem.magnitude();
-  for (int i = 0; i < 60; ++i, high *= 8) {
-    problem.setAlpha(high);
-    if (problem.isInDisc()) break;
-    low = high;
-  }
-  double alpha = high;
-  for (int i = 0; i < 60; ++i) {
+// Leaves `problem` at the alpha > 0 for which the impulse is on the cone's surface. f is nearly a line: three or four steps from the first guess.
+template <int D>
+void findSlide(TangentProblem<D>& problem) {
+  double low = 0, high = std::numeric_limits<double>::infinity();
+  double alpha = problem.firstAlpha();
+  for (int i = 0; i < kRootSteps; ++i) {
+    problem.setAlpha(alpha);
     double slope;
     const double f = problem.excess(slope);
     (f < 0 ? low : high) = alpha;
     double next = alpha - f / slope;
-    if (!(next > low && next < high)) next = 0.5 * (low + high);
-    const bool settled = std::abs(next - alpha) <= 1e-15 * alpha;
+    if (!(next > low && next < high)) next = std::isfinite(high) ? 0.5 * (low + high) : 8 * std::max(alpha, problem.magnitude());
+    const bool is_last = std::abs(next - alpha) <= kRootRoundOff * alpha;
     alpha = next;
-    problem.setAlpha(alpha);
-    if (settled) return;
+    if (is_last) return problem.setAlpha(alpha);
   }
+  problem.setAlpha(high < std::numeric_limits<double>::infinity() ? high : alpha);
+}
+
+template <int D>
+void solvePressed(const double* W, int stride, const double* q, double mu, double* r) {
+  TangentProblem<D> problem(W, stride, q, mu);
+  problem.setAlpha(0);
+  if (!problem.isInDisc()) findSlide(problem);
+  problem.write(r);
 }
 
 }  // namespace
@@ -123,10 +137,9 @@ void solveOneContact(const double* W, int stride, const double* q, int rows, dou
     r[kNormalRow] = -q[kNormalRow] / W[kNormalRow * (stride + 1)];
     return;
   }
-  TangentProblem problem(W, stride, q, rows, mu);
-  problem.setAlpha(0);
-  if (!problem.isInDisc()) findSlide(problem);
-  problem.write(r);
+  if (rows == kTorsionRow) return solvePressed<2>(W, stride, q, mu, r);
+  if (rows == kRollingRow) return solvePressed<3>(W, stride, q, mu, r);
+  solvePressed<5>(W, stride, q, mu, r);
 }
 
 }  // namespace pincer::engine

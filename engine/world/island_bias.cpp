@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/solve/cone.h"
 #include "engine/solve/mobility.h"
 
 namespace pincer::engine {
 namespace {
 
 constexpr double kNormalRowWeight = 10;
+constexpr double kInside = -1e-9;      // of the cone's radius: what is further in sticks
 constexpr double kNegligible = 1e-11;  // contradictions between biases below this are below the solver's tolerance [m/s]
 constexpr double kConverged = 1e-10;   // of |A^T b|, squared: 1e-5
 constexpr int kMostContacts = 200;     // beyond, islands are swept, and a fit costs more than the sweeps
@@ -24,8 +26,15 @@ double dot(const double* a, const double* b, int n) {
 
 class BiasFit {
  public:
-  BiasFit(const ContactProblem& problem, const double* r, std::span<const int> order, std::vector<Contact>& contacts, SolverScratch& memory)
-      : problem_(problem), r_(r), order_(order), contacts_(contacts), rows_(problem.rowCount()), size_(kMoverFreedoms * problem.movers) {
+  BiasFit(PushingBy pushing, const ContactProblem& problem, const double* r, std::span<const int> order, std::vector<Contact>& contacts,
+          SolverScratch& memory)
+      : pushing_(pushing),
+        problem_(problem),
+        r_(r),
+        order_(order),
+        contacts_(contacts),
+        rows_(problem.rowCount()),
+        size_(kMoverFreedoms * problem.movers) {
     double* next = memory.interior.data();
     for (double** vector : {&b_, &image_}) {
       *vector = next;
@@ -81,7 +90,7 @@ class BiasFit {
         const double change = -b_[problem_.firstRow(i) + k] / weight(i, k);
         q[problem_.firstRow(i) + k] += change;
         c.bias_C[k] += change / unitOfRow(c, k);
-        if (k != kNormalRow && offset_rate > 0) c.offset_C[k] = c.bias_C[k] / offset_rate - 0.5 * h * c.v_start_C[k];
+        if (k != kNormalRow && c.stuck && offset_rate > 0) c.offset_C[k] = c.bias_C[k] / offset_rate - 0.5 * h * c.v_start_C[k];
       }
     }
   }
@@ -89,11 +98,15 @@ class BiasFit {
  private:
   Contact& contact(int i) const { return contacts_[static_cast<std::size_t>(order_[static_cast<std::size_t>(i)])]; }
 
-  // Contacts that pushed in the last tick and don't close in this one take part: stuck ones with all rows, sliding ones along the normal.
+  // Contacts that push take part: stuck ones with all rows, sliding ones along the normal.
   double weight(int i, int k) const {
     const Contact& c = contact(i);
-    if (!(r_[problem_.firstRow(i) + kNormalRow] > 0) || c.closing) return 0;
-    return k == kNormalRow ? kNormalRowWeight : c.stuck ? 1 : 0;
+    const double* const r_i = r_ + problem_.firstRow(i);
+    if (!(r_i[kNormalRow] > 0)) return 0;
+    if (pushing_ == PushingBy::kLastTick && c.closing) return 0;
+    if (k == kNormalRow) return kNormalRowWeight;
+    const bool sticks = pushing_ == PushingBy::kLastTick ? c.stuck : isInCone(r_i, problem_.rows(i), problem_.friction(i), kInside);
+    return sticks ? 1 : 0;
   }
 
   // out = A^T w v,  out = w A z
@@ -114,6 +127,7 @@ class BiasFit {
     }
   }
 
+  const PushingBy pushing_;
   const ContactProblem& problem_;
   const double* r_;
   std::span<const int> order_;
@@ -124,12 +138,15 @@ class BiasFit {
 
 }  // namespace
 
-void fitIslandBiases(double h, double offset_rate, const ContactProblem& problem, const double* r, double* q, std::span<const int> order,
-                     std::vector<Contact>& contacts, SolverScratch& memory) {
+bool mayContradict(const ContactProblem& problem) {
   const int n = problem.contactCount();
-  if (problem.movers < 2 || n < 2 * problem.movers || n > kMostContacts)
-    return;  // too few to contradict each other around a loop, or too many
-  BiasFit fit(problem, r, order, contacts, memory);
+  return problem.movers >= 2 && n >= 2 * problem.movers && n <= kMostContacts;
+}
+
+void fitIslandBiases(PushingBy pushing, double h, double offset_rate, const ContactProblem& problem, const double* r, double* q,
+                     std::span<const int> order, std::vector<Contact>& contacts, SolverScratch& memory) {
+  if (!mayContradict(problem)) return;
+  BiasFit fit(pushing, problem, r, order, contacts, memory);
   if (fit.gather() <= kNegligible) return;
   fit.minimise();
   fit.apply(h, offset_rate, q);

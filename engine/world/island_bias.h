@@ -15,10 +15,19 @@
 
 namespace pincer::engine {
 
-// Fits bias_C and the stick offsets of the island's contacts, and corrects problem.q through `q`. `r`: impulses of the last tick; `order`: which of
-// `contacts` the problem's are; `memory` is working memory. Allocates nothing.
+// Which contacts push, and which of them stick.
+enum class PushingBy : std::uint8_t {
+  kLastTick,  // those that did in the last tick, but for what closes in this one
+  kImpulses,  // those that `r` has in their cones
+};
+
+// Whether the problem's contacts may contradict each other around a loop of bodies, and aren't too many for a fit.
+bool mayContradict(const ContactProblem& problem);
+
+// Fits bias_C and the stick offsets of the island's contacts, and corrects problem.q through `q`. `r`: impulses of the last tick, or the best that
+// were found in this one; `order`: which of `contacts` the problem's are; `memory` is working memory. Allocates nothing.
 //   offset_rate  bias_T = offset_rate (offset_T + h v_start_T / 2) [1/s]
-void fitIslandBiases(double h, double offset_rate, const ContactProblem& problem, const double* r, double* q, std::span<const int> order,
-                     std::vector<Contact>& contacts, SolverScratch& memory);
+void fitIslandBiases(PushingBy pushing, double h, double offset_rate, const ContactProblem& problem, const double* r, double* q,
+                     std::span<const int> order, std::vector<Contact>& contacts, SolverScratch& memory);
 
 }  // namespace pincer::engine

@@ -16,6 +16,8 @@ namespace {
 
 constexpr double kLost = 1e-2;       // residual that is no answer
 constexpr int kStoppingSweeps = 30;  // instead
+constexpr int kHeapContacts = 200;   // beyond, sweeps go on in the next tick from what they reached in this one
+constexpr double kHeapLost = 0.3;    // their residual that is no answer: impulses were scaled down to add no energy
 constexpr int kSettlingTicks = 24;   // stick offsets halve per tick: from the tolerance to round-off
 
 // The number of what moves there in IslandScratch's arrays per mover; -1 for what doesn't.
@@ -279,6 +281,31 @@ void stopOnly(const ContactProblem& problem, const SolverOptions& options, Islan
   island.result = lost;
 }
 
+// What is tried before what contacts ask for is fitted to what was found.
+SolverOptions withoutCostly(SolverOptions options) {
+  options.interior_point_iterations = options.shift_updates = options.gauss_seidel_sweeps = 0;
+  return options;
+}
+
+// Around loops of bodies that are held more than six-fold, what sticks here and slips there can't be told apart to the last digits: a contact
+// that slips by some 10 nm/s has its friction's direction from that.
+SolverOptions asOfLoops(SolverOptions options) {
+  constexpr double kEnough = 5e-7;  // residual [-]
+  options.contentment = std::max(options.contentment, kEnough);
+  return options;
+}
+
+SolveResult again(const SolveResult& first, SolveResult second) {
+  second.iterations += first.iterations;
+  second.start = first.start;
+  return second;
+}
+
+bool isLost(const Island& island) {
+  const SolveResult& result = island.result;
+  return !result.converged && result.residual > (island.contacts > kHeapContacts ? kHeapLost : kLost);
+}
+
 void solveIsland(const WorldModel& model, int k, int thread, WorldScratch& scratch) {
   IslandScratch& s = scratch.islands;
   Island& island = s.islands[k];
@@ -289,18 +316,28 @@ void solveIsland(const WorldModel& model, int k, int thread, WorldScratch& scrat
                                VectorMap(s.q.data() + island.row, island.rows),
                                island.movers,
                                island.settling > 0};
-  if (scratch.h > 0) {
-    fitIslandBiases(scratch.h, kTangentCorrection / model.options.h, problem, s.r.data() + island.row, s.q.data() + island.row,
-                    {s.order.data() + island.place, n}, scratch.contacts, *s.solvers[thread]);
-  }
   SolverScratch& memory = *s.solvers[thread];
+  const auto fit = [&](PushingBy pushing) {
+    if (scratch.h > 0)
+      fitIslandBiases(pushing, scratch.h, kTangentCorrection / model.options.h, problem, s.r.data() + island.row, s.q.data() + island.row,
+                      {s.order.data() + island.place, n}, scratch.contacts, memory);
+  };
+  fit(PushingBy::kLastTick);
   const bool is_limited = scratch.operations_left < kNoLimit;
   const std::int64_t share = is_limited ? std::max<std::int64_t>(scratch.operations_left, 0) * island.rows / s.rows : kNoLimit;
   const std::int64_t reserve = is_limited ? reserveFor(island) : 0;
   memory.operations_left = share - reserve;
-  island.result = solveContacts(problem, model.options.solver, memory, VectorMap(s.r.data() + island.row, island.rows),
-                                VectorMap(s.u.data() + island.row, island.rows));
-  if (!island.result.converged && island.result.residual > kLost) stopOnly(problem, model.options.solver, island, memory, scratch);
+  const VectorMap r(s.r.data() + island.row, island.rows), u(s.u.data() + island.row, island.rows);
+  if (scratch.h > 0 && mayContradict(problem)) {
+    island.result = solveContacts(problem, withoutCostly(model.options.solver), memory, r, u);
+    if (!island.result.converged) {
+      fit(PushingBy::kImpulses);
+      island.result = again(island.result, solveContacts(problem, asOfLoops(model.options.solver), memory, r, u));
+    }
+  } else {
+    island.result = solveContacts(problem, model.options.solver, memory, r, u);
+  }
+  if (isLost(island)) stopOnly(problem, model.options.solver, island, memory, scratch);
   island.operations = is_limited ? share - reserve - memory.operations_left : 0;
 }
 
