@@ -6,8 +6,8 @@ namespace pincer::tasks {
 
 std::vector<Measurement> graspMeasurements(const GraspBenchOptions& options) {
   std::vector<Measurement> all;
-  for (std::vector<Measurement> part :
-       {holdingMeasurements(), softFingerMeasurements(), couplingMeasurements(options), baselineMeasurements(), graspCostMeasurements()}) {
+  for (std::vector<Measurement> part : {holdingMeasurements(), softFingerMeasurements(), couplingMeasurements(options),
+                                        baselineMeasurements(), graspCostMeasurements(), featureCostMeasurements()}) {
     std::move(part.begin(), part.end(), std::back_inserter(all));
   }
   return all;

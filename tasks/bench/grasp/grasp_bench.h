@@ -19,6 +19,7 @@ std::vector<Measurement> holdingMeasurements();                                 
 std::vector<Measurement> softFingerMeasurements();                                // limit surface, rolling
 std::vector<Measurement> couplingMeasurements(const GraspBenchOptions& options);  // stiffness, energy, passivity
 std::vector<Measurement> graspCostMeasurements();                                 // microseconds
+std::vector<Measurement> featureCostMeasurements();                               // each feature on and off
 std::vector<Measurement> baselineMeasurements();                                  // published methods on the same scenes
 
 }  // namespace pincer::tasks
