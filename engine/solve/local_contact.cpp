@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kSingular = 1e-14;      // relative: what is added to A so that a direction without mobility has a solution
 constexpr double kRootRoundOff = 1e-15;  // relative
-constexpr int kRootSteps = 60;
+constexpr int kAlphaSteps = 60;
 
 // The tangential problem that is left when u_n = 0 has been solved for r_n. D tangential rows, known to the compiler.
 template <int D>
@@ -106,7 +106,7 @@ template <int D>
 void findSlide(TangentProblem<D>& problem) {
   double low = 0, high = std::numeric_limits<double>::infinity();
   double alpha = problem.firstAlpha();
-  for (int i = 0; i < kRootSteps; ++i) {
+  for (int i = 0; i < kAlphaSteps; ++i) {
     problem.setAlpha(alpha);
     double slope;
     const double f = problem.excess(slope);
