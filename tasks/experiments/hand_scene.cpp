@@ -11,9 +11,6 @@
 namespace pincer::tasks {
 namespace {
 
-// Of the pads about their contact normals: rigid ones slip in nearly every tick where arms tremble (docs/grasp.md).
-constexpr double kTwistStiffness = 0.3;           // [N m/rad]
-constexpr double kTwistDamping = 1e-3;            // [N m s/rad]
 constexpr double kHomeBeside = 0.045;             // a waiting fingertip is so far beside the object [m]
 constexpr double kFacing = std::numbers::pi / 6;  // so far may an arm look past the other [rad]
 constexpr double kHomeAbove = 0.040;              // and above the pinch place [m]
@@ -44,8 +41,8 @@ grasp::FingerModel fingerModel(const HandSetup& setup, int finger) {
   model.radius = setup.finger_radius;
   model.coupling.stiffness.setConstant(setup.coupling_stiffness);
   model.coupling.damping.setConstant(setup.coupling_damping);
-  model.coupling.twist_stiffness = kTwistStiffness;
-  model.coupling.twist_damping = kTwistDamping;
+  model.coupling.twist_stiffness = setup.twist_stiffness;
+  model.coupling.twist_damping = setup.twist_damping;
   return model;
 }
 

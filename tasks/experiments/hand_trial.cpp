@@ -107,7 +107,6 @@ bool HandTrial::faulted(double now, std::uint32_t status) {
   if (trip_ == devices::Trip::kNone && (status & engine::kStateNotFinite) == 0) return false;
   cutForces(trip_ == devices::Trip::kNone ? devices::Trip::kNotFinite : trip_);
   if (stage_ == Stage::kRun || stage_ == Stage::kPrepare) end("fault", Cue::kEnd);
-  if (stage_ == Stage::kRun) stop_ = now;
   note("gate_trip");
   stage_ = Stage::kOver;
   return true;

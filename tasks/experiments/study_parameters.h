@@ -118,6 +118,9 @@ void visitParameters(Hand& h, Visit&& visit) {
         Parameter{"of finger and proxy [N/m]", {50, 3500, false, "More than 3500 the arm can't render stably; 1000 is usual."}});
   visit("coupling_damping", h.coupling_damping,
         Parameter{"[N s/m]", {0, 30, false, "More than 30 the arm can't render stably; 5 is usual."}});
+  visit("twist_stiffness", h.twist_stiffness,
+        Parameter{"of the pads about their contact normals [N m/rad]; 0 with no twist_damping: rigid", {0, 10, false, "0.3 is usual."}});
+  visit("twist_damping", h.twist_damping, Parameter{"[N m s/rad]", {0, 1, false, "0.001 is usual."}});
 }
 
 template <FieldsOf<SpherePickupOptions> Options, class Visit>
