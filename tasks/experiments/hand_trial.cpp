@@ -35,7 +35,7 @@ bool HandTrial::step(const std::vector<FingerInputs>& samples, const HandIntent&
   last_ = now;
   hear(intent);
   const engine::StepReport report = timedTick(samples, now);
-  if (stage_ != Stage::kOver && !faulted(now, report.status)) {
+  if (stage_ != Stage::kOver && !faulted(report.status)) {
     if (stage_ == Stage::kPrepare)
       prepare(now);
     else if (stage_ == Stage::kRun)
@@ -99,7 +99,7 @@ void HandTrial::leadHome() {
   }
 }
 
-bool HandTrial::faulted(double now, std::uint32_t status) {
+bool HandTrial::faulted(std::uint32_t status) {
   for (std::size_t i = 0; i < state_.mounts.size() && trip_ == devices::Trip::kNone; ++i) {
     trip_ = state_.mounts[i].gate.trip;
     tripped_ = i;

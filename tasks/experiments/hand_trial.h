@@ -93,7 +93,7 @@ class HandTrial {
   void run(const HandIntent& intent, double now);
   bool handIsHome() const;
   void leadHome();
-  bool faulted(double now, std::uint32_t status);
+  bool faulted(std::uint32_t status);
   void end(const char* outcome, Cue cue);
   void record(const std::vector<FingerInputs>& samples, double now, std::uint32_t status);
   TrialRecord row() const;

@@ -20,7 +20,8 @@ struct Phantom {
   Phantom() {
     scene.cues.seed = 11;
     for (std::size_t i = 0; i < 2; ++i) {
-      percept.fingers[i].arm = {.time = 0, .valid = true, .q_DF = scene.q_DF[i]};
+      percept.fingers[i].arm.valid = true;
+      percept.fingers[i].arm.q_DF = scene.q_DF[i];
       percept.fingers[i].tactile = {0, true, Vec2(0, 0)};
     }
   }

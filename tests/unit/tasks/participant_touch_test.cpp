@@ -38,7 +38,9 @@ struct TouchedSphere : ::testing::Test {
       const Vec3 tip_W = offset_W + Vec3(side * std::sqrt(reach * reach - offset_W.squaredNorm()), 0, 0);
       const Quat q_FW = (scene.cues.fingers[i].q_WD * scene.q_DF[i]).conjugate();
       auto& finger = percept.fingers[i];
-      finger.arm = {.time = time, .valid = true, .q_DF = scene.q_DF[i]};
+      finger.arm.time = time;
+      finger.arm.valid = true;
+      finger.arm.q_DF = scene.q_DF[i];
       finger.tactile = {time, true, Vec2(0, 0)};
       if (tactors) finger.tactile.place_L = grasp::placeOnPad(scene.model.grasp.fingers[i], q_FW * -tip_W.normalized());
     }
