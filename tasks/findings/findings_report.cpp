@@ -92,9 +92,10 @@ Figure forestFigure(const FindingsResult& r) {
     }
   }
   figure.data = {{"findings.csv", table.take()}};
-  figure.script = figurePrelude("findings") +
-                  fmt::format("set yrange [-0.6:{}]\nset xtics rotate by 45 right font ',15'\nset multiplot\nset key off\nset grid xtics\nset xrange [-160:160]\n",
-                              static_cast<double>(r.variants.size()) - 0.4);
+  figure.script = figurePrelude("findings") + fmt::format(
+                                                  "set yrange [-0.6:{}]\nset xtics rotate by 45 right font ',15'\nset multiplot\nset key "
+                                                  "off\nset grid xtics\nset xrange [-160:160]\n",
+                                                  static_cast<double>(r.variants.size()) - 0.4);
   const char* titles[] = {"tries", "pickup time", "alignment error", "alignment time"};
   for (std::size_t k = 0; k < kShown.size(); ++k) {
     const double left = 0.21 + 0.2 * static_cast<double>(k);

@@ -15,7 +15,7 @@ double quantileOf(std::vector<double> values, double q);
 
 double threadCpuSeconds();   // used by this thread so far [s]
 double processCpuSeconds();  // by all threads
-double steadySeconds();     // [s]
+double steadySeconds();      // [s]
 
 struct CallCost {
   double median = 0;  // ns per call, over batches
