@@ -7,6 +7,7 @@ namespace pincer::contact {
 namespace {
 
 constexpr float kInsideOut = std::numeric_limits<float>::infinity();
+constexpr std::int32_t kFirstLeaf = -1;
 
 float twiceCentre(const FacingBox& b, std::size_t k) { return b.low[k] + b.high[k]; }
 
@@ -93,7 +94,8 @@ FacingTree::Bounds FacingTree::build(std::size_t node, Range range, const std::v
     const auto i = static_cast<std::size_t>(lane);
     const auto [begin, end] = ranges[i];
     Bounds bounds{{{kInsideOut, kInsideOut, kInsideOut}, {-kInsideOut, -kInsideOut, -kInsideOut}, {}, 0}, 0};
-    std::int32_t child = -1 - begin / kLanes;
+    std::int32_t child = kFirstLeaf;  // of an empty lane: only a point that is no number gets there, and must find something
+    if (end > begin) child = kFirstLeaf - begin / kLanes;
     if (end - begin > kLanes) {
       child = static_cast<std::int32_t>(nodes_.size());
       nodes_.emplace_back();
