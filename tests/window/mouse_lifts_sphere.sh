@@ -6,7 +6,7 @@ pincer=$1
 work=$2
 rm -rf "$work"
 mkdir -p "$work"
-Xvfb -displayfd 3 -screen 0 1280x720x24 -nolisten tcp 3> "$work/display" 2> "$work/xvfb.log" &
+Xvfb -displayfd 3 -screen 0 1280x720x24 -nolisten tcp -noreset 3> "$work/display" 2> "$work/xvfb.log" &
 xvfb=$!
 trap 'kill $xvfb 2> /dev/null || true' EXIT
 until [[ -s $work/display ]]; do sleep 0.1; done
