@@ -140,7 +140,7 @@ class BiasFit {
 
 bool mayContradict(const ContactProblem& problem) {
   const int n = problem.contactCount();
-  return problem.movers >= 2 && n >= 2 * problem.movers && n <= kMostContacts;
+  return problem.movers >= 2 && n >= problem.movers && n <= kMostContacts;
 }
 
 void fitIslandBiases(PushingBy pushing, double h, double offset_rate, const ContactProblem& problem, const double* r, double* q,

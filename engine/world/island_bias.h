@@ -8,7 +8,7 @@
 //
 // Around loops of bodies (balls in a box) gaps and offsets can ask for what no motion gives. Rigid contacts then press against each other without
 // limit, and the solver finds no answer because there is none. What is left here can be had: by the motion z, at which all of these contacts stay
-// shut. Where the contacts don't contradict each other b stays what it is. Pairs alone are made consistent by stick_bias.h, at less cost.
+// shut. So it is with a rod between two pads, too, which two contacts each hold. Where the contacts don't contradict each other b stays what it is. Pairs alone are made consistent by stick_bias.h, at less cost.
 // Source: conjugate gradients on the normal equations (M. Hestenes, E. Stiefel, J. Res. Natl. Bur. Stand. 49 (1952) 409-436, section 10).
 #pragma once
 #include "engine/world/scratch.h"

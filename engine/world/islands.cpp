@@ -16,6 +16,7 @@ namespace {
 
 constexpr double kLost = 1e-2;       // residual that is no answer
 constexpr int kStoppingSweeps = 30;  // instead
+constexpr int kLoopContacts = 12;    // fewer are solved to the end: bodies that are pinched must not creep
 constexpr int kHeapContacts = 200;   // beyond, sweeps go on in the next tick from what they reached in this one
 constexpr double kHeapLost = 0.3;    // their residual that is no answer: impulses were scaled down to add no energy
 constexpr int kSettlingTicks = 24;   // stick offsets halve per tick: from the tolerance to round-off
@@ -332,7 +333,8 @@ void solveIsland(const WorldModel& model, int k, int thread, WorldScratch& scrat
     island.result = solveContacts(problem, withoutCostly(model.options.solver), memory, r, u);
     if (!island.result.converged) {
       fit(PushingBy::kImpulses);
-      island.result = again(island.result, solveContacts(problem, asOfLoops(model.options.solver), memory, r, u));
+      const SolverOptions& whole = model.options.solver;
+      island.result = again(island.result, solveContacts(problem, n < kLoopContacts ? whole : asOfLoops(whole), memory, r, u));
     }
   } else {
     island.result = solveContacts(problem, model.options.solver, memory, r, u);
