@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <functional>
-#include <set>
 
 namespace pincer::tasks {
 namespace {
@@ -149,11 +147,9 @@ class Reference {
     if (type == "string") return schema.find("pattern") ? "letters, digits, - and _" : "text";
     if (type == "array") return listText(schema, title);
     if (type == "object")
-      return schema.find("properties") && !isNamed(title) ? pairText(schema, title) : fmt::format("[object](#{})", anchor(title));
+      return schema.find("properties") && title.empty() ? pairText(schema, title) : fmt::format("[object](#{})", anchor(title));
     schema.reject("has a type that the reference doesn't know.");
   }
-
-  static bool isNamed(const std::string& title) { return !title.empty(); }
 
   // A small object within a choice, written out.
   std::string pairText(const JsonValue& schema, const std::string& title) const {
