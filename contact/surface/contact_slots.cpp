@@ -30,11 +30,9 @@ bool SurfaceTouch::followAlone(SurfaceContacts& found) {
   return true;
 }
 
-// A centre that begins well above the surface and ends below it has been led to the far side of the body, where the equation has
-// solutions too.
+// Where the slots' contacts have gone. One that has slid down to where another is followed leaves the place to that one.
 void SurfaceTouch::followSlots() {
-  constexpr double kWellAbove = 0.25;  // of r
-  ShortList<ShellContact, kMaxSurfaceContacts> others;
+  ShortList<ShellContact, kMaxSurfaceContacts> slid;
   for (int slot = 0; slot < kMaxSurfaceContacts; ++slot) {
     if (!isUsed(slot)) continue;
     was_used_ = true;
@@ -42,33 +40,40 @@ void SurfaceTouch::followSlots() {
       lose(slot);
       continue;
     }
-    const Foot start = footOf(slot);
-    const ShellContact contact = followSlot(slot, start);
+    const ShellContact contact = followSlot(slot, footOf(slot));
     cost_.iterations += contact.cost.steps;
     cost_.longest_walk = std::max(cost_.longest_walk, contact.cost.steps);
     cost_.crossings += contact.cost.crossings;
-    const bool is_other_side = contact.converged && contact.h < 0 && tangentContact(s_.net, cache_, C_, start).h > kWellAbove * r_;
-    if (!contact.converged || is_other_side || isListed(contact)) {
-      lose(slot);
-    } else if (continues(keptIn(slot), contact)) {
+    const bool is_found = contact.converged && !isOtherSide(slot, contact), continued = is_found && continues(keptIn(slot), contact);
+    if (continued && !isListed(contact)) {
       list_.push_back({contact, slot, false, false, std::max(0.0, keptIn(slot).ease - moved_)});
-    } else {
-      lose(slot);
-      others.push_back(contact);
+      continue;
     }
+    lose(slot);
+    if (is_found && !continued) slid.push_back(contact);
   }
-  for (const ShellContact& other : others) {
-    if (!isListed(other)) addNew(other);
+  for (const ShellContact& contact : slid) {
+    if (!isListed(contact) && hasFreeSlot()) addNew(contact);
   }
 }
 
-// Whether the contact is the slot's moved on, or another one that the walk has slid down to.
+// A centre that begins well above the surface and ends below it has been led to the far side of the body, where the equation has
+// solutions too.
+bool SurfaceTouch::isOtherSide(int slot, const ShellContact& contact) const {
+  constexpr double kWellAbove = 0.25;  // of r
+  return contact.h < 0 && tangentContact(s_.net, cache_, C_, footOf(slot)).h > kWellAbove * r_;
+}
+
+// Whether the contact is the slot's moved on, or another one that the walk has slid down to. Around an edge the overlap d changes by d / h of
+// the centre's way at most, on anything rounder and in any hollow that the finger fits into by less, straight down by all of it.
 bool SurfaceTouch::continues(const SurfaceSlot& kept, const ShellContact& contact) const {
-  constexpr double kSteepest = 10;  // change of overlap per way of the centre, beyond what any hollow that the finger fits into gives
-  constexpr double kStill = 1e-5;   // of r
-  const double before = r_ - (tracker_.p_BC_last - kept.p_BS).dot(kept.n_B), now = r_ - contact.h;
-  if (!eases_ || before <= 0 || now <= 0) return true;
-  return (now * contact.n - before * kept.n_B).norm() <= kSteepest * moved_ + kStill * r_;
+  constexpr double kSlack = 2;     // for shading normals, which turn faster than the surface here and there
+  constexpr double kMostTurn = 5;  // of d / h, which has no bound where the centre comes to the surface
+  constexpr double kStill = 1e-5;  // of r
+  if (!eases_) return true;
+  const double before = std::max(0.0, r_ - (tracker_.p_BC_last - kept.p_BS).dot(kept.n_B)), now = std::max(0.0, r_ - contact.h);
+  const double turn = now < kMostTurn * contact.h ? std::max(1.0, now / contact.h) : kMostTurn;
+  return (now * contact.n - before * kept.n_B).norm() <= kSlack * turn * moved_ + kStill * r_;
 }
 
 void SurfaceTouch::lose(int slot) { lost_.push_back(slot); }
@@ -88,20 +93,20 @@ void SurfaceTouch::fadeLost() {
 // Without any contact left: a place on the side that the finger is on, or none.
 void SurfaceTouch::findLost() {
   constexpr double kSameDepth = 0.5;  // of r
-  const int slot = lost_.front();
-  const ShellContact plane = planeOf(slot);
-  if (plane.h + keptIn(slot).ease >= r_) {
+  const int slot = deepestLost();
+  if (lostHeight(slot) + moved_ >= r_) {
     lost_.clear();
     return;
   }
+  const ShellContact plane = planeOf(slot);
   const auto isSameSide = [&](const ShellContact& c) { return c.n.dot(plane.n) > 0 && std::abs(c.h - plane.h) < kSameDepth * r_; };
   addFurther();
   const FollowedContact* const found =
       std::find_if(list_.begin(), list_.end(), [&](const FollowedContact& c) { return isSameSide(c.contact); });
   if (found != list_.end()) {
-    const FollowedContact kept = *found;
+    const ShellContact kept = found->contact;
     list_.clear();
-    list_.push_back(kept);
+    addNew(kept);
   } else {
     list_.clear();
     const SurfaceSeed seed = s_.search.nearest(s_.net, cache_, C_, reach_, Facing::front);
@@ -118,7 +123,6 @@ void SurfaceTouch::findLost() {
 // Its plane stays, whole.
 void SurfaceTouch::hold(int slot) {
   list_.push_back({planeOf(slot), slot, false, false, keptIn(slot).ease});
-  lost_.clear();
   status_ |= kQueryHeldDirection;
   ++cost_.held;
 }
@@ -155,15 +159,42 @@ ShellContact SurfaceTouch::straightTo(const SurfaceSeed& seed) const {
   return {seed.foot, sign / seed.distance * (C_ - x.S), sign * seed.distance, seed.distance > 0, {}};
 }
 
-// One that nothing is followed in, if there is; what fades yields.
-int SurfaceTouch::freeSlot() const {
-  int spare = -1;
+// One in which nothing is followed nor fades; -1 without.
+int SurfaceTouch::spareSlot() const {
   for (int slot = 0; slot < kMaxSurfaceContacts; ++slot) {
-    if (isTaken(slot)) continue;
-    if (std::find(lost_.begin(), lost_.end(), slot) == lost_.end()) return slot;
-    spare = slot;
+    if (!isTaken(slot) && !isFading(slot)) return slot;
   }
-  return spare;
+  return -1;
+}
+
+bool SurfaceTouch::hasFreeSlot() const {
+  return spareSlot() >= 0 || std::count_if(lost_.begin(), lost_.end(), [&](int slot) { return isFading(slot); }) > 1;
+}
+
+// For a new contact. Without a spare one, two that fade are joined: one plane pushes as both did.
+int SurfaceTouch::takeSlot() {
+  if (const int spare = spareSlot(); spare >= 0) return spare;
+  int slot = -1, other = -1;
+  for (const int lost : lost_) {
+    if (!isFading(lost)) continue;
+    other = slot;
+    slot = lost;
+  }
+  if (other >= 0) joinFading(other, slot);
+  return slot;
+}
+
+void SurfaceTouch::joinFading(int slot, int other) {
+  const Vec3 push = (r_ - lostHeight(slot)) * keptIn(slot).n_B + (r_ - lostHeight(other)) * keptIn(other).n_B;
+  SurfaceSlot& joined = tracker_.slots[at(slot)];
+  if (push.norm() > 0) joined.n_B = push.normalized();
+  joined.p_BS = C_ - (r_ - push.norm()) * joined.n_B;
+  joined.ease = 0;
+}
+
+// Requires one that was lost.
+int SurfaceTouch::deepestLost() const {
+  return *std::min_element(lost_.begin(), lost_.end(), [&](int a, int b) { return lostHeight(a) < lostHeight(b); });
 }
 
 void SurfaceTouch::write(SurfaceContacts& found) {

@@ -12,11 +12,14 @@
 // - A new contact is one that the finger could come to from outside: its place faces where the centre was at the last query and faces it
 //   now, and no other part of the surface hides it. A centre that has been pressed under the surface counts as being where the finger would
 //   be on that surface, so the far side of a wall stays out of reach however long the finger is pressed.
-// - Two that have moved to one place are one.
+// - Two that have moved to one place are one. A contact whose overlap changes by more than it can (d / h of the way around an edge, d its
+//   depth; by less on anything rounder and in hollows that the finger fits into) hasn't moved but slid down to another place: it is lost, and
+//   that place is another contact's, or a new one.
 // - Ease. Places that face a finger that is pressed into a hollow tighter than itself come, go and swap while they overlap (where two meet
 //   at a fold of the distance). A contact that comes so begins at phi = 0, e = its depth; its ease shrinks by as much as the centre moves.
-//   One that goes so stays as a plane, and its ease grows by as much, until it has faded. A finger whose contacts all have
-//   phi >= 0, as those of grasp/, meets no such place: the way down from it leads to one nearer than it, so it lies at phi > 0.
+//   One that goes so stays as a plane, and its ease grows by as much, until it has faded; two that fade are joined, to push as both did,
+//   where a new one needs the room. A finger whose contacts all have phi >= 0, as those of grasp/, meets no such place: the way down from
+//   it leads to one nearer than it, so it lies at phi > 0. Nothing is eased where the centre leaps by more than half of r in one query.
 // - A contact without a solution near is looked for in the whole surface; failing that, its plane is held.
 #pragma once
 #include "contact/surface/surface_contact.h"

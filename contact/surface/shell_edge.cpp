@@ -64,8 +64,8 @@ SharpEdgePoint evaluate(const SharpEdge& edge, double s) {
 
 EdgeFoot footOnEdge(const SharpEdge& edge, const Vec3& C, double s) {
   const double tolerance = kEdgeTolerance * (edge.curve[3] - edge.curve[0]).norm();
-  double low = 0, high = 1;
-  s = std::clamp(s, low, high);
+  double low = -1, high = 2;  // beyond the ends: those aren't known yet
+  s = std::clamp(s, 0.0, 1.0);
   for (int i = 0; i < kMaxEdgeSteps; ++i) {
     const SharpEdgePoint x = evaluate(edge, s);
     const Vec3 R = C - x.E;
@@ -76,8 +76,7 @@ EdgeFoot footOnEdge(const SharpEdge& edge, const Vec3& C, double s) {
     const double slope = std::max(flat - R.dot(x.D1), 0.1 * flat);
     double next = std::clamp(s + g / slope, 0.0, 1.0);
     const bool is_solved = std::abs(next - s) * x.E1.norm() < tolerance;
-    const bool end_unknown = (next == 0 && low == 0) || (next == 1 && high == 1);  // an end may be tried, an inner bracket not be left
-    if (!is_solved && !end_unknown && (next <= low || next >= high)) next = 0.5 * (low + high);
+    if (!is_solved && (next <= low || next >= high)) next = 0.5 * (low + high);
     s = next;
     if (is_solved) break;
   }

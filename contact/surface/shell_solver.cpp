@@ -9,12 +9,11 @@ namespace pincer::contact {
 
 namespace {
 
-constexpr double kDone = 1e-8;         // of the surface's length: a residual that needs no further step
-constexpr double kNear = 4e-5;         // of it: a residual from which Newton's next step, squaring it, need not be looked at again
-constexpr double kAlong = 1e-9;        // of a step: what leads so little across an edge leads along it
-constexpr int kMaxSteps = 20;          // within faces
-constexpr int kMaxCrossings = 200;     // of edges, at most one per step of a walk over fine triangles
-constexpr int kMaxFeatureVisits = 12;  // of edges and of vertices, each
+constexpr double kDone = 1e-8;      // of the surface's length: a residual that needs no further step
+constexpr double kNear = 4e-5;      // of it: a residual from which Newton's next step, squaring it, need not be looked at again
+constexpr double kAlong = 1e-9;     // of a step: what leads so little across an edge leads along it
+constexpr int kMaxSteps = 20;       // within faces, and visits of edges and vertices
+constexpr int kMaxCrossings = 200;  // of edges, at most one per step of a walk over fine triangles
 
 double longest(const std::array<double, 3>& db) { return std::max({std::abs(db[0]), std::abs(db[1]), std::abs(db[2])}); }
 
@@ -62,7 +61,7 @@ class ShellWalk {
 
   ShellContact run() {
     while (state_ == State::onFace) stepOnFace();
-    result_.cost = {steps_ + edge_visits_ + vertex_visits_, crossings_};
+    result_.cost = {steps_, crossings_};
     return result_;
   }
 
@@ -81,6 +80,7 @@ class ShellWalk {
   void meetEdge(int edge, double s);
   void cross(int edge, double s);
   void settleOnEdge(int edge, double s);
+  bool leadsInside(int edge) const;
   void settleOnVertex(const CellCorner& at);
   bool leaveVertexIntoFace(const CellCorner& at);
   bool leaveVertexAlongEdge(const CellCorner& at);
@@ -100,7 +100,7 @@ class ShellWalk {
   StepKind next_kind_ = StepKind::newton;
   bool near_ = false;  // the last residual was below nearly_
   Side entered_by_;    // the edge through which the walk came into this face, until a step stays inside
-  int steps_ = 0, crossings_ = 0, edge_visits_ = 0, vertex_visits_ = 0;
+  int steps_ = 0, crossings_ = 0;
 
   Foot last_;  // where the last step within this face began
   std::array<double, 3> last_db_{};
@@ -202,23 +202,31 @@ void ShellWalk::enterFace() {
 }
 
 void ShellWalk::settleOnEdge(int edge, double s) {
-  if (++edge_visits_ > kMaxFeatureVisits) return giveUp();
+  if (steps_ >= kMaxSteps) return giveUp();
+  ++steps_;
   const SharpEdge curve = sharpEdge(net_, cache_, foot_.triangle, edge);
   const EdgeFoot foot = footOnEdge(curve, C_, s);
   putOnEdge(edge, foot.s);
   if (foot.s == 0 || foot.s == 1) return settleOnVertex({foot_.triangle, foot.s == 0 ? edge : (edge + 1) % 3});
-  if (foot.leads_left) return enterFace();
+  if (foot.leads_left && leadsInside(edge)) return enterFace();
   if (foot.leads_right) {
     cross(edge, foot.s);
-    return enterFace();
+    if (leadsInside(entered_by_.edge)) return enterFace();
   }
   const FeatureContact contact =
       contactWithPoint(C_, foot.x.E, foot.x.left.normalized() + foot.x.right.normalized(), curve.is_border, done_);
   accept(contact.n, contact.h);
 }
 
+// Whether the residual leads from the edge that the foot is on into its face. By the edge's normals it may seem so where the patch is kinked.
+bool ShellWalk::leadsInside(int edge) const {
+  const FaceStep step = faceStep(evaluate(cell().patch, foot_.b[1], foot_.b[2]), C_, StepKind::alongResidual);
+  return step.db[static_cast<std::size_t>((edge + 2) % 3)] > 0;
+}
+
 void ShellWalk::settleOnVertex(const CellCorner& at) {
-  if (++vertex_visits_ > kMaxFeatureVisits) return giveUp();
+  if (steps_ >= kMaxSteps) return giveUp();
+  ++steps_;
   if (leaveVertexIntoFace(at)) return;
   if (leaveVertexAlongEdge(at)) return;
   Vec3 outward = Vec3::Zero();

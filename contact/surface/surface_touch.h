@@ -13,6 +13,7 @@ namespace pincer::contact {
 
 constexpr int kMaxTries = 16;       // places from which a further contact is looked for, per query
 constexpr double kOnePlace = 1e-3;  // of r: contacts nearer than this are one
+constexpr double kLeap = 0.5;       // of r per query, 4 m/s of a finger of 8 mm at 1 kHz: the centre was put there, not led
 
 // Where a try has led.
 struct TriedPlace {
@@ -38,7 +39,7 @@ class SurfaceTouch {
         r_(r),
         reach_(r + margin),
         moved_((C - tracker.p_BC_last).norm()),
-        eases_(surface.variant == SurfaceVariant::smooth),
+        eases_(surface.variant == SurfaceVariant::smooth && !(moved_ > kLeap * r)),
         tracker_(tracker),
         cache_(cache) {}
 
@@ -57,6 +58,7 @@ class SurfaceTouch {
  private:
   bool followAlone(SurfaceContacts& found);
   void followSlots();
+  bool isOtherSide(int slot, const ShellContact& contact) const;
   bool continues(const SurfaceSlot& kept, const ShellContact& contact) const;
   void lose(int slot);
   void fadeLost();
@@ -121,8 +123,18 @@ class SurfaceTouch {
   }
   // What it overlaps by beyond what the finger can have come closer.
   double easeOfNew(const ShellContact& contact) const { return eases_ && was_used_ ? std::max(0.0, r_ - contact.h - moved_) : 0; }
-  void addNew(const ShellContact& contact) { list_.push_back({contact, freeSlot(), true, false, easeOfNew(contact)}); }
-  int freeSlot() const;
+  void addNew(const ShellContact& contact) { list_.push_back({contact, takeSlot(), true, false, easeOfNew(contact)}); }
+  int takeSlot();
+  bool hasFreeSlot() const;
+  int spareSlot() const;
+  void joinFading(int slot, int other);
+  int deepestLost() const;
+  // How high the centre is over what a lost slot stands for, as far as it has been eased away [m].
+  double lostHeight(int slot) const { return planeOf(slot).h + keptIn(slot).ease; }
+  // Whether a slot that was lost still pushes, and nothing has taken it.
+  bool isFading(int slot) const {
+    return std::find(lost_.begin(), lost_.end(), slot) != lost_.end() && !isTaken(slot) && lostHeight(slot) + moved_ < r_;
+  }
   bool isTaken(int slot) const {
     return std::any_of(list_.begin(), list_.end(), [&](const FollowedContact& f) { return f.slot == slot; });
   }
@@ -131,7 +143,7 @@ class SurfaceTouch {
   const Vec3 C_;
   const double r_, reach_;
   const double moved_;  // the centre since the last query [m]
-  const bool eases_;    // the other variants show what they do at edges: jump
+  const bool eases_;  // the other variants show what they do at edges: jump; after a leap of the centre there is nothing to be steady with
   SurfaceTracker& tracker_;
   PatchCache& cache_;
   bool was_used_ = false;  // the last query had contacts

@@ -196,6 +196,46 @@ TEST(SurfaceGrooves, ContactsThatComeAndGoInOverlapAreEased) {
   }
 }
 
+// Beside the end of a groove, over the corner where the ends of its two walls meet: the contact with one wall's end slides to that corner and
+// off it, down to where the finger touches the other's. It once took that one's place, while what it was taken for stood on as a lost one:
+// the force doubled in one step, 679 times the finger's way.
+TEST(SurfaceGrooves, AContactThatSlidesToWhereAnotherIsLeavesItsPlaceToThatOne) {
+  for (const double side : {-1, 1}) {
+    const Steadiness felt = strokeAlong(grooveBlock(M_PI / 4, 0.012, 0.03, 0.03), 0.0054,
+                                        [&](double s) { return Vec3(side * (s - 0.0026), -0.03732, 0.0026); });
+    EXPECT_LT(felt.push, kRightAngle) << "one contact, with an edge that it overlaps by less than its height";
+    EXPECT_EQ(felt.status, kQueryOk);
+  }
+}
+
+// The same where the one that slides off overlaps too: it fades, f changing by n_x for its plane and 1 for the ease, while the other stays, an
+// edge's contact at first, whose push turns by its depth over its height of the way's part across the edge.
+TEST(SurfaceGrooves, TheForceIsSteadyWhereAContactSlidesOffTheEndOfAGroove) {
+  const double over_end = 0.00732;
+  const Vec3 off_corner = Vec3(0.0013, -over_end, 0.0013).normalized();
+  const Steadiness felt =
+      strokeAlong(grooveBlock(M_PI / 4, 0.012, 0.03, 0.03), 0.0027, [&](double s) { return Vec3(-0.0013 + s, -0.03 - over_end, 0.0013); });
+  EXPECT_LT(felt.push, std::hypot(1 + off_corner.x(), (kFinger - over_end) / over_end / std::sqrt(2.0)));
+  EXPECT_EQ(felt.status, kQueryEased);
+}
+
+// Past the axis of a hole that is too narrow the contact runs around it within micrometres: all three slots fade when the next one comes.
+// The shallowest once yielded to it, whole: 8 times the finger's way.
+TEST(SurfaceGrooves, ThreeContactsThatFadeMakeRoomForTheNextWithoutAJump) {
+  const auto tight = SmoothMesh::build(torus(0.02, 0.015, 48, 32));
+  for (const double beside : {1e-5, 3e-5, 1e-4, 3e-4}) {
+    SurfaceTracker tracker;
+    PatchCache cache;
+    Vec3 f0 = Vec3::Zero();
+    for (int i = -66; i <= 66; ++i) {
+      const Vec3 f = pushOf(tight->querySphere({3e-5 * i, beside, -0.01}, kFinger, kMargin, tracker, cache));
+      const double change = i > -66 ? (f - f0).norm() : 0;
+      ASSERT_LT(change, 6 * 3e-5) << beside << ' ' << i;  // three planes, each pushed in and eased out
+      f0 = f;
+    }
+  }
+}
+
 // Most queries skip the look for further places, because the last one vouches for where the finger is. No answer depends on it.
 TEST(SurfaceGrooves, WhatIsSkippedWouldHaveFoundNothing) {
   for (const TriangleMesh& mesh : {grooveBlock(M_PI / 3, 0.01, 0.04, 0.04), torus(0.03, 0.012, 48, 24), tests::pitBlock(0.02),
