@@ -8,78 +8,93 @@ namespace {
 
 using engine::SideKind;
 
-// The two touch midway between the body's surface and the fingertip's, on the normal n_W but for meshes with force shading.
-void addFingerContact(const GraspModel& model, const GraspState& state, GraspScratch& scratch, int finger, int body,
-                      const contact::SurfaceContact& found) {
-  const engine::BodyScratch& mid = scratch.world.bodies[body];
-  const Vec3 n_W = mid.R_WB_mid * found.n_B;
-  engine::Contact* const c = engine::addContact(scratch.world, found.phi);
-  if (!c) return;
-  c->id = engine::contactId(1, finger, body, found.feature);
-  c->a = {SideKind::kPoint, finger};
-  c->b = {SideKind::kBody, body};
-  c->R_WC.col(2) = n_W;
-  c->p_W = mid.X_WB_mid.p + mid.R_WB_mid * found.p_BS + 0.5 * found.phi * n_W;
-  c->material = model.world.bodies[body].material;
-  const FingerModel& f = model.fingers[finger];
-  if (f.pad.isSoft()) c->material.torsion_radius = torsionRadius(f.pad, f.radius, state.fingers[finger].normal_force);
-}
+// One finger, in the middle of the tick, in front of all bodies.
+class FingerLook {
+ public:
+  FingerLook(const GraspModel& model, GraspState& state, GraspScratch& scratch, int finger)
+      : model_(model),
+        state_(state),
+        scratch_(scratch),
+        finger_(finger),
+        f_(model.fingers[finger]),
+        point_(scratch.world.points[finger]),
+        moves_(!point_.inverse_mass.isZero(0)),
+        report_(scratch.fingers[finger]) {}
 
-// What closes within the tick must be seen at its middle.
-double contactMargin(const GraspModel& model, const GraspState& state, const GraspScratch& scratch, int finger, int body) {
-  const double speed = (state.world.points[finger].v_W - scratch.world.bodies[body].start.v_W).norm();
-  return model.world.options.contact_margin + model.world.options.h * speed;
-}
+  void at(int body) {
+    const engine::BodyModel& b = model_.world.bodies[body];
+    const engine::BodyScratch& mid = scratch_.world.bodies[body];
+    const Vec3& p_WC = point_.p_mid_W;
+    const Vec3 p_BC = mid.R_WB_mid.transpose() * (p_WC - mid.X_WB_mid.p);
+    const double bound = contact::lowerBoundOfGap(b.shape, p_BC, f_.radius);
+    const double margin = marginTo(mid);
+    const std::size_t pair = static_cast<std::size_t>(finger_) * model_.world.bodies.size() + static_cast<std::size_t>(body);
+    if (bound > std::max(f_.reach, margin)) {
+      report_.gap = std::min(report_.gap, bound);
+      if (std::holds_alternative<contact::Mesh>(b.shape)) state_.trackers[pair] = {};  // closed forms don't use it
+      if (f_.shape) state_.tips[pair] = {};
+      return;
+    }
+    if (f_.shape) {
+      const Pose X_WF{scratch_.q_mid_WF[finger_], p_WC};
+      return take(fingerOnBody(model_, state_, scratch_.world.patches, finger_, body, mid.X_WB_mid, X_WF, margin), body, margin);
+    }
+    take(contact::querySphere(b.shape, p_BC, f_.radius, margin, state_.trackers[pair], scratch_.world.patches), body, margin);
+  }
 
-// The nearest point for the pad, and the contacts for the solve.
-template <class Found>
-void takeFound(const Found& found, const GraspModel& model, const GraspState& state, GraspScratch& scratch, int finger, int body,
-               double margin) {
-  const engine::BodyModel& b = model.world.bodies[body];
-  const engine::BodyScratch& mid = scratch.world.bodies[body];
-  FingerReport& report = scratch.fingers[finger];
-  const contact::SurfaceContact& main = found.main();
-  // Static supports don't pre-position the tactor: what the hand looks for is an object.
-  if (b.dynamic && main.phi < report.gap) {
-    report.gap = main.phi;
-    const Vec3 to_tip_W = mid.X_WB_mid.p + mid.R_WB_mid * main.p_BS - scratch.world.points[finger].p_mid_W;
-    scratch.nearest_n_W[finger] = mid.R_WB_mid * main.n_B;
-    if constexpr (std::is_same_v<Found, contact::FingerContacts>) {
-      scratch.nearest_p_F[finger] = scratch.q_mid_WF[finger].conjugate() * (to_tip_W + main.phi * scratch.nearest_n_W[finger]);
-    } else {
-      scratch.nearest_n_W[finger] = -to_tip_W;  // where the facet is, whatever its shading says
+ private:
+  // What closes within the tick must be seen at its middle.
+  double marginTo(const engine::BodyScratch& mid) const {
+    return model_.world.options.contact_margin + model_.world.options.h * (point_.start.v_W - mid.start.v_W).norm();
+  }
+
+  // The nearest point for the pad, and the contacts for the solve.
+  template <class Found>
+  void take(const Found& found, int body, double margin) {
+    const engine::BodyModel& b = model_.world.bodies[body];
+    const engine::BodyScratch& mid = scratch_.world.bodies[body];
+    const contact::SurfaceContact& main = found.main();
+    // Static supports don't pre-position the tactor: what the hand looks for is an object.
+    if (b.dynamic && main.phi < report_.gap) {
+      report_.gap = main.phi;
+      const Vec3 to_tip_W = mid.X_WB_mid.p + mid.R_WB_mid * main.p_BS - point_.p_mid_W;
+      Vec3& nearest_n_W = scratch_.nearest_n_W[finger_];
+      if constexpr (std::is_same_v<Found, contact::FingerContacts>) {
+        nearest_n_W = mid.R_WB_mid * main.n_B;
+        scratch_.nearest_p_F[finger_] = scratch_.q_mid_WF[finger_].conjugate() * (to_tip_W + main.phi * nearest_n_W);
+      } else {
+        nearest_n_W = -to_tip_W;  // where the facet is, whatever its shading says
+      }
+    }
+    if (!b.dynamic && !moves_) return;
+    for (int i = 0; i < found.count; ++i) {
+      if (found.points[i].phi < margin) add(found.points[i], body, b.material, mid);
     }
   }
-  const bool neither_moves = !b.dynamic && scratch.world.points[finger].inverse_mass.isZero(0);
-  for (int i = 0; i < found.count && !neither_moves; ++i) {
-    if (found.points[i].phi < margin) addFingerContact(model, state, scratch, finger, body, found.points[i]);
-  }
-}
 
-void queryBody(const GraspModel& model, GraspState& state, GraspScratch& scratch, int finger, int body) {
-  const engine::BodyModel& b = model.world.bodies[body];
-  const FingerModel& f = model.fingers[finger];
-  FingerReport& report = scratch.fingers[finger];
-  const engine::BodyScratch& mid = scratch.world.bodies[body];
-  const Vec3& p_WC = scratch.world.points[finger].p_mid_W;
-  const Vec3 p_BC = mid.R_WB_mid.transpose() * (p_WC - mid.X_WB_mid.p);
-  const double margin = contactMargin(model, state, scratch, finger, body);
-  const double bound = contact::lowerBoundOfGap(b.shape, p_BC, f.radius);
-  const std::size_t pair = static_cast<std::size_t>(finger) * model.world.bodies.size() + static_cast<std::size_t>(body);
-  if (bound > std::max(f.reach, margin)) {
-    report.gap = std::min(report.gap, bound);
-    state.trackers[pair] = {};
-    if (f.shape) state.tips[pair] = {};
-    return;
+  // The two touch midway between the body's surface and the fingertip's, on the normal n_W but for meshes with force shading.
+  void add(const contact::SurfaceContact& found, int body, const engine::Material& material, const engine::BodyScratch& mid) {
+    engine::Contact* const c = engine::addContact(scratch_.world, found.phi);
+    if (!c) return;
+    const Vec3 n_W = mid.R_WB_mid * found.n_B;
+    c->id = engine::contactId(1, finger_, body, found.feature);
+    c->a = {SideKind::kPoint, finger_};
+    c->b = {SideKind::kBody, body};
+    c->R_WC.col(2) = n_W;
+    c->p_W = mid.X_WB_mid.p + mid.R_WB_mid * found.p_BS + 0.5 * found.phi * n_W;
+    c->material = material;
+    if (f_.pad.isSoft()) c->material.torsion_radius = torsionRadius(f_.pad, f_.radius, state_.fingers[finger_].normal_force);
   }
-  if (f.shape) {
-    const Pose X_WF{scratch.q_mid_WF[finger], p_WC};
-    return takeFound(fingerOnBody(model, state, scratch.world.patches, finger, body, mid.X_WB_mid, X_WF, margin), model, state, scratch,
-                     finger, body, margin);
-  }
-  takeFound(contact::querySphere(b.shape, p_BC, f.radius, margin, state.trackers[pair], scratch.world.patches), model, state, scratch,
-            finger, body, margin);
-}
+
+  const GraspModel& model_;
+  GraspState& state_;
+  GraspScratch& scratch_;
+  const int finger_;
+  const FingerModel& f_;
+  const engine::PointScratch& point_;
+  const bool moves_;
+  FingerReport& report_;
+};
 
 }  // namespace
 
@@ -101,12 +116,14 @@ contact::FingerContacts fingerOnBody(const GraspModel& model, GraspState& state,
 }
 
 void findFingerContacts(const GraspModel& model, GraspState& state, GraspScratch& scratch) {
-  for (int finger = 0; finger < static_cast<int>(model.fingers.size()); ++finger) {
+  const int fingers = static_cast<int>(model.fingers.size()), bodies = static_cast<int>(model.world.bodies.size());
+  for (int finger = 0; finger < fingers; ++finger) {
     scratch.fingers[finger] = {};
     scratch.fingers[finger].gap = std::numeric_limits<double>::max();
     scratch.nearest_n_W[finger].setZero();
     if (model.fingers[finger].method != FingerMethod::kProxy) continue;
-    for (int body = 0; body < static_cast<int>(model.world.bodies.size()); ++body) queryBody(model, state, scratch, finger, body);
+    FingerLook look(model, state, scratch, finger);
+    for (int body = 0; body < bodies; ++body) look.at(body);
   }
 }
 

@@ -22,35 +22,43 @@ void setRotation(const FingerInput& input, const FingerState& last, double h, en
 void setInputs(const GraspModel& model, const GraspState& state, std::span<const FingerInput> inputs, GraspScratch& scratch) {
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     engine::PointInput& point = scratch.inputs[i];
-    point = {inputs[i].p_WF, inputs[i].v_WF, inputs[i].f_W};
+    point.p_target_W = inputs[i].p_WF;
+    point.v_target_W = inputs[i].v_WF;
+    point.f_W = inputs[i].f_W;
+    point.w_W.setZero();
     setRotation(inputs[i], state.fingers[i], model.world.options.h, point, scratch.q_mid_WF[i]);
     const engine::DrivenPointModel& coupling = model.fingers[i].coupling;
     point.turned = model.fingers[i].along_normal;
-    if (point.turned || coupling.twist_stiffness + coupling.twist_damping > 0) point.n_W = state.fingers[i].n_W;
+    const bool has_axis = point.turned || coupling.twist_stiffness + coupling.twist_damping > 0;
+    point.n_W = has_axis ? state.fingers[i].n_W : Vec3(Vec3::UnitZ());
   }
 }
 
 // Sums the contacts of one finger into its report; returns the way from its centre to their force-weighted mean place, or its direction.
 Vec3 sumContacts(const GraspScratch& scratch, int finger, double h, FingerReport& report) {
-  Vec3 p_sum = Vec3::Zero(), n_sum = Vec3::Zero(), tangential = Vec3::Zero();
-  double largest = 0;
+  Vec3 p_sum = Vec3::Zero(), n_sum = Vec3::Zero(), impulse_W = Vec3::Zero(), tangential_W = Vec3::Zero();
+  double normal = 0, torsion = 0, largest = 0;  // impulses
   for (const engine::Contact& c : scratch.world.contacts) {
     if (c.a.kind != engine::SideKind::kPoint || c.a.index != finger || !c.active()) continue;
-    const double f_n = c.r[2] / h;
-    report.f_contact_W += c.impulse_W / h;
-    if (engine::rowsOf(c.material) > engine::kTorsionRow) report.torsion += c.r[engine::kTorsionRow] * c.material.torsion_radius / h;
-    report.normal_force += f_n;
+    const double r_n = c.r[engine::kNormalRow];
+    const Vec3 n_W = c.n_W();
+    impulse_W += c.impulse_W;
+    tangential_W += c.impulse_W - r_n * n_W;
+    normal += r_n;
+    if (engine::rowsOf(c.material) > engine::kTorsionRow) torsion += c.r[engine::kTorsionRow] * c.material.torsion_radius;
     report.sliding = report.sliding || c.sliding;
-    tangential += (c.impulse_W - c.r[2] * c.n_W()) / h;
-    p_sum += f_n * c.p_W;
-    n_sum += f_n * c.n_W();
-    if (f_n > largest) report.body = c.b.index;
-    largest = std::max(largest, f_n);
+    p_sum += r_n * c.p_W;
+    n_sum += r_n * n_W;
+    if (r_n > largest) report.body = c.b.index;
+    largest = std::max(largest, r_n);
   }
-  report.touching = report.normal_force > 0;
+  report.touching = normal > 0;
   if (!report.touching) return Vec3::Zero();
-  report.tangential_force = tangential.norm();
-  report.p_WC = p_sum / report.normal_force;
+  report.f_contact_W = impulse_W / h;
+  report.normal_force = normal / h;
+  report.tangential_force = tangential_W.norm() / h;
+  report.torsion = torsion / h;
+  report.p_WC = p_sum / normal;
   if (n_sum.squaredNorm() > 0) report.n_W = n_sum.normalized();
   const Vec3 to_mean = report.p_WC - scratch.world.points[finger].p_mid_W;
   return to_mean.squaredNorm() > 0 ? to_mean : Vec3(-report.n_W);

@@ -22,8 +22,7 @@ inline constexpr std::array<std::string_view, 4> kSurfaceVariantNames = {"smooth
 constexpr int kMaxSurfaceContacts = 3;
 
 struct SurfaceContact {
-  Vec3 p_BS = Vec3::Zero();
-  Vec3 n_B = Vec3::UnitZ();
+  Vec3 p_BS, n_B;
   double phi = 0;             // [m]; eased where the contact came or goes while it overlaps (contact_slots.h)
   std::uint32_t feature = 0;  // the tracker's slot: the same for as long as this contact is followed
 };

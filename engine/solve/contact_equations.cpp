@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/solve/inverse3.h"
 #include "engine/solve/linear.h"
 #include "engine/solve/mobility.h"
 
@@ -37,27 +38,9 @@ void clearBlock(double* A, int rows) {
   for (int k = 0; k < kStride * rows; ++k) A[k] = 0;
 }
 
-// A becomes its inverse, by the adjugate. False if it is singular or not finite.
-bool invertBlock3(double* A) {
-  const double* const a = A;
-  const double* const b = A + kStride;
-  const double* const c = A + 2 * kStride;
-  const double bc[3] = {b[1] * c[2] - b[2] * c[1], b[2] * c[0] - b[0] * c[2], b[0] * c[1] - b[1] * c[0]};
-  const double ca[3] = {c[1] * a[2] - c[2] * a[1], c[2] * a[0] - c[0] * a[2], c[0] * a[1] - c[1] * a[0]};
-  const double ab[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-  const double inverse = 1 / (a[0] * bc[0] + a[1] * bc[1] + a[2] * bc[2]);
-  if (!std::isfinite(inverse)) return false;
-  for (int i = 0; i < 3; ++i) {
-    A[kStride * i] = inverse * bc[i];
-    A[kStride * i + 1] = inverse * ca[i];
-    A[kStride * i + 2] = inverse * ab[i];
-  }
-  return true;
-}
-
 // A becomes its inverse. False if it is singular or not finite.
 bool invertBlock(double* A, int rows) {
-  if (rows == 3) return invertBlock3(A);
+  if (rows == 3) return invert3<kStride>(A, A);
   double LU[kStride * kStride], inverse[kStride * kStride];
   int pivots[kStride];
   for (int j = 0; j < rows; ++j) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/solve/cone.h"
+#include "engine/solve/inverse3.h"
 #include "engine/solve/mobility.h"
 #include "engine/solve/residual.h"
 
@@ -40,6 +41,47 @@ bool eliminateRows(double (&A)[m][m], double (&b)[m]) {
     for (int j = k + 1; j < m; ++j) b[k] -= A[k][j] * b[j];
     b[k] *= inverse[k];
   }
+  return true;
+}
+
+// The product of row i of A, which has `stride` per row, with column j of B, which has 3, both of three rows.
+template <int stride>
+[[gnu::always_inline]] inline double product3(const double* A, int i, const double* B, int j) {
+  return (A[stride * i] * B[j] + A[stride * i + 1] * B[3 + j]) + A[stride * i + 2] * B[6 + j];
+}
+
+// y = A x, of three rows.
+template <int stride>
+[[gnu::always_inline]] inline double rowTimes3(const double* A, int i, const double* x) {
+  return (A[stride * i] * x[0] + A[stride * i + 1] * x[1]) + A[stride * i + 2] * x[2];
+}
+
+bool eliminateBlocks(double (&A)[3][3], double (&b)[3]) {
+  double inverse[9];
+  if (!invert3<3>(A[0], inverse)) return false;
+  const double x[3] = {b[0], b[1], b[2]};
+  for (int i = 0; i < 3; ++i) b[i] = rowTimes3<3>(inverse, i, x);
+  return true;
+}
+
+// b becomes the solution of A x = b by 3 x 3 blocks and their inverses, a quarter of the work of elimination by rows. Blocks aren't exchanged: where
+// that loses digits, the residual shows it. False if one is singular or not finite.
+bool eliminateBlocks(double (&A)[6][6], double (&b)[6]) {
+  double inverse[9], across[9], first[3];  // A11^-1, A11^-1 A12, A11^-1 b1
+  if (!invert3<6, 3>(A[0], inverse)) return false;
+  for (int i = 0; i < 3; ++i) {
+    first[i] = rowTimes3<3>(inverse, i, b);
+    for (int j = 0; j < 3; ++j)
+      across[3 * i + j] = (inverse[3 * i] * A[0][3 + j] + inverse[3 * i + 1] * A[1][3 + j]) + inverse[3 * i + 2] * A[2][3 + j];
+  }
+  double schur[9], rest[3];
+  for (int i = 0; i < 3; ++i) {
+    rest[i] = b[3 + i] - rowTimes3<6>(A[3], i, first);
+    for (int j = 0; j < 3; ++j) schur[3 * i + j] = A[3 + i][3 + j] - product3<6>(A[3], i, across, j);
+  }
+  if (!invert3<3>(schur, schur)) return false;
+  for (int i = 0; i < 3; ++i) b[3 + i] = rowTimes3<3>(schur, i, rest);
+  for (int i = 0; i < 3; ++i) b[i] = first[i] - rowTimes3<3>(across, i, b + 3);
   return true;
 }
 
@@ -96,39 +138,42 @@ class SmallProblem {
     std::copy(u_, u_ + m, u_out);
   }
 
+  using Block = double[rows][rows];
+
+  // On and below the diagonal.
   template <class Dot>
-  void addOwn(const ContactSide& side, int first, const Dot& dot) {
+  [[gnu::always_inline]] static void addOwn(const ContactSide& side, const Dot& dot, Block& own) {
     for (int k = 0; k < rows; ++k) {
-      for (int l = 0; l <= k; ++l) W_[first + k][first + l] += dot(side.A[k], side.A[l]);
+      for (int l = 0; l <= k; ++l) own[k][l] += dot(side.A[k], side.A[l]);
     }
   }
 
   void fillOwn(const ContactSides& sides, int first) {
-    for (int k = 0; k < rows; ++k) std::fill(W_[first + k] + first, W_[first + k] + first + k + 1, 0.0);
+    Block own = {};
     for (const ContactSide& side : sides) {
       if (side.mover < 0) continue;
       if (side.is_point)
-        addOwn(side, first, dot3);
+        addOwn(side, dot3, own);
       else
-        addOwn(side, first, dot6);
+        addOwn(side, dot6, own);
     }
-    for (int k = 1; k < rows; ++k) {
-      for (int l = 0; l < k; ++l) W_[first + l][first + k] = W_[first + k][first + l];
+    for (int k = 0; k < rows; ++k) {
+      for (int l = 0; l <= k; ++l) W_[first + k][first + l] = W_[first + l][first + k] = own[k][l];
     }
   }
 
   void fillCoupling(const ContactSides& a, const ContactSides& b) {
-    for (int k = 0; k < rows; ++k) std::fill(W_[k] + rows, W_[k] + m, 0.0);
+    Block across = {};
     for (const ContactSide& x : a) {
       for (const ContactSide& y : b) {
         if (x.mover < 0 || x.mover != y.mover) continue;
         for (int k = 0; k < rows; ++k) {
-          for (int l = 0; l < rows; ++l) W_[k][rows + l] += dot6(x.A[k], y.A[l]);
+          for (int l = 0; l < rows; ++l) across[k][l] += dot6(x.A[k], y.A[l]);
         }
       }
     }
     for (int k = 0; k < rows; ++k) {
-      for (int l = rows; l < m; ++l) W_[l][k] = W_[k][l];
+      for (int l = 0; l < rows; ++l) W_[k][rows + l] = W_[rows + l][k] = across[k][l];
     }
   }
 
@@ -149,7 +194,11 @@ class SmallProblem {
   // A full step of Newton's method.
   bool step() {
     for (int i = 0; i < count; ++i) linearise(i);
-    if (!eliminateRows(J_, b_)) return false;
+    if constexpr (rows == 3) {
+      if (!eliminateBlocks(J_, b_)) return false;
+    } else {
+      if (!eliminateRows(J_, b_)) return false;
+    }
     for (int i = 0; i < count; ++i) {
       double* const r_i = r_ + rows * i;
       for (int k = 0; k < rows; ++k) r_i[k] += b_[rows * i + k];

@@ -122,7 +122,7 @@ void advancePoint(const std::array<AxisForm, 3>& forms, double h, PointScratch& 
   s.touching = scratch.touched && !scratch.closing;
 }
 
-void remember(const WorldScratch& scratch, const Contact& c, double h, ContactMemory& m) {
+void remember(const Contact& c, double h, ContactMemory& m) {
   m.id = c.id;
   m.r = c.r;
   m.t1_W = c.R_WC.col(0);
@@ -135,7 +135,7 @@ void remember(const WorldScratch& scratch, const Contact& c, double h, ContactMe
   m.closing = c.closing;
   m.settling = c.settling;
   if (!m.active || m.sliding) return;
-  const ContactVector v_end_C = relativeVelocity(c, mover(scratch, c.a).end, mover(scratch, c.b).end);
+  const ContactVector v_end_C = relativeVelocity(c, c.mover_a->end, c.mover_b->end);
   m.offset_C = c.offset_C + h * (c.closing ? v_end_C : ContactVector(0.5 * (c.v_start_C + v_end_C)));
   m.offset_C[kNormalRow] = 0;
 }
@@ -190,8 +190,9 @@ void alignFaces(std::span<ContactMemory> contacts) {
 }
 
 void rememberContacts(const WorldScratch& scratch, double h, WorldState& state) {
-  state.contact_count = 0;
-  for (const Contact& c : scratch.contacts) remember(scratch, c, h, state.contacts[state.contact_count++]);
+  ContactMemory* memory = state.contacts.data();
+  for (const Contact& c : scratch.contacts) remember(c, h, *memory++);
+  state.contact_count = static_cast<int>(scratch.contacts.size());
   alignFaces({state.contacts.data(), static_cast<std::size_t>(state.contact_count)});
 }
 

@@ -4,9 +4,16 @@
 namespace pincer::engine {
 namespace {
 
+// Whether `plane` is a half-space that is further than `margin` from b's bounding sphere.
+bool isOver(const BodyModel& plane, const BodyModel& b, const BodyScratch& s_plane, const BodyScratch& sb, double margin) {
+  return std::holds_alternative<contact::HalfSpace>(plane.shape) &&
+         s_plane.R_WB_mid.col(2).dot(sb.X_WI_mid.p - s_plane.X_WB_mid.p) > b.bounding_radius + margin;
+}
+
 bool boundsTouch(const BodyModel& a, const BodyModel& b, const BodyScratch& sa, const BodyScratch& sb, double margin) {
   const double reach = a.bounding_radius + b.bounding_radius + margin;
-  return !((sa.X_WI_mid.p - sb.X_WI_mid.p).squaredNorm() > reach * reach);
+  if ((sa.X_WI_mid.p - sb.X_WI_mid.p).squaredNorm() > reach * reach) return false;
+  return !isOver(a, b, sa, sb, margin) && !isOver(b, a, sb, sa, margin);
 }
 
 // material  of the pair, null where it is combined once they touch

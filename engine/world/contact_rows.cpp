@@ -14,8 +14,8 @@ double turnOfNormal(const WorldScratch& scratch, double h_last, const Contact& c
   const Vec3 n_W = c.n_W();
   const Vec3 v_rel_W = c.R_WC * c.v_start_C.head<3>();
   double turn = (n_W - memory.n_W).dot(v_rel_W);
-  turn += n_W.dot(mover(scratch, c.a).start.w_W.cross(c.arm_a_W - memory.arm_a_W));
-  turn -= n_W.dot(mover(scratch, c.b).start.w_W.cross(c.arm_b_W - memory.arm_b_W));
+  if (turns(c.mover_a->start)) turn += n_W.dot(c.mover_a->start.w_W.cross(c.arm_a_W - memory.arm_a_W));
+  if (turns(c.mover_b->start)) turn -= n_W.dot(c.mover_b->start.w_W.cross(c.arm_b_W - memory.arm_b_W));
   return scratch.h / (scratch.h + h_last) * turn;
 }
 
@@ -37,7 +37,7 @@ double largestCorrection(const WorldModel& model, const Contact& c) { return isP
 double normalBias(const WorldModel& model, const WorldState& state, const WorldScratch& scratch, Contact& c) {
   if (scratch.h == 0) return impactBias(model, scratch, c);
   const double h = model.options.h;
-  const ContactMemory* memory = c.memory >= 0 ? &state.contacts[c.memory] : nullptr;
+  const ContactMemory* const memory = c.memory;
   const double u_n = c.v_start_C[kNormalRow];
   if (memory && memory->active) {
     const double turn = turnOfNormal(scratch, state.h_last, c, *memory);
@@ -54,8 +54,8 @@ void fillContact(const WorldModel& model, const WorldState& state, WorldScratch&
   const double rate = scratch.h > 0 ? kTangentCorrection / model.options.h : 0;
   Contact& c = scratch.contacts[i];
   const int first = scratch.first_row[i], count = scratch.first_row[i + 1] - first;
-  const ContactMemory* memory = c.memory >= 0 ? &state.contacts[c.memory] : nullptr;
-  ContactVector q = relativeVelocity(c, mover(scratch, c.a).free, mover(scratch, c.b).free);
+  const ContactMemory* const memory = c.memory;
+  ContactVector q = relativeVelocity(c, c.mover_a->free, c.mover_b->free);
   c.stuck = memory && memory->active && !memory->sliding;
   c.closing = false;
   c.bias_C.setZero();
@@ -63,9 +63,14 @@ void fillContact(const WorldModel& model, const WorldState& state, WorldScratch&
   c.bias_C[kNormalRow] = normalBias(model, state, scratch, c);
   q += c.bias_C;
   for (int k = kTorsionRow; k < count; ++k) q[k] *= radiusOf(c, k);
-  for (int k = 0; k < count; ++k) scratch.q[first + k] = q[k];
   const double longer = memory ? scratch.h / state.h_last : 0;  // than the last part of a tick: impulses grow with it
-  for (int k = 0; k < count; ++k) scratch.r[first + k] = memory ? longer * memory->r[k] : 0;
+  double *const q_i = scratch.q.data() + first, *const r_i = scratch.r.data() + first;
+  withRows(count, [&](auto rows) {
+    for (int k = 0; k < rows; ++k) {
+      q_i[k] = q[k];
+      r_i[k] = memory ? longer * memory->r[k] : 0;
+    }
+  });
   scratch.mu[i] = c.mu;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <span>
 
 #include "engine/solve/gauss_seidel.h"
@@ -40,14 +41,16 @@ int rootOf(std::vector<int>& parent, int mover) {
 }
 
 void findEnds(const WorldModel& model, const WorldScratch& scratch, IslandScratch& s) {
-  const std::size_t n = scratch.contacts.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    s.ends[i] = {moverOf(model, scratch, scratch.contacts[i].a), moverOf(model, scratch, scratch.contacts[i].b)};
-    for (const int mover : {s.ends[i].a, s.ends[i].b}) {
+  ContactEnds* ends = s.ends.data();
+  int *const parent = s.parent.data(), *const number = s.number.data(), *const island_of = s.island_of.data();
+  for (const Contact& c : scratch.contacts) {
+    *ends = {moverOf(model, scratch, c.a), moverOf(model, scratch, c.b)};
+    for (const int mover : {ends->a, ends->b}) {
       if (mover < 0) continue;
-      s.parent[mover] = mover;
-      s.number[mover] = s.island_of[mover] = -1;
+      parent[mover] = mover;
+      number[mover] = island_of[mover] = -1;
     }
+    ++ends;
   }
 }
 
@@ -72,7 +75,7 @@ void uniteMovers(std::span<const ContactEnds> all, IslandScratch& s) {
 void makeOneIsland(int contacts, IslandScratch& s) {
   s.islands.clear();
   s.islands.emplace_back().contacts = contacts;
-  for (int i = 0; i < contacts; ++i) s.order[i] = i;
+  std::iota(s.order.begin(), s.order.begin() + contacts, 0);
 }
 
 void sortContacts(std::span<const ContactEnds> all, IslandScratch& s) {
@@ -179,27 +182,33 @@ void gather(const WorldModel& model, const WorldScratch& scratch, int k, int row
   Island& island = s.islands[k];
   island.row = row;
   int* const first_row = s.first_row.data() + island.place + k;
-  const int* const order = s.order.data() + island.place;
+  const int *const order = s.order.data() + island.place, *const from_row = scratch.first_row.data();
+  const Contact* const contacts = scratch.contacts.data();
+  const ContactEnds* const all_ends = s.ends.data();
+  const double *const all_mu = scratch.mu.data(), *const all_q = scratch.q.data(), *const all_r = scratch.r.data();
   ContactSides* const all_sides = s.sides.data() + island.place;
   double *const mu = s.mu.data() + island.place, *const q = s.q.data() + row, *const r = s.r.data() + row;
-  int rows_before = 0;
+  int rows_before = 0, settling = 0;
   for (int n = 0; n < island.contacts; ++n) {
-    const int i = order[n], from = scratch.first_row[i], rows = scratch.first_row[i + 1] - from;
-    const Contact& c = scratch.contacts[i];
-    const ContactEnds ends = s.ends[i];
+    const int i = order[n], from = from_row[i], rows = from_row[i + 1] - from;
+    const Contact& c = contacts[i];
+    const ContactEnds ends = all_ends[i];
     ContactSides& sides = all_sides[n];
     fillSide(model, scratch, c, rows, true, ends.a, numberOf(model, scratch, c.a, ends.a, island, s), s, sides[0]);
     fillSide(model, scratch, c, rows, false, ends.b, numberOf(model, scratch, c.b, ends.b, island, s), s, sides[1]);
     if (ends.a >= 0 && ends.a == ends.b) joinSides(rows, sides);
     first_row[n] = rows_before;
-    mu[n] = scratch.mu[i];
-    island.settling = std::max(island.settling, c.settling);
-    for (int l = 0; l < rows; ++l) {
-      q[rows_before + l] = scratch.q[from + l];
-      r[rows_before + l] = scratch.r[from + l];
-    }
+    mu[n] = all_mu[i];
+    settling = std::max(settling, c.settling);
+    withRows(rows, [&](auto count) {
+      for (int l = 0; l < count; ++l) {
+        q[rows_before + l] = all_q[from + l];
+        r[rows_before + l] = all_r[from + l];
+      }
+    });
     rows_before += rows;
   }
+  island.settling = settling;
   first_row[island.contacts] = island.rows = rows_before;
 }
 
@@ -210,17 +219,25 @@ int nextSettling(const Island& island, double tolerance) {
 }
 
 void scatter(const IslandScratch& s, const Island& island, double tolerance, WorldScratch& scratch) {
-  int from = island.row;
   const int settling = nextSettling(island, tolerance);
   const bool quiet = island.result.method == SolveMethod::kWarmStart;
+  const int *const order = s.order.data() + island.place, *const from_row = scratch.first_row.data();
+  Contact* const contacts = scratch.contacts.data();
+  const double *r_k = s.r.data() + island.row, *u_k = s.u.data() + island.row;
+  double *const r = scratch.r.data(), *const u = scratch.u.data();
   for (int n = 0; n < island.contacts; ++n) {
-    const int i = s.order[island.place + n];
-    scratch.contacts[i].settling = settling;
-    scratch.contacts[i].quiet = quiet;
-    for (int row = scratch.first_row[i]; row < scratch.first_row[i + 1]; ++row, ++from) {
-      scratch.r[row] = s.r[from];
-      scratch.u[row] = s.u[from];
-    }
+    const int i = order[n];
+    contacts[i].settling = settling;
+    contacts[i].quiet = quiet;
+    const int first = from_row[i], rows = from_row[i + 1] - first;
+    withRows(rows, [&](auto count) {
+      for (int l = 0; l < count; ++l) {
+        r[first + l] = r_k[l];
+        u[first + l] = u_k[l];
+      }
+    });
+    r_k += rows;
+    u_k += rows;
   }
 }
 

@@ -20,19 +20,21 @@ Mat3 carriedFrame(const Vec3& n_W, const Vec3& n_old_W, const Vec3& t1_old_W) {
   const double length = t1.norm();
   if (length < 0.1) return frameFromNormal(n_W);
   Mat3 R;
-  R.col(0) = t1 / length;
+  R.col(0) = (1 / length) * t1;
   R.col(1) = n_W.cross(R.col(0));
   R.col(2) = n_W;
   return R;
 }
 
-void recall(const WorldState& state, WorldScratch& scratch, Contact& c) {
-  const ContactMemory* memory = c.memory >= 0 ? &state.contacts[c.memory] : nullptr;
+void recall(const WorldScratch& scratch, Contact& c) {
+  const ContactMemory* const memory = c.memory;
   const Vec3 n_W = c.R_WC.col(2);
   c.R_WC = memory ? carriedFrame(n_W, memory->n_W, memory->t1_W) : frameFromNormal(n_W);
   c.arm_a_W = c.p_W - centre(scratch, c.a);
   c.arm_b_W = c.p_W - centre(scratch, c.b);
-  c.v_start_C = relativeVelocity(c, mover(scratch, c.a).start, mover(scratch, c.b).start);
+  c.mover_a = &mover(scratch, c.a);
+  c.mover_b = &mover(scratch, c.b);
+  c.v_start_C = relativeVelocity(c, c.mover_a->start, c.mover_b->start);
   c.mu = memory && memory->sliding ? slidingFriction(c.material, c.v_start_C.head<2>().norm()) : c.material.mu_s;
   c.settling = memory ? memory->settling : 0;
   c.offset_C.setZero();
@@ -46,11 +48,12 @@ void recallContacts(const WorldState& state, WorldScratch& scratch) {
   if (!std::is_sorted(scratch.contacts.begin(), scratch.contacts.end(), by_id)) {  // nearly always they come sorted
     std::sort(scratch.contacts.begin(), scratch.contacts.end(), by_id);
   }
-  int old = 0;
+  const ContactMemory* old = state.contacts.data();
+  const ContactMemory* const end = old + state.contact_count;
   for (Contact& c : scratch.contacts) {
-    while (old < state.contact_count && state.contacts[old].id < c.id) ++old;
-    c.memory = old < state.contact_count && state.contacts[old].id == c.id ? old : -1;
-    recall(state, scratch, c);
+    while (old < end && old->id < c.id) ++old;
+    c.memory = old < end && old->id == c.id ? old : nullptr;
+    recall(scratch, c);
   }
 }
 

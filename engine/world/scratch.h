@@ -18,6 +18,8 @@ namespace pincer::engine {
 
 enum class SideKind : std::uint8_t { kBody, kPoint };
 
+struct MoverScratch;
+
 // One of the two that touch.
 struct Side {
   SideKind kind = SideKind::kBody;
@@ -26,15 +28,17 @@ struct Side {
 
 // A contact of this tick: n_W points out of b towards a. All geometry is that of the predicted middle of the tick.
 struct Contact {
+  // Whoever adds it gives it these, of R_WC the third column.
   std::uint64_t id = 0;
   Side a, b;
-  Vec3 p_W = Vec3::Zero();       // where they touch [m]
-  Mat3 R_WC = Mat3::Identity();  // columns (t1, t2, n)
-  double phi = 0;                // gap [m]
+  Vec3 p_W;        // where they touch [m]
+  Mat3 R_WC;       // columns (t1, t2, n)
+  double phi = 0;  // gap [m]
   Material material;
-  int memory = -1;  // index in the state's contacts before the step, -1 for a new contact
-  // filled by the step, without a value before:
-  double mu = 0;  // in force in this tick
+  // Filled by the step, without a value before.
+  const ContactMemory* memory;            // of the last tick, null for a new contact; until this one is remembered
+  const MoverScratch *mover_a, *mover_b;  // of a and b
+  double mu;                              // in force in this tick
   Vec3 arm_a_W, arm_b_W;
   ContactVector v_start_C;  // of a relative to b at the start of the tick, see relativeVelocity
   ContactVector offset_C;   // anchored stick, at the start of the tick; see ContactMemory
@@ -48,6 +52,7 @@ struct Contact {
   int settling = 0;    // see ContactMemory; of the last tick before the solve, of this one after it
   bool quiet = false;  // the last tick's impulses still fit
 
+  Contact() {}  // NOLINT(modernize-use-equals-default): a defaulted one would clear all of a new contact
   Vec3 n_W() const { return R_WC.col(2); }
   bool active() const { return r[2] > 0; }
 };
@@ -173,7 +178,7 @@ inline const MoverScratch& mover(const WorldScratch& scratch, const Side& side) 
 inline Vec3 axisOf(const Contact& c, int k) { return k == kTorsionRow ? c.R_WC.col(2) : c.R_WC.col(k - kRollingRow); }
 inline double radiusOf(const Contact& c, int k) { return k == kTorsionRow ? c.material.torsion_radius : c.material.rolling_radius; }
 
-inline bool turns(const Motion& m) { return m.w_W[0] != 0 || m.w_W[1] != 0 || m.w_W[2] != 0; }
+inline bool turns(const Motion& m) { return m.w_W.squaredNorm() != 0; }
 
 // Velocity of a relative to b where they touch, in C: along t1, t2, n [m/s]; of rows that the contact has, about n, t1, t2 [rad/s].
 inline ContactVector relativeVelocity(const Contact& c, const Motion& a, const Motion& b) {

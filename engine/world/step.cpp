@@ -23,14 +23,16 @@ bool isResidue(const WorldModel& model, const WorldScratch& scratch, const Conta
 
 void readSolution(const WorldModel& model, const WorldScratch& scratch, int i, Contact& c) {
   const int first = scratch.first_row[i], count = scratch.first_row[i + 1] - first;
+  const double *const r = scratch.r.data() + first, *const u = scratch.u.data() + first;
   c.r.setZero();
-  for (int k = 0; k < count; ++k) c.r[k] = scratch.r[first + k];
-  c.u_C = Eigen::Map<const Vec3>(&scratch.u[first]);
+  withRows(count, [&](auto rows) {
+    for (int k = 0; k < rows; ++k) c.r[k] = r[k];
+  });
+  c.u_C = Eigen::Map<const Vec3>(u);
   if (isResidue(model, scratch, c)) c.r.setZero();
   c.impulse_W = c.R_WC * c.r.head<3>();
   const double on_cone = kOnCone * c.mu * c.r[2];
-  c.sliding = c.active() && tangentNorm2(c.r.data(), count) >= on_cone * on_cone &&
-              tangentNorm2(&scratch.u[first], count) > kSlidingSpeed * kSlidingSpeed;
+  c.sliding = c.active() && tangentNorm2(c.r.data(), count) >= on_cone * on_cone && tangentNorm2(u, count) > kSlidingSpeed * kSlidingSpeed;
 }
 
 }  // namespace
