@@ -14,6 +14,7 @@ namespace {
 constexpr double kSmallEpsilon = 1e-11;  // of w_i: far above round-off, far below what one contact gives
 constexpr int kSmallSteps = 4;           // more are a sign that full steps don't do
 constexpr int kSmallPolishSteps = 2;
+constexpr int kSmallContacts = 3;  // so many only of as many movers: a body on three feet is held more than six-fold
 
 // b becomes the solution of A x = b, by elimination with row pivots. False if a pivot is 0 or not finite.
 template <int m>
@@ -44,44 +45,41 @@ bool eliminateRows(double (&A)[m][m], double (&b)[m]) {
   return true;
 }
 
-// The product of row i of A, which has `stride` per row, with column j of B, which has 3, both of three rows.
-template <int stride>
-[[gnu::always_inline]] inline double product3(const double* A, int i, const double* B, int j) {
-  return (A[stride * i] * B[j] + A[stride * i + 1] * B[3 + j]) + A[stride * i + 2] * B[6 + j];
+// Row l of a product with the vector x, or with column n of the matrix B, of three rows each.
+[[gnu::always_inline]] inline double rowTimes(const double* row, const double* x) {
+  return (row[0] * x[0] + row[1] * x[1]) + row[2] * x[2];
 }
-
-// y = A x, of three rows.
-template <int stride>
-[[gnu::always_inline]] inline double rowTimes3(const double* A, int i, const double* x) {
-  return (A[stride * i] * x[0] + A[stride * i + 1] * x[1]) + A[stride * i + 2] * x[2];
-}
-
-bool eliminateBlocks(double (&A)[3][3], double (&b)[3]) {
-  double inverse[9];
-  if (!invert3<3>(A[0], inverse)) return false;
-  const double x[3] = {b[0], b[1], b[2]};
-  for (int i = 0; i < 3; ++i) b[i] = rowTimes3<3>(inverse, i, x);
-  return true;
+[[gnu::always_inline]] inline double rowTimes(const double* row, const double (&B)[3][3], int n) {
+  return (row[0] * B[0][n] + row[1] * B[1][n]) + row[2] * B[2][n];
 }
 
 // b becomes the solution of A x = b by 3 x 3 blocks and their inverses, a quarter of the work of elimination by rows. Blocks aren't exchanged: where
 // that loses digits, the residual shows it. False if one is singular or not finite.
-bool eliminateBlocks(double (&A)[6][6], double (&b)[6]) {
-  double inverse[9], across[9], first[3];  // A11^-1, A11^-1 A12, A11^-1 b1
-  if (!invert3<6, 3>(A[0], inverse)) return false;
-  for (int i = 0; i < 3; ++i) {
-    first[i] = rowTimes3<3>(inverse, i, b);
-    for (int j = 0; j < 3; ++j)
-      across[3 * i + j] = (inverse[3 * i] * A[0][3 + j] + inverse[3 * i + 1] * A[1][3 + j]) + inverse[3 * i + 2] * A[2][3 + j];
+template <int m>
+[[gnu::always_inline]] inline bool eliminateBlocks(double (&A)[m][m], double (&b)[m]) {
+  for (int k = 0; k < m; k += 3) {
+    double inverse[3][3];
+    if (!invert3<m, 3>(&A[k][k], inverse[0])) return false;
+    const double b_k[3] = {b[k], b[k + 1], b[k + 2]};
+    for (int l = 0; l < 3; ++l) b[k + l] = rowTimes(inverse[l], b_k);
+    for (int i = k + 3; i < m; ++i) b[i] -= rowTimes(&A[i][k], b + k);
+    for (int j = k + 3; j < m; j += 3) {
+      double A_kj[3][3];
+      for (int l = 0; l < 3; ++l) std::copy(&A[k + l][j], &A[k + l][j] + 3, A_kj[l]);
+      double across[3][3];  // A_kk^-1 A_kj, which takes A_kj's place
+      for (int l = 0; l < 3; ++l) {
+        for (int n = 0; n < 3; ++n) A[k + l][j + n] = across[l][n] = rowTimes(inverse[l], A_kj, n);
+      }
+      for (int i = k + 3; i < m; ++i) {
+        for (int n = 0; n < 3; ++n) A[i][j + n] -= rowTimes(&A[i][k], across, n);
+      }
+    }
   }
-  double schur[9], rest[3];
-  for (int i = 0; i < 3; ++i) {
-    rest[i] = b[3 + i] - rowTimes3<6>(A[3], i, first);
-    for (int j = 0; j < 3; ++j) schur[3 * i + j] = A[3 + i][3 + j] - product3<6>(A[3], i, across, j);
+  for (int k = m - 6; k >= 0; k -= 3) {
+    for (int j = k + 3; j < m; j += 3) {
+      for (int l = 0; l < 3; ++l) b[k + l] -= rowTimes(&A[k + l][j], b + j);
+    }
   }
-  if (!invert3<3>(schur, schur)) return false;
-  for (int i = 0; i < 3; ++i) b[3 + i] = rowTimes3<3>(schur, i, rest);
-  for (int i = 0; i < 3; ++i) b[i] = first[i] - rowTimes3<3>(across, i, b + 3);
   return true;
 }
 
@@ -100,7 +98,10 @@ class SmallProblem {
       for (int k = rows * i; k < rows * (i + 1); ++k) trace += W_[k][k];
       w_[i] = trace / rows;
     }
-    if (count == 2) fillCoupling(problem.sides[0], problem.sides[1]);
+    for (int i = 0; i < count; ++i) {
+      for (int j = i + 1; j < count; ++j)
+        fillCoupling(problem.sides[static_cast<std::size_t>(i)], problem.sides[static_cast<std::size_t>(j)], rows * i, rows * j);
+    }
   }
 
   bool solve(const SolverOptions& options, bool strict, double* r_out, double* u_out, SolveResult& result) {
@@ -162,7 +163,7 @@ class SmallProblem {
     }
   }
 
-  void fillCoupling(const ContactSides& a, const ContactSides& b) {
+  void fillCoupling(const ContactSides& a, const ContactSides& b, int first_a, int first_b) {
     Block across = {};
     for (const ContactSide& x : a) {
       for (const ContactSide& y : b) {
@@ -173,7 +174,7 @@ class SmallProblem {
       }
     }
     for (int k = 0; k < rows; ++k) {
-      for (int l = 0; l < rows; ++l) W_[k][rows + l] = W_[rows + l][k] = across[k][l];
+      for (int l = 0; l < rows; ++l) W_[first_a + k][first_b + l] = W_[first_b + l][first_a + k] = across[k][l];
     }
   }
 
@@ -267,11 +268,12 @@ bool solveAs(const ContactProblem& problem, const SolverOptions& options, double
 
 bool solveSmallProblem(const ContactProblem& problem, const SolverOptions& options, double* r, double* u, SolveResult& result) {
   const int n = problem.contactCount();
-  if (n > 2) return false;
+  if (n > kSmallContacts || (n == kSmallContacts && problem.movers < n)) return false;
   const int rows = problem.rows(0);
   if (rows > 4 || problem.rowCount() != n * rows) return false;
-  if (rows == 3) return n == 1 ? solveAs<1, 3>(problem, options, r, u, result) : solveAs<2, 3>(problem, options, r, u, result);
-  return n == 1 ? solveAs<1, 4>(problem, options, r, u, result) : solveAs<2, 4>(problem, options, r, u, result);
+  if (n == 1) return rows == 3 ? solveAs<1, 3>(problem, options, r, u, result) : solveAs<1, 4>(problem, options, r, u, result);
+  if (n == 2) return rows == 3 ? solveAs<2, 3>(problem, options, r, u, result) : solveAs<2, 4>(problem, options, r, u, result);
+  return rows == 3 ? solveAs<3, 3>(problem, options, r, u, result) : solveAs<3, 4>(problem, options, r, u, result);
 }
 
 }  // namespace pincer::engine

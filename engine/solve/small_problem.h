@@ -1,4 +1,4 @@
-// small_problem: Newton's method (newton.h) for one or two contacts of three or four rows, the usual grasp, with all sizes known to the compiler.
+// small_problem: Newton's method (newton.h) for one to three contacts of three or four rows, the usual grasps, with all sizes known to the compiler.
 //
 //   u = W r + q,   y_i = w_i r_i - u_i,   w_i the mean of W_ii's diagonal
 //   open   (y_n <= 0)              dr_i = -r_i

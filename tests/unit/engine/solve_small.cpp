@@ -1,4 +1,4 @@
-// One and two contacts: Newton's method in fixed sizes against the general one.
+// One to three contacts: Newton's method in fixed sizes against the general one.
 #include <gtest/gtest.h>
 
 #include "engine/solve/small_problem.h"
@@ -12,7 +12,7 @@ struct SmallTrial {
   double furthest = 0;  // from the general method's velocities, relative
 };
 
-// Grasps by one or two fingers, from the impulses of a similar one. The general method: three times the problem, side by side, is too large for the
+// Grasps by up to three fingers, from the impulses of a similar one. The general method: four times the problem, side by side, is too large for the
 // fixed sizes, and has the same answer.
 SmallTrial tryGrasps(int fingers, bool torsion) {
   tests::RandomScenes random(11);
@@ -20,34 +20,34 @@ SmallTrial tryGrasps(int fingers, bool torsion) {
   for (int scene = 0; scene < 200; ++scene) {
     tests::OwnedContactProblem p = random.grasp(fingers, 1, torsion);
     const int n = static_cast<int>(p.mu.size()), m = static_cast<int>(p.q.size());
-    tests::OwnedContactProblem three = p;
-    for (int copy = 1; copy < 3; ++copy) {
+    tests::OwnedContactProblem four = p;
+    for (int copy = 1; copy < 4; ++copy) {
       for (int i = 0; i < n; ++i) {
-        three.sides.push_back(p.sides[i]);
-        for (ContactSide& side : three.sides.back()) side.mover += side.mover >= 0 ? copy * p.movers : 0;
-        three.mu.push_back(p.mu[i]);
-        three.first_row.push_back(copy * m + p.first_row[i + 1]);
+        four.sides.push_back(p.sides[i]);
+        for (ContactSide& side : four.sides.back()) side.mover += side.mover >= 0 ? copy * p.movers : 0;
+        four.mu.push_back(p.mu[i]);
+        four.first_row.push_back(copy * m + p.first_row[i + 1]);
       }
     }
-    three.movers = 3 * p.movers;
-    three.q = p.q.replicate(3, 1);
-    SolverScratch scratch(3 * n, three.movers);
-    Eigen::VectorXd r = Eigen::VectorXd::Zero(m), u = r, r3 = Eigen::VectorXd::Zero(3 * m), u3 = r3;
-    solveContacts(three.view(), {}, scratch, {r3.data(), 3 * m}, {u3.data(), 3 * m});
-    r = 1.01 * r3.head(m);
+    four.movers = 4 * p.movers;
+    four.q = p.q.replicate(4, 1);
+    SolverScratch scratch(4 * n, four.movers);
+    Eigen::VectorXd r = Eigen::VectorXd::Zero(m), u = r, r4 = Eigen::VectorXd::Zero(4 * m), u4 = r4;
+    solveContacts(four.view(), {}, scratch, {r4.data(), 4 * m}, {u4.data(), 4 * m});
+    r = 1.01 * r4.head(m);
     SolveResult result;
     ++trial.all;
     if (!solveSmallProblem(p.view(), {}, r.data(), u.data(), result)) continue;
     ++trial.solved;
     EXPECT_LE(result.residual, 1e-10);
     EXPECT_LE(contactResidual(p.view(), r, scratch, u), 2e-10);  // the same, by the factors of W
-    trial.furthest = std::max(trial.furthest, (u - u3.head(m)).norm() / p.q.norm());
+    trial.furthest = std::max(trial.furthest, (u - u4.head(m)).norm() / p.q.norm());
   }
   return trial;
 }
 
 TEST(SmallProblem, AgreesWithTheGeneralMethod) {
-  for (const int fingers : {1, 2}) {
+  for (const int fingers : {1, 2, 3}) {
     for (const bool torsion : {false, true}) {
       const SmallTrial trial = tryGrasps(fingers, torsion);
       EXPECT_GT(trial.solved, 0.9 * trial.all) << fingers << (torsion ? " with torsion" : "");
