@@ -13,7 +13,8 @@ namespace pincer::tasks {
 namespace {
 
 constexpr const char* kExportExample = R"(
-Writes session.csv, trial.csv, sample.csv, event.csv, response.csv and reading.csv, with units in the column names.
+Writes session.csv, trial.csv, sample.csv, event.csv, response.csv and reading.csv, with units in the column names; of people also hands.csv and
+input.csv, every tick of their hands.
 
 Example:
   pincer export out/first/session.db --trial 3 --every 10 --out trial3)";

@@ -15,7 +15,11 @@ namespace {
 class StudySessionSink final : public RecordSink {
  public:
   // Keeps every `stride`-th tick.
-  StudySessionSink(SessionWriter& writer, std::int64_t stride) : writer_(writer), stride_(stride) {}
+  // `inputs`: and the inputs of all, of hands that nothing else can bring back.
+  StudySessionSink(SessionWriter& writer, std::int64_t stride, bool inputs) : writer_(writer), stride_(stride), inputs_(inputs) {}
+  bool wantsInputs() const override { return inputs_; }
+  void hands(const HandsRecord& hands) override { writer_.addHands(hands); }
+  void input(const InputRecord& input) override { writer_.pushInput(input); }  // a lost one is a gap in the ticks, which a replay names
   bool wantsSample(std::int64_t tick) const override { return tick % stride_ == 0; }
   void sample(const SampleRecord& sample) override { writer_.pushSample(sample); }  // a lost one is counted by the store
   void event(const EventRecord& event) override { writer_.addEvent(event); }
@@ -25,6 +29,7 @@ class StudySessionSink final : public RecordSink {
  private:
   SessionWriter& writer_;
   const std::int64_t stride_;
+  const bool inputs_;
 };
 
 std::string devicesJson(const ManipulationSessionOptions& o) {
@@ -54,7 +59,7 @@ SessionInfo sessionInfo(const ManipulationSessionOptions& o) {
 
 ManipulationSessionResult runInto(SessionWriter& writer, const ManipulationSessionOptions& options, StudyHooks hooks,
                                   const std::atomic<bool>& interrupted) {
-  StudySessionSink sink(writer, std::lround(options.servo.rate) / options.sample_rate);
+  StudySessionSink sink(writer, std::lround(options.servo.rate) / options.sample_rate, static_cast<bool>(options.host.hands));
   ManipulationSessionResult result;
   hooks.host = options.host;
   hooks.served = [&](const ServoReport& trial) { result.servo.add(trial); };

@@ -2,14 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <cstring>
+#include <algorithm>
 #include <type_traits>
 #include <vector>
 
 #include "contact/error.h"
 #include "tasks/experiments/manipulation_file.h"
+#include "tasks/experiments/recorded_hands.h"
 #include "tasks/experiments/simulated_trial.h"
-#include "tasks/session/columns.h"
+#include "tasks/session/input_codec.h"
 
 namespace pincer::tasks {
 namespace {
@@ -40,39 +41,92 @@ std::string differenceOf(const Record& stored, const Record& fresh) {
   return "";
 }
 
+// A trial of the session: finished, or cut short with what survived of its inputs.
+struct StoredTrial {
+  TrialRecord row;  // of a trial that was cut short its number alone
+  bool finished = true;
+  std::optional<HandsRecord> hands{};  // of a person
+  std::vector<InputRecord> inputs{};
+};
+
+// Compares what a trial leaves behind with what it left behind then.
 class ComparingSink final : public RecordSink {
  public:
-  ComparingSink(const SessionReader& session, const TrialRecord& row, ReplayResult& result) : row_(row), result_(result) {
-    session.forEachSample({.trial = row.trial}, [this](const SampleRecord& sample) { stored_.push_back(sample); });
+  ComparingSink(const SessionReader& session, const StoredTrial& stored, ReplayResult& result)
+      : stored_(stored), result_(result), events_(session.events(stored.row.trial)), readings_(session.readings(stored.row.trial)) {
+    session.forEachSample({.trial = stored.row.trial}, [this](const SampleRecord& sample) { samples_.push_back(sample); });
   }
-  bool wantsSample(std::int64_t tick) const override { return next_ < stored_.size() && stored_[next_].tick == tick; }
+  bool wantsInputs() const override { return stored_.hands.has_value(); }
+  void input(const InputRecord& input) override {
+    const InputRecord& stored = stored_.inputs[next_input_++];
+    ++result_.inputs;
+    if (wordsOf(stored) != wordsOf(input)) report(differenceOf(stored, input), stored.tick, stored.time);
+  }
+  bool wantsSample(std::int64_t tick) const override { return next_ < samples_.size() && samples_[next_].tick == tick; }
   void sample(const SampleRecord& sample) override {
-    const SampleRecord& stored = stored_[next_++];
+    const SampleRecord& stored = samples_[next_++];
     ++result_.samples;
-    if (!result_.first) report(differenceOf(stored, sample), stored.tick, stored.time);
+    report(differenceOf(stored, sample), stored.tick, stored.time);
   }
-  void event(const EventRecord&) override {}
-  void reading(const ReadingRecord&) override {}
+  void event(const EventRecord& event) override { compareNext("event", events_, next_event_, event); }
+  void reading(const ReadingRecord& reading) override { compareNext("reading", readings_, next_reading_, reading); }
   void trial(const TrialRecord& trial) override {
     ++result_.trials;
-    if (!result_.first) report(differenceOf(row_, trial), -1, trial.duration);
-    if (!result_.first && next_ < stored_.size()) report("the trial ended before this tick", stored_[next_].tick, stored_[next_].time);
+    if (next_event_ < events_.size()) report(fmt::format("event {} didn't come again", next_event_), -1, trial.duration);
+    if (next_reading_ < readings_.size()) report(fmt::format("reading {} didn't come again", next_reading_), -1, trial.duration);
+    report(differenceOf(stored_.row, trial), -1, trial.duration);
+    endTooSoon();
+  }
+  // After the last tick, when no row follows.
+  void endTooSoon() {
+    const char* what = "the trial ended before this tick";
+    if (next_input_ < stored_.inputs.size()) report(what, stored_.inputs[next_input_].tick, stored_.inputs[next_input_].time);
+    if (next_ < samples_.size()) report(what, samples_[next_].tick, samples_[next_].time);
   }
 
  private:
-  void report(const std::string& what, std::int64_t tick, double time) {
-    if (!what.empty()) result_.first = ReplayDifference{row_.trial, tick, time, what};
+  template <class Record>
+  void compareNext(const char* kind, const std::vector<Record>& stored, std::size_t& next, const Record& fresh) {
+    const std::string name = fmt::format("{} {}", kind, next);
+    if (next >= stored.size()) return report(name + " is new", -1, fresh.time);
+    const std::string difference = differenceOf(stored[next++], fresh);
+    if (!difference.empty()) report(name + ": " + difference, -1, fresh.time);
   }
-  TrialRecord row_;
+  void report(const std::string& what, std::int64_t tick, double time) {
+    if (!what.empty() && !result_.first) result_.first = ReplayDifference{stored_.row.trial, tick, time, what};
+  }
+  const StoredTrial& stored_;
   ReplayResult& result_;
-  std::vector<SampleRecord> stored_;
-  std::size_t next_ = 0;
+  std::vector<EventRecord> events_;
+  std::vector<ReadingRecord> readings_;
+  std::vector<SampleRecord> samples_;
+  std::size_t next_ = 0, next_input_ = 0, next_event_ = 0, next_reading_ = 0;
 };
 
-std::vector<TrialRecord> wantedTrials(const SessionReader& session, std::optional<std::int64_t> trial) {
-  std::vector<TrialRecord> wanted;
+void requireReplayable(const SessionReader& session, bool simulated) {
+  const std::string& task = session.info().task;
+  const auto refuse = [&](const std::string& why) { throw InputError(session.path() + ": can't be replayed: " + why); };
+  if (task != "manipulation" && task != "sphere-pickup" && task != "cylinder-alignment") {
+    refuse(fmt::format("only sphere pickup and cylinder alignment are (task: {}).", task));
+  }
+  if (!simulated && !session.keepsInputs()) {
+    refuse("it was recorded by a pincer that didn't keep what people's hands did. Its tables and its report are as good as ever.");
+  }
+}
+
+// The wanted trials that are finished; of people those cut short too. Their inputs are read one trial at a time.
+std::vector<StoredTrial> wantedTrials(const SessionReader& session, std::optional<std::int64_t> trial, bool simulated) {
+  std::vector<StoredTrial> wanted;
+  const auto isWanted = [&](std::int64_t number) { return !trial || number == *trial; };
   for (const TrialRecord& row : session.trials()) {
-    if (!trial || row.trial == *trial) wanted.push_back(row);
+    if (isWanted(row.trial)) wanted.push_back({row});
+  }
+  for (const HandsRecord& hands : simulated ? std::vector<HandsRecord>() : session.hands()) {
+    if (!isWanted(hands.trial)) continue;
+    const auto same = std::find_if(wanted.begin(), wanted.end(), [&](const StoredTrial& t) { return t.row.trial == hands.trial; });
+    StoredTrial& stored = same == wanted.end() ? wanted.emplace_back(StoredTrial{{}, false}) : *same;
+    stored.row.trial = hands.trial;
+    stored.hands = hands;
   }
   if (wanted.empty()) {
     throw InputError(
@@ -81,34 +135,88 @@ std::vector<TrialRecord> wantedTrials(const SessionReader& session, std::optiona
   return wanted;
 }
 
-void requireSimulated(const SessionReader& session) {
-  const std::string& task = session.info().task;
-  const bool known = task == "manipulation" || task == "sphere-pickup" || task == "cylinder-alignment";
-  if (known && session.info().devices_json.find("\"arms\": \"simulated\"") != std::string::npos) return;
-  throw InputError(
-      fmt::format("{}: can't be replayed: only sphere pickup and cylinder alignment with simulated participants are (task: {}).",
-                  session.path(), task));
+// From tick 0 to where one is missing. Whether none was.
+bool readInputs(const SessionReader& session, StoredTrial& stored) {
+  stored.inputs = session.inputs(stored.row.trial);
+  std::size_t whole = 0;
+  while (whole < stored.inputs.size() && stored.inputs[whole].tick == static_cast<std::int64_t>(whole)) ++whole;
+  const bool all = whole == stored.inputs.size();
+  stored.inputs.resize(whole);
+  return all;
 }
+
+class Replayer {
+ public:
+  Replayer(const SessionReader& session, bool simulated, const std::atomic<bool>& interrupted, const ReplayRun& run)
+      : session_(session),
+        simulated_(simulated),
+        interrupted_(interrupted),
+        run_(run),
+        study_(parseStudyFile(session.info().protocol_json, session.path() + ": protocol")),
+        plan_(manipulationTrials(study_)),
+        object_(makePickupObject(study_.pickup)) {}
+
+  // False: interrupted.
+  bool replay(StoredTrial& stored, ReplayResult& result) {
+    const ManipulationTrial& spec = plan_.at(static_cast<std::size_t>(stored.row.trial));
+    return simulated_ ? replaySimulated(spec, stored, result) : replayRecorded(spec, stored, result);
+  }
+
+ private:
+  bool serve(HandsCycle& cycle, const TrialRecord& row) {
+    return !(run_ ? run_(cycle, row) : runServo({}, cycle, interrupted_)).interrupted;
+  }
+  bool replaySimulated(const ManipulationTrial& spec, const StoredTrial& stored, ReplayResult& result) {
+    ComparingSink sink(session_, stored, result);
+    const std::unique_ptr<Participant> participant = makeParticipant(study_, spec);
+    SimulatedTrial cycle(makeTrial(study_, object_, spec, sink), *participant);
+    if (!serve(cycle.cycle(), stored.row)) return false;
+    cycle.finish();
+    return true;
+  }
+  bool replayRecorded(const ManipulationTrial& spec, StoredTrial& stored, ReplayResult& result) {
+    const bool whole = stored.hands && readInputs(session_, stored);
+    if (!whole || stored.inputs.empty()) {
+      result.notes.push_back(
+          fmt::format("Trial {}: {} inputs of its first ticks are kept, then some were lost; it is compared up to there.", stored.row.trial,
+                      stored.inputs.size()));
+      stored.finished = false;
+      if (stored.inputs.empty()) return true;
+    }
+    ComparingSink sink(session_, stored, result);
+    const std::unique_ptr<HandTrial> trial = makeTrial(study_, object_, spec, sink);
+    RecordedHands hands(*trial, *stored.hands, stored.inputs);
+    HandsCycle cycle(*trial, hands);
+    if (!serve(cycle, stored.row)) return false;
+    if (stored.finished) return trial->finish(), true;
+    ++result.cut_short;
+    if (whole) sink.endTooSoon();
+    return true;
+  }
+
+  const SessionReader& session_;
+  const bool simulated_;
+  const std::atomic<bool>& interrupted_;
+  const ReplayRun& run_;
+  const ManipulationStudy study_;
+  const std::vector<ManipulationTrial> plan_;
+  const PickupObject object_;
+};
 
 }  // namespace
 
 ReplayResult replaySession(const SessionReader& session, std::optional<std::int64_t> trial, const std::atomic<bool>& interrupted,
                            const std::function<void(std::int64_t, std::int64_t)>& progress, const ReplayRun& run) {
-  requireSimulated(session);
-  const ManipulationStudy study = parseStudyFile(session.info().protocol_json, session.path() + ": protocol");
-  const auto plan = manipulationTrials(study);
-  const PickupObject object = makePickupObject(study.pickup);
-  const auto rows = wantedTrials(session, trial);
+  const bool simulated = session.info().devices_json.find("\"arms\": \"simulated\"") != std::string::npos;
+  requireReplayable(session, simulated);
+  std::vector<StoredTrial> trials = wantedTrials(session, trial, simulated);
+  Replayer replayer(session, simulated, interrupted, run);
   ReplayResult result;
-  for (const TrialRecord& row : rows) {
-    const ManipulationTrial& spec = plan.at(static_cast<std::size_t>(row.trial));
-    ComparingSink sink(session, row, result);
-    const std::unique_ptr<Participant> participant = makeParticipant(study, spec);
-    SimulatedTrial cycle(makeTrial(study, object, spec, sink), *participant);
-    if ((run ? run(cycle.cycle(), row) : runServo({}, cycle, interrupted)).interrupted) break;
-    cycle.finish();
-    if (result.first) break;
-    if (progress) progress(result.trials, static_cast<std::int64_t>(rows.size()));
+  std::int64_t done = 0;
+  for (StoredTrial& stored : trials) {
+    if (!replayer.replay(stored, result) || result.first) break;
+    stored = {};
+    if (progress) progress(++done, static_cast<std::int64_t>(trials.size()));
   }
   return result;
 }

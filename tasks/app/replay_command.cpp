@@ -14,8 +14,8 @@ namespace pincer::tasks {
 namespace {
 
 constexpr const char* kReplayExample = R"(
-Runs the trials of a session with simulated participants again, through the same tick, and compares every kept sample and every trial to the
-bit. Exit code 1 when something differs; then the first differing tick is named.
+Runs the trials of a session again, through the same tick, and compares every kept sample and every trial to the bit: simulated participants do
+theirs again, people's hands are given as they were recorded. Exit code 1 when something differs; then the first differing tick is named.
 
 With --view the trial is played in a window, to be paused and scrubbed; --screenshot writes a picture of it at the time of --at.
 
@@ -60,10 +60,13 @@ int replay(const ReplayArguments& arguments) {
   if (result.first) {
     const ReplayDifference& d = *result.first;
     fmt::print("Differs first in trial {}, {}: {}\n", d.trial,
-               d.tick < 0 ? std::string("its row") : fmt::format("tick {} ({:.3f} s)", d.tick, d.time), d.what);
+               d.tick < 0 ? fmt::format("after {:.3f} s", d.time) : fmt::format("tick {} ({:.3f} s)", d.tick, d.time), d.what);
     return kExitCheckFailed;
   }
-  fmt::print("The same to the bit: {} trials, {} samples\n", result.trials, result.samples);
+  for (const std::string& note : result.notes) fmt::print(stderr, "pincer: {}\n", note);
+  fmt::print("The same to the bit: {} trials{}, {} samples{}\n", result.trials,
+             result.cut_short > 0 ? fmt::format(" and {} that was cut short", result.cut_short) : "", result.samples,
+             result.inputs > 0 ? fmt::format(", {} ticks of a person's hands", result.inputs) : "");
   return interruptFlag() ? kExitInterrupted : kExitOk;
 }
 

@@ -44,7 +44,8 @@ bool HandTrial::step(const std::vector<FingerInputs>& samples, const HandIntent&
       stage_ = Stage::kOver;
   }
   leadHome();
-  record(samples, now, report.status);
+  record(samples, intent, now, report.status);
+  cut_ = devices::Trip::kNone;
   ++tick_;
   return stage_ != Stage::kOver;
 }
@@ -105,7 +106,7 @@ bool HandTrial::faulted(std::uint32_t status) {
     tripped_ = i;
   }
   if (trip_ == devices::Trip::kNone && (status & engine::kStateNotFinite) == 0) return false;
-  cutForces(trip_ == devices::Trip::kNone ? devices::Trip::kNotFinite : trip_);
+  trip(trip_ == devices::Trip::kNone ? devices::Trip::kNotFinite : trip_);
   if (stage_ == Stage::kRun || stage_ == Stage::kPrepare) end("fault", Cue::kEnd);
   note("gate_trip");
   stage_ = Stage::kOver;
@@ -134,7 +135,16 @@ Vec3 HandTrial::gripTruth() const {
   return {0.5 * (scratch_.grasp.fingers[0].normal_force + scratch_.grasp.fingers[1].normal_force), 0, 0};
 }
 
-void HandTrial::record(const std::vector<FingerInputs>& samples, double now, std::uint32_t status) {
+void HandTrial::record(const std::vector<FingerInputs>& samples, const HandIntent& intent, double now, std::uint32_t status) {
+  if (sink_.wantsInputs()) {
+    InputRecord input = inputRecord(scene_, state_, scratch_, samples, intent);
+    input.trial = head_.trial;
+    input.tick = tick_;
+    input.time = now;
+    input.cut = static_cast<std::uint32_t>(cut_);
+    input.status = status;
+    sink_.input(input);
+  }
   if (!sink_.wantsSample(tick_)) return;
   SampleRecord sample = sampleRecord(scene_, state_, scratch_, samples);
   sample.trial = head_.trial;
@@ -152,18 +162,42 @@ void HandTrial::parkTactors() {
 void HandTrial::keepPassive() {
   scene_.model.passivity.on = true;
   state_.passivity = grasp::PassivityState(scene_.model.mounts.size());
+  hands_.passive = 1;
 }
 
 void HandTrial::limitForces(int finger, const devices::ArmCapabilities& arm) {
   devices::GateLimits& gate = scene_.model.mounts[static_cast<std::size_t>(finger)].gate;
   gate = devices::within(gate, arm);
+  HandsRecord::Finger& kept = hands_.fingers[static_cast<std::size_t>(finger)];
+  kept.peak_force = arm.peak_force;
+  kept.continuous_force = arm.continuous_force;
+  if (arm.peak_torque) kept.peak_torque = {arm.peak_torque->x(), arm.peak_torque->y(), arm.peak_torque->z()};
+}
+
+void HandTrial::standArms(const std::array<ArmBase, kHandFingers>& bases) {
+  pincer::tasks::standArms(scene_, bases);
+  for (std::size_t i = 0; i < bases.size(); ++i) {
+    hands_.fingers[i].base_offset_W = {bases[i].offset_W.x(), bases[i].offset_W.y(), bases[i].offset_W.z()};
+    hands_.fingers[i].base_turn = bases[i].turn;
+  }
+}
+
+void HandTrial::begin() {
+  hands_.trial = head_.trial;
+  if (sink_.wantsInputs()) sink_.hands(hands_);
 }
 
 void HandTrial::trustSamples(double oldest) {
   for (FingerMount& mount : scene_.model.mounts) mount.gate.watchdog_time = oldest;
+  hands_.oldest_sample = oldest;
 }
 
 void HandTrial::cutForces(devices::Trip cause) {
+  cut_ = cause;
+  trip(cause);
+}
+
+void HandTrial::trip(devices::Trip cause) {
   for (MountState& mount : state_.mounts) devices::trip(mount.gate, cause);
   for (FingerOutputs& output : scratch_.outputs) output.f_D.setZero();
 }

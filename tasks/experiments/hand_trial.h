@@ -51,8 +51,10 @@ class HandTrial {
   // So old may a sample be [s]. Before the first step.
   void trustSamples(double oldest);
   // The arms stand so far off their places in the scene. Throws InputError unless they face each other. Before the first step.
-  void standArms(const std::array<ArmBase, kHandFingers>& bases) { pincer::tasks::standArms(scene_, bases); }
-  // Zero force, latched.
+  void standArms(const std::array<ArmBase, kHandFingers>& bases);
+  // Hands all of this to a sink that wants the trial's inputs. Before the first step.
+  void begin();
+  // Zero force, latched. Between two steps.
   void cutForces(devices::Trip cause);
   // Passivity at the fingers from now on (grasp/passivity): for arms with motors.
   void keepPassive();
@@ -95,7 +97,8 @@ class HandTrial {
   void leadHome();
   bool faulted(std::uint32_t status);
   void end(const char* outcome, Cue cue);
-  void record(const std::vector<FingerInputs>& samples, double now, std::uint32_t status);
+  void trip(devices::Trip cause);
+  void record(const std::vector<FingerInputs>& samples, const HandIntent& intent, double now, std::uint32_t status);
   TrialRecord row() const;
   std::string phaseTimes() const;
 
@@ -116,6 +119,8 @@ class HandTrial {
   devices::Trip trip_ = devices::Trip::kNone;
   std::size_t tripped_ = 0;  // the finger
   Histogram tick_times_;
+  HandsRecord hands_;
+  devices::Trip cut_ = devices::Trip::kNone;  // from outside, since the last step
   std::vector<Event> events_;
   std::vector<Reading> readings_;
 };

@@ -9,9 +9,10 @@ bool HandsCycle::tick(double now) { return timed_ ? timedStep(now) : step(now); 
 bool HandsCycle::step(double now) {
   hands_.advanceTo(now);
   if (cut_) trial_.cutForces(devices::Trip::kMissedDeadline);
-  const bool more = trial_.step(hands_.sample(), hands_.intent(), now);
-  hands_.apply(trial_.outputs(), trial_.cue(), now);
-  return more;
+  const double time = hands_.time(now);
+  const bool more = trial_.step(hands_.sample(), hands_.intent(), time);
+  hands_.apply(trial_.outputs(), trial_.cue(), time);
+  return more && hands_.more();
 }
 
 bool HandsCycle::timedStep(double now) {
@@ -20,13 +21,14 @@ bool HandsCycle::timedStep(double now) {
   if (cut_) trial_.cutForces(devices::Trip::kMissedDeadline);
   const std::vector<FingerInputs>& samples = hands_.sample();
   const double sampled = steadySeconds();
-  const bool more = trial_.step(samples, hands_.intent(), now);
+  const double time = hands_.time(now);
+  const bool more = trial_.step(samples, hands_.intent(), time);
   const double stepped = steadySeconds();
-  hands_.apply(trial_.outputs(), trial_.cue(), now);
+  hands_.apply(trial_.outputs(), trial_.cue(), time);
   samples_.add(sampled - start);
   step_.add(stepped - sampled);
   commands_.add(steadySeconds() - stepped);
-  return more;
+  return more && hands_.more();
 }
 
 void HandsCycle::cutForces() noexcept {

@@ -4,7 +4,7 @@
 //   forEachColumn(record, visit)   calls visit(ColumnName, field) for each column in order
 //
 // A name is [finger_]quantity[_axis][_unit]: `f0_normal_N`, `f1_place_shown_L_x_m`, `duration_s`. Units are SI, as in records.h; frames and
-// symbols too. Fields are std::int64_t, std::int32_t, std::uint32_t, std::uint64_t, double or std::string.
+// symbols too. Fields are std::int64_t, std::int32_t, std::uint32_t, std::uint64_t, double, std::string or Bytes.
 #pragma once
 #include <array>
 #include <concepts>
@@ -33,9 +33,10 @@ concept RecordOf = std::same_as<std::remove_const_t<R>, Record>;
 
 namespace columns {
 constexpr std::array<std::string_view, 4> kAxes{"x", "y", "z", ""};
+constexpr std::array<std::string_view, 4> kQuaternion{"w", "x", "y", "z"};
 
 template <class Visit, class Array>
-void axes(Visit& visit, std::string_view finger, std::string_view quantity, std::string_view unit, Array& values) {
+constexpr void axes(Visit& visit, std::string_view finger, std::string_view quantity, std::string_view unit, Array& values) {
   for (std::size_t i = 0; i < values.size(); ++i) visit(ColumnName{finger, quantity, kAxes[i], unit}, values[i]);
 }
 
@@ -56,17 +57,75 @@ void finger(std::string_view f, R& r, Visit& visit) {
 
 template <RecordOf<SampleRecord> R, class Visit>
 void forEachColumn(R& r, Visit&& visit) {
-  constexpr std::array<std::string_view, 4> kQuaternion{"w", "x", "y", "z"};
   constexpr std::array<std::string_view, kRecordedFingers> kFingers{"f0", "f1"};
   visit(ColumnName{"", "trial", "", ""}, r.trial);
   visit(ColumnName{"", "tick", "", ""}, r.tick);
   visit(ColumnName{"", "time", "", "s"}, r.time);
   columns::axes(visit, "", "p_WB", "m", r.p_WB);
-  for (std::size_t i = 0; i < r.q_WB.size(); ++i) visit(ColumnName{"", "q_WB", kQuaternion[i], ""}, r.q_WB[i]);
+  for (std::size_t i = 0; i < r.q_WB.size(); ++i) visit(ColumnName{"", "q_WB", columns::kQuaternion[i], ""}, r.q_WB[i]);
   columns::axes(visit, "", "v_WB", "m_per_s", r.v_WB);
   for (std::size_t i = 0; i < r.fingers.size(); ++i) columns::finger(kFingers[i], r.fingers[i], visit);
   visit(ColumnName{"", "tick", "", "us"}, r.tick_us);
   visit(ColumnName{"", "status", "", ""}, r.status);
+}
+
+template <RecordOf<HandsRecord> R, class Visit>
+void forEachColumn(R& r, Visit&& visit) {
+  constexpr std::array<std::string_view, kRecordedFingers> kFingers{"f0", "f1"};
+  visit(ColumnName{"", "trial", "", ""}, r.trial);
+  for (std::size_t i = 0; i < r.fingers.size(); ++i) {
+    auto& finger = r.fingers[i];
+    columns::axes(visit, kFingers[i], "base_offset_W", "m", finger.base_offset_W);
+    visit(ColumnName{kFingers[i], "base_turn", "", "rad"}, finger.base_turn);
+    visit(ColumnName{kFingers[i], "peak_force", "", "N"}, finger.peak_force);
+    visit(ColumnName{kFingers[i], "continuous_force", "", "N"}, finger.continuous_force);
+    columns::axes(visit, kFingers[i], "peak_torque", "Nm", finger.peak_torque);
+  }
+  visit(ColumnName{"", "oldest_sample", "", "s"}, r.oldest_sample);
+  visit(ColumnName{"", "passive", "", ""}, r.passive);
+}
+
+namespace columns {
+template <RecordOf<FingerInputRecord> R, class Visit>
+constexpr void fingerInput(std::string_view f, R& r, Visit& visit) {
+  constexpr std::array<std::string_view, 9> kEntries{"11", "21", "31", "12", "22", "32", "13", "23", "33"};
+  visit(ColumnName{f, "input_flags", "", ""}, r.flags);
+  visit(ColumnName{f, "switches", "", ""}, r.switches);
+  visit(ColumnName{f, "arm_time", "", "s"}, r.arm_time);
+  axes(visit, f, "p_DF", "m", r.p_DF);
+  axes(visit, f, "v_DF", "m_per_s", r.v_DF);
+  for (std::size_t i = 0; i < r.q_DF.size(); ++i) visit(ColumnName{f, "q_DF", kQuaternion[i], ""}, r.q_DF[i]);
+  for (std::size_t i = 0; i < r.J.size(); ++i) visit(ColumnName{f, "J", kEntries[i], "m_per_rad"}, r.J[i]);
+  visit(ColumnName{f, "tactile_time", "", "s"}, r.tactile_time);
+  axes(visit, f, "place_shown_L", "m", r.place_shown_L);
+  axes(visit, f, "f_arm_D", "N", r.f_arm_D);
+  axes(visit, f, "place_wanted_L", "m", r.place_wanted_L);
+}
+}  // namespace columns
+
+template <RecordOf<InputRecord> R, class Visit>
+constexpr void forEachColumn(R& r, Visit&& visit) {
+  constexpr std::array<std::string_view, kRecordedFingers> kFingers{"f0", "f1"};
+  visit(ColumnName{"", "trial", "", ""}, r.trial);
+  visit(ColumnName{"", "tick", "", ""}, r.tick);
+  visit(ColumnName{"", "time", "", "s"}, r.time);
+  visit(ColumnName{"", "cut", "", ""}, r.cut);
+  visit(ColumnName{"", "phase", "", ""}, r.phase);
+  visit(ColumnName{"", "flags", "", ""}, r.flags);
+  for (std::size_t i = 0; i < r.fingers.size(); ++i) columns::fingerInput(kFingers[i], r.fingers[i], visit);
+  columns::axes(visit, "", "p_WB", "m", r.p_WB);
+  for (std::size_t i = 0; i < r.q_WB.size(); ++i) visit(ColumnName{"", "q_WB", columns::kQuaternion[i], ""}, r.q_WB[i]);
+  columns::axes(visit, "", "v_WB", "m_per_s", r.v_WB);
+  visit(ColumnName{"", "status", "", ""}, r.status);
+}
+
+template <RecordOf<InputChunk> R, class Visit>
+void forEachColumn(R& r, Visit&& visit) {
+  visit(ColumnName{"", "trial", "", ""}, r.trial);
+  visit(ColumnName{"", "first_tick", "", ""}, r.first_tick);
+  visit(ColumnName{"", "ticks", "", ""}, r.ticks);
+  visit(ColumnName{"", "check", "", ""}, r.check);
+  visit(ColumnName{"", "data", "", ""}, r.data);
 }
 
 template <RecordOf<EventRecord> R, class Visit>

@@ -55,18 +55,39 @@ void writeSamples(const SessionReader& session, const SampleFilter& filter, cons
   file.commit();
 }
 
+// Likewise.
+void writeInputs(const SessionReader& session, const std::string& path) {
+  AtomicFile file(path);
+  CsvTable table;
+  addNames<InputRecord>(table);
+  table.endRow();
+  for (const HandsRecord& hands : session.hands()) {
+    session.forEachInput(hands.trial, [&](const InputRecord& input) {
+      addValues(table, input);
+      table.endRow();
+      file.write(table.take());
+    });
+  }
+  file.write(table.take());
+  file.commit();
+}
+
 }  // namespace
 
 std::vector<std::string> exportCsv(const SessionReader& session, const std::string& directory, const SampleFilter& filter) {
   makeDirectory(directory);
-  const std::vector<std::string> paths{directory + "/session.csv", directory + "/trial.csv",    directory + "/sample.csv",
-                                       directory + "/event.csv",   directory + "/response.csv", directory + "/reading.csv"};
+  std::vector<std::string> paths{directory + "/session.csv", directory + "/trial.csv",    directory + "/sample.csv",
+                                 directory + "/event.csv",   directory + "/response.csv", directory + "/reading.csv"};
   writeAtomically(paths[0], sessionCsv(session));
   writeAtomically(paths[1], asCsv(session.trials()));
   writeSamples(session, filter, paths[2]);
   writeAtomically(paths[3], asCsv(session.events()));
   writeAtomically(paths[4], asCsv(session.responses()));
   writeAtomically(paths[5], asCsv(session.readings()));
+  if (session.hands().empty()) return paths;
+  paths.insert(paths.end(), {directory + "/hands.csv", directory + "/input.csv"});
+  writeAtomically(paths[6], asCsv(session.hands()));
+  writeInputs(session, paths[7]);
   return paths;
 }
 

@@ -1,5 +1,5 @@
-// csv_export: a session as plain tables: session.csv, trial.csv, sample.csv, event.csv, response.csv, reading.csv, with units in the column
-// names (columns.h).
+// csv_export: a session as plain tables: session.csv, trial.csv, sample.csv, event.csv, response.csv, reading.csv, hands.csv, input.csv, with units in
+// the column names (columns.h).
 //
 // Each file appears whole or not at all and replaces an older one of its name. `filter` thins sample.csv only.
 // Throws InputError (path, cause, remedy).

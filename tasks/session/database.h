@@ -26,11 +26,12 @@ class Statement {
   void bind(int parameter, double value);
   void bind(int parameter, std::int64_t value);
   void bind(int parameter, std::string_view value);  // copied
+  void bindBytes(int parameter, std::string_view value);
 
   bool step();  // true: a row is there; false: done, and ready to run again
   double real(int column) const;
   std::int64_t integer(int column) const;
-  std::string text(int column) const;
+  std::string text(int column) const;  // or bytes
 
  private:
   struct Finalize {

@@ -9,6 +9,11 @@ namespace pincer::tasks {
 
 constexpr int kRecordedFingers = 2;
 
+// Bytes that are no text.
+struct Bytes {
+  std::string value;
+};
+
 // One finger in one tick.
 struct FingerRecord {
   std::array<double, 3> p_WF{};            // device fingertip [m]
@@ -40,6 +45,70 @@ struct EventRecord {
   double time = 0;
   std::string kind;    // "phase", "tone", "squeeze", "lift", "try_5mm", "slip", "drop", "failure", "success", "timeout", "gate_trip", ...
   std::string detail;  // one line, may be empty
+};
+
+// What a trial was given by whoever's hands did it, before its first tick: all that a tick depends on besides its inputs and the protocol.
+struct HandsRecord {
+  static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  struct Finger {
+    std::array<double, 3> base_offset_W{};                   // of the arm's base from its place in the scene [m]
+    double base_turn = kNone;                                // about W's z axis [rad]; NaN: nobody said where the base stands
+    double peak_force = 0, continuous_force = 0;             // that the arm can bear [N]; 0: it doesn't tell
+    std::array<double, 3> peak_torque{kNone, kNone, kNone};  // of its joints [N m]; NaN: it doesn't tell
+  };
+
+  std::int64_t trial = 0;
+  std::array<Finger, kRecordedFingers> fingers{};
+  double oldest_sample = kNone;  // that was still trusted [s]; NaN: as in the protocol
+  std::int64_t passive = 0;      // 1: the fingers were kept passive (grasp/passivity)
+};
+
+// What one finger's devices said to one tick (devices/arm/arm.h), and what they were told. All bits are kept; what a device doesn't measure
+// is 0, with its flag unset.
+struct FingerInputRecord {
+  enum Flag : std::uint32_t {
+    kValid = 1,
+    kGaveUp = 2,
+    kVelocity = 4,
+    kOrientation = 8,
+    kSwitches = 16,
+    kJacobian = 32,
+    kTactileValid = 64,
+    kTactilePlace = 128
+  };
+  std::uint32_t flags = 0;
+  std::uint32_t switches = 0;
+  double arm_time = 0;                     // device clock [s]
+  std::array<double, 3> p_DF{}, v_DF{};    // [m], [m/s]
+  std::array<double, 4> q_DF{};            // (w, x, y, z)
+  std::array<double, 9> J{};               // by columns [m/rad]
+  double tactile_time = 0;                 // device clock [s]
+  std::array<double, 2> place_shown_L{};   // [m]
+  std::array<double, 3> f_arm_D{};         // let through to the arm by the tick [N]
+  std::array<double, 2> place_wanted_L{};  // that it asked of the tactor [m]
+};
+
+// A tick of a person's trial: everything that came in, and where it led, so that the trial can be done again and compared tick by tick.
+struct InputRecord {
+  enum Flag : std::uint32_t { kWantsLift = 1, kAnswers = 2 };
+  std::int64_t trial = 0;
+  std::int64_t tick = 0;
+  double time = 0;          // that the tick was given [s]
+  std::uint32_t cut = 0;    // devices::Trip that cut the forces from outside before this tick; 0: none did
+  std::uint32_t phase = 0;  // HandPhase of the hand's intent
+  std::uint32_t flags = 0;
+  std::array<FingerInputRecord, kRecordedFingers> fingers{};
+  std::array<double, 3> p_WB{};  // object [m]
+  std::array<double, 4> q_WB{};  // object, (w, x, y, z)
+  std::array<double, 3> v_WB{};  // object's centre of mass [m/s]
+  std::uint32_t status = 0;      // engine::StepStatus bits
+};
+
+// Ticks that follow each other, packed (input_codec.h).
+struct InputChunk {
+  std::int64_t trial = 0, first_tick = 0, ticks = 0;
+  std::int64_t check = 0;  // of the bytes
+  Bytes data;
 };
 
 // What a participant said to have read from its senses, and what there was to read (participants/participant.h, HandReading).

@@ -1,6 +1,7 @@
 #include <filesystem>
 
 #include "contact/error.h"
+#include "tasks/session/input_codec.h"
 #include "tasks/session/session_store.h"
 #include "tasks/session/table.h"
 
@@ -18,9 +19,9 @@ std::unique_ptr<Database> openSession(const std::string& path) {
                      ": is not a pincer session (its application id isn't \"PNCR\"). Give the path of a file that `pincer run` wrote.");
   }
   const std::int64_t format = database->integer("PRAGMA user_version");
-  if (format != kFormat) {
-    throw InputError(
-        fmt::format("{}: has session format {}, this pincer reads format {}. Use the pincer that wrote it.", path, format, kFormat));
+  if (format < kOldestFormat || format > kFormat) {
+    throw InputError(fmt::format("{}: has session format {}, this pincer reads formats {} to {}. Use the pincer that wrote it.", path,
+                                 format, kOldestFormat, kFormat));
   }
   if (database->integer("SELECT count(*) FROM sqlite_master WHERE type = 'table' AND name = 'session'") == 0) {
     throw InputError(path + ": the session was killed while it was being made and holds nothing. Delete it and run again.");
@@ -47,6 +48,7 @@ SessionReader::SessionReader(const std::string& path) : database_(openSession(pa
   state_ = database_->text("SELECT state FROM session");
   started_utc_ = database_->text("SELECT started_utc FROM session");
   samples_dropped_ = database_->integer("SELECT samples_dropped FROM session");
+  format_ = database_->integer("PRAGMA user_version");
 }
 
 SessionReader::SessionReader(SessionReader&&) noexcept = default;
@@ -75,6 +77,28 @@ std::vector<EventRecord> SessionReader::events(std::optional<std::int64_t> trial
 }
 std::vector<ReadingRecord> SessionReader::readings(std::optional<std::int64_t> trial) const {
   return readAll<ReadingRecord>(*database_, whereTrial(trial));
+}
+
+std::vector<HandsRecord> SessionReader::hands() const {
+  return keepsInputs() ? readAll<HandsRecord>(*database_, "") : std::vector<HandsRecord>();
+}
+
+std::vector<InputRecord> SessionReader::inputs(std::int64_t trial) const {
+  std::vector<InputRecord> inputs;
+  forEachInput(trial, [&](const InputRecord& input) { inputs.push_back(input); });
+  return inputs;
+}
+
+void SessionReader::forEachInput(std::int64_t trial, const std::function<void(const InputRecord&)>& take) const {
+  if (!keepsInputs()) return;
+  Statement rows(*database_, fmt::format("{} {} ORDER BY rowid", selectSql<InputChunk>(), whereTrial(trial)));
+  while (rows.step()) {
+    try {
+      for (const InputRecord& input : unpackInputs(readRow<InputChunk>(rows))) take(input);
+    } catch (const InputError& error) {
+      throw InputError(path() + ": " + error.what());
+    }
+  }
 }
 
 void SessionReader::forEachSample(const SampleFilter& filter, const std::function<void(const SampleRecord&)>& take) const {

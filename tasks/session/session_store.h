@@ -1,8 +1,8 @@
 // session_store: one SQLite file per session, safe against a kill at any moment.
 //
-//   tick --pushSample--> ring --> writer thread --a transaction at least every 50 ms--> file (write-ahead log)
+//   tick --pushSample, pushInput--> rings --> writer thread --a transaction at least every 50 ms--> file (write-ahead log)
 //
-// A finished trial is committed and synchronised to the disk before finishTrial() returns; samples and events reach the file within 50 ms
+// A finished trial is committed and synchronised to the disk before finishTrial() returns; samples, inputs and events reach the file within 50 ms
 // and so survive a kill of the process (after a power cut the last ones may be missing). The column `state` of table `session` reads
 // "running" until close() writes "complete" or a failure "aborted: <why>"; a killed session therefore stays "running", and a reader says
 // so.
@@ -24,7 +24,7 @@ class Database;
 
 struct SessionOptions {
   bool block_when_full = false;      // virtual time: pushSample waits for space, so that no sample is lost
-  std::size_t ring_capacity = 4096;  // [samples], a power of two; 4 s at 1 kHz
+  std::size_t ring_capacity = 4096;  // [samples, inputs], a power of two; 4 s at 1 kHz
   std::int64_t max_pages = 0;        // for tests of a full disk: largest file [pages of 4096 bytes]; 0: no limit
 };
 
@@ -41,11 +41,13 @@ class SessionWriter {
   // From one thread, the tick's. Never throws; without block_when_full also never waits. False: the sample is lost, because the ring is
   // full (counted) or the store has failed or is closed.
   bool pushSample(const SampleRecord& sample) noexcept;
+  bool pushInput(const InputRecord& input) noexcept;  // likewise; a lost one shows as a gap in the ticks
   std::uint64_t droppedSamples() const noexcept;
 
   // From one thread, outside of the real-time tick.
   void addEvent(const EventRecord& event);
   void addReading(const ReadingRecord& reading);
+  void addHands(const HandsRecord& hands);              // before the first input of its trial
   void finishTrial(const TrialRecord& trial);           // returns once the trial and all that was pushed before are durable
   void finishResponse(const ResponseRecord& response);  // likewise
   void close();                                         // final flush, state "complete", one plain file without a log beside it
@@ -84,11 +86,16 @@ class SessionReader {
   std::vector<ReadingRecord> readings(std::optional<std::int64_t> trial = {}) const;
   void forEachSample(const SampleFilter& filter, const std::function<void(const SampleRecord&)>& take) const;
 
+  bool keepsInputs() const { return format_ >= 3; }  // of people; older sessions don't
+  std::vector<HandsRecord> hands() const;            // of the trials with inputs, unfinished ones too; in order of time
+  std::vector<InputRecord> inputs(std::int64_t trial) const;
+  void forEachInput(std::int64_t trial, const std::function<void(const InputRecord&)>& take) const;
+
  private:
   std::unique_ptr<Database> database_;
   SessionInfo info_;
   std::string state_, started_utc_;
-  std::int64_t samples_dropped_ = 0;
+  std::int64_t samples_dropped_ = 0, format_ = 0;
 };
 
 }  // namespace pincer::tasks

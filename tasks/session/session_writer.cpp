@@ -15,6 +15,7 @@
 #include <variant>
 
 #include "contact/error.h"
+#include "tasks/session/input_codec.h"
 #include "tasks/session/ring.h"
 #include "tasks/session/session_store.h"
 #include "tasks/session/table.h"
@@ -60,9 +61,17 @@ void removeSession(const std::string& path) noexcept {
   for (const char* suffix : {"", "-wal", "-shm", "-journal"}) std::filesystem::remove(path + suffix, ignored);
 }
 
+// Those that format 3 added.
+void makeInputTables(Database& d) {
+  d.run(fmt::format("CREATE TABLE IF NOT EXISTS hands ({})", columnList<HandsRecord>(true)));
+  d.run(fmt::format("CREATE TABLE IF NOT EXISTS input ({})", columnList<InputChunk>(true)));
+  d.run("CREATE INDEX IF NOT EXISTS input_of_trial ON input (trial)");
+  d.run(fmt::format("PRAGMA user_version = {}", kFormat));
+}
+
 void makeTables(Database& d, const SessionOptions& options) {
   if (options.max_pages > 0) d.text(fmt::format("PRAGMA max_page_count = {}", options.max_pages));
-  d.run(fmt::format("PRAGMA application_id = {}; PRAGMA user_version = {}", kApplicationId, kFormat));
+  d.run(fmt::format("PRAGMA application_id = {}", kApplicationId));
   if (d.text("PRAGMA journal_mode = WAL") != "wal") {
     throw InputError(d.path() + ": this file system has no shared memory for SQLite's log. Keep sessions on a local disk.");
   }
@@ -75,6 +84,7 @@ void makeTables(Database& d, const SessionOptions& options) {
   d.run(fmt::format("CREATE TABLE response ({})", columnList<ResponseRecord>(true)));
   d.run(fmt::format("CREATE TABLE reading ({})", columnList<ReadingRecord>(true)));
   d.run("CREATE INDEX sample_of_trial ON sample (trial)");
+  makeInputTables(d);
 }
 
 std::string nowUtc() {
@@ -90,10 +100,11 @@ class SessionWriter::Impl {
 
   // Of an existing session.
   Impl(const std::string& path, const SessionOptions& options)
-      : options_(options), ring_(options.ring_capacity), database_(path, Database::Mode::kWrite) {
+      : options_(options), ring_(options.ring_capacity), inputs_(options.ring_capacity), database_(path, Database::Mode::kWrite) {
     database_.text("PRAGMA journal_mode = WAL");
     database_.run(fmt::format("PRAGMA wal_autocheckpoint = {}; PRAGMA synchronous = NORMAL", kCheckpointPages));
-    for (const char* table : {"sample", "event", "reading"}) {
+    makeInputTables(database_);
+    for (const char* table : {"sample", "event", "reading", "hands", "input"}) {
       database_.run(fmt::format("DELETE FROM {} WHERE trial NOT IN (SELECT trial FROM trial UNION SELECT trial FROM response)", table));
     }
     database_.run(fmt::format("UPDATE session SET state = '{}'", kStateRunning));
@@ -101,7 +112,7 @@ class SessionWriter::Impl {
     thread_ = std::thread([this] { work(); });
   }
   Impl(const std::string& path, const SessionInfo& info, const SessionOptions& options)
-      : options_(options), ring_(options.ring_capacity), database_(path, Database::Mode::kWrite) {
+      : options_(options), ring_(options.ring_capacity), inputs_(options.ring_capacity), database_(path, Database::Mode::kWrite) {
     makeTables(database_, options);
     Statement insert(database_, insertSql<SessionInfo>());
     insertRow(insert, info);
@@ -111,11 +122,8 @@ class SessionWriter::Impl {
   }
   ~Impl() { abort("the program left without closing the session"); }
 
-  bool push(const SampleRecord& sample) noexcept {
-    if (ended_.load(std::memory_order_relaxed)) return false;
-    if (options_.block_when_full && ring_.full()) awaitSpace();
-    return ring_.push(sample);
-  }
+  bool push(const SampleRecord& sample) noexcept { return pushInto(ring_, sample); }
+  bool push(const InputRecord& input) noexcept { return pushInto(inputs_, input); }
   std::uint64_t dropped() const noexcept { return ring_.dropped(); }
 
   void addEvent(const EventRecord& event) {
@@ -128,6 +136,12 @@ class SessionWriter::Impl {
     const std::lock_guard lock(mutex_);
     throwIfEnded();
     readings_.push_back(reading);
+  }
+
+  void addHands(const HandsRecord& hands) {
+    const std::lock_guard lock(mutex_);
+    throwIfEnded();
+    hands_.push_back(hands);
   }
 
   void finish(FinishedTrial trial) {
@@ -166,15 +180,18 @@ class SessionWriter::Impl {
         : sample(d, insertSql<SampleRecord>()),
           event(d, insertSql<EventRecord>()),
           reading(d, insertSql<ReadingRecord>()),
+          hands(d, insertSql<HandsRecord>()),
+          input(d, insertSql<InputChunk>()),
           trial(d, insertSql<TrialRecord>()),
           response(d, insertSql<ResponseRecord>()) {}
     void insert(const TrialRecord& record) { insertRow(trial, record); }
     void insert(const ResponseRecord& record) { insertRow(response, record); }
-    Statement sample, event, reading, trial, response;
+    Statement sample, event, reading, hands, input, trial, response;
   };
   struct Batch {
     std::vector<EventRecord> events;
     std::vector<ReadingRecord> readings;
+    std::vector<HandsRecord> hands;
     std::optional<FinishedTrial> trial;
     bool last = false;
   };
@@ -196,13 +213,15 @@ class SessionWriter::Impl {
     std::unique_lock lock(mutex_);
     wake_.wait_for(lock, kBatchPeriod, [this] { return trial_ || stopping_ || space_wanted_; });
     space_wanted_ = false;
-    return {std::exchange(events_, {}), std::exchange(readings_, {}), trial_, stopping_};
+    return {std::exchange(events_, {}), std::exchange(readings_, {}), std::exchange(hands_, {}), trial_, stopping_};
   }
 
   void write(const Batch& batch) {
     if (batch.trial) database_.run("PRAGMA synchronous = FULL");  // the log is flushed to the disk with this commit
     database_.run("BEGIN");
     ring_.drain([this](const SampleRecord& sample) { insertRow(statements_->sample, sample); });
+    for (const HandsRecord& hands : batch.hands) insertRow(statements_->hands, hands);
+    writeInputs();
     for (const EventRecord& event : batch.events) insertRow(statements_->event, event);
     for (const ReadingRecord& reading : batch.readings) insertRow(statements_->reading, reading);
     if (batch.trial) {
@@ -211,6 +230,22 @@ class SessionWriter::Impl {
     }
     database_.run("COMMIT");
     if (batch.trial) database_.run("PRAGMA wal_checkpoint(PASSIVE); PRAGMA synchronous = NORMAL");
+  }
+
+  // After the samples: the input of a tick is pushed before its sample, so that no sample is kept whose input isn't.
+  void writeInputs() {
+    inputs_.drain([this](const InputRecord& input) {
+      if (!packer_.takes(input)) insertRow(statements_->input, packer_.take());
+      packer_.add(input);
+    });
+    if (!packer_.empty()) insertRow(statements_->input, packer_.take());
+  }
+
+  template <class Record>
+  bool pushInto(Ring<Record>& ring, const Record& record) noexcept {
+    if (ended_.load(std::memory_order_relaxed)) return false;
+    if (options_.block_when_full && ring.full()) awaitSpace();
+    return ring.push(record);
   }
 
   void settle(const Batch& batch) {
@@ -223,7 +258,7 @@ class SessionWriter::Impl {
     std::unique_lock lock(mutex_);
     space_wanted_ = true;
     wake_.notify_one();
-    done_.wait(lock, [this] { return !ring_.full() || ended_; });
+    done_.wait(lock, [this] { return (!ring_.full() && !inputs_.full()) || ended_; });
   }
 
   // Marks the file; if even that fails, it stays "running", which a reader reports as well.
@@ -268,12 +303,15 @@ class SessionWriter::Impl {
 
   SessionOptions options_;
   SampleRing ring_;
-  Database database_;  // the writer thread's, until it is joined
+  InputRing inputs_;
+  InputPacker packer_;  // the writer thread's
+  Database database_;   // the writer thread's, until it is joined
   std::optional<Statements> statements_;
   std::mutex mutex_;  // guards events_ .. failure_
   std::condition_variable wake_, done_;
   std::vector<EventRecord> events_;
   std::vector<ReadingRecord> readings_;
+  std::vector<HandsRecord> hands_;
   std::optional<FinishedTrial> trial_;
   bool stopping_ = false, space_wanted_ = false;
   std::string failure_;
@@ -304,6 +342,8 @@ SessionWriter::~SessionWriter() = default;
 bool SessionWriter::pushSample(const SampleRecord& sample) noexcept { return impl_->push(sample); }
 std::uint64_t SessionWriter::droppedSamples() const noexcept { return impl_->dropped(); }
 void SessionWriter::addEvent(const EventRecord& event) { impl_->addEvent(event); }
+bool SessionWriter::pushInput(const InputRecord& input) noexcept { return impl_->push(input); }
+void SessionWriter::addHands(const HandsRecord& hands) { impl_->addHands(hands); }
 void SessionWriter::addReading(const ReadingRecord& reading) { impl_->addReading(reading); }
 void SessionWriter::finishTrial(const TrialRecord& trial) { impl_->finish(trial); }
 void SessionWriter::finishResponse(const ResponseRecord& response) { impl_->finish(response); }

@@ -7,6 +7,8 @@
 //   event      EventRecord    event
 //   response   ResponseRecord finished trial of a psychophysical experiment
 //   reading    ReadingRecord  deliberate reading of a simulated participant
+//   hands      HandsRecord    trial of a person
+//   input      InputChunk     some ticks of a trial of a person
 #pragma once
 #include <fmt/format.h>
 
@@ -20,7 +22,8 @@
 namespace pincer::tasks {
 
 constexpr std::int64_t kApplicationId = 0x504e4352;  // "PNCR", in SQLite's header
-constexpr std::int64_t kFormat = 2;                  // raised whenever a column changes
+constexpr std::int64_t kFormat = 3;                  // raised whenever a column changes or a table is added
+constexpr std::int64_t kOldestFormat = 2;            // that is still read: it lacks the tables hands and input
 
 constexpr std::string_view kStateRunning = "running", kStateComplete = "complete", kStateAborted = "aborted: ";
 
@@ -32,11 +35,14 @@ constexpr std::string_view tableName() {
   if constexpr (std::is_same_v<Record, EventRecord>) return "event";
   if constexpr (std::is_same_v<Record, ResponseRecord>) return "response";
   if constexpr (std::is_same_v<Record, ReadingRecord>) return "reading";
+  if constexpr (std::is_same_v<Record, HandsRecord>) return "hands";
+  if constexpr (std::is_same_v<Record, InputChunk>) return "input";
 }
 
 template <class Field>
 constexpr std::string_view sqlType() {
   if constexpr (std::is_floating_point_v<Field>) return "REAL";
+  if constexpr (std::is_same_v<Field, Bytes>) return "BLOB";
   if constexpr (std::is_same_v<Field, std::string> || std::is_same_v<Field, std::uint64_t>) return "TEXT";  // SQLite's integers are signed
   return "INTEGER";
 }
@@ -72,6 +78,8 @@ void insertRow(Statement& insert, const Record& record) {
   forEachColumn(record, [&]<class Field>(const ColumnName&, const Field& field) {
     if constexpr (std::is_same_v<Field, std::uint64_t>) {
       insert.bind(parameter++, std::string_view(std::to_string(field)));
+    } else if constexpr (std::is_same_v<Field, Bytes>) {
+      insert.bindBytes(parameter++, field.value);
     } else if constexpr (std::is_integral_v<Field>) {
       insert.bind(parameter++, static_cast<std::int64_t>(field));
     } else if constexpr (std::is_floating_point_v<Field>) {
@@ -90,6 +98,8 @@ Record readRow(const Statement& row) {
   forEachColumn(record, [&]<class Field>(const ColumnName&, Field& field) {
     if constexpr (std::is_same_v<Field, std::uint64_t>) {
       field = std::stoull(row.text(column++));
+    } else if constexpr (std::is_same_v<Field, Bytes>) {
+      field.value = row.text(column++);
     } else if constexpr (std::is_integral_v<Field>) {
       field = static_cast<Field>(row.integer(column++));
     } else if constexpr (std::is_floating_point_v<Field>) {

@@ -34,6 +34,26 @@ wait $viewer
 cat "$work/out"
 lifted=$(sed -nE 's/^Lifted by up to ([0-9]+)\..*/\1/p' "$work/out")
 ((lifted >= 20)) || { echo "the sphere wasn't lifted"; exit 1; }
+# A session with the mouse, left with Esc in its first trial, is done again to the bit from what the hand did.
+"$pincer" run sphere-pickup --devices mouse --view --friction 0.9 --condition cld+force --out "$work/session" > "$work/session.out" 2>&1 &
+session=$!
+until xdotool search --name '^pincer' > /dev/null 2>&1; do
+  kill -0 $session || { cat "$work/session.out"; exit 1; }
+  sleep 0.2
+done
+sleep 3
+xdotool mousemove 640 400 mousedown 1
+sleep 3
+for _ in {1..20}; do
+  xdotool mousemove_relative -- 1 -7
+  sleep 0.05
+done
+xdotool key Escape
+code=0
+wait $session || code=$?
+((code == 5)) || { cat "$work/session.out"; exit 1; }
+"$pincer" replay "$work/session/session.db" | tee "$work/replay"
+grep -qE 'The same to the bit: 0 trials and 1 that was cut short, [0-9]{3,} samples, [0-9]{4,} ticks of a person' "$work/replay"
 # And where there is no display the program says so, with the exit code of a missing device.
 unset DISPLAY
 code=0
