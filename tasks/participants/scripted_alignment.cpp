@@ -8,7 +8,6 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr double kSilence = -1;      // no tone heard
 constexpr int kFirstProbes = 3;      // from one end of the hand's reach to the other
 constexpr int kSimpleTurns = 2;      // of the simple strategy
 constexpr double kSimpleSd = 0.3;    // what the simple strategy holds its direction to be known to [rad]
@@ -37,74 +36,26 @@ FlatModel flatModelOf(const TrialCues& cues, const SensingLimits& limits) {
 
 ScriptedAlignment::ScriptedAlignment(std::uint64_t seed, bool simple, const ScriptedAlignmentOptions& options, const SensingLimits& limits,
                                      const HandRanges& ranges)
-    : simple_(simple), options_(options), limits_(limits), body_(drawBody(ranges, seed)), random_(seed) {
+    : ScriptedHand(seed, limits, ranges, options.settle_time), simple_(simple), options_(options) {
   Random person(seedFor(seed, 0x6d6f6e69746f72));  // "monitor": not the stream that made the hands
   target_shared_ = limits.target_shared_sd * person.normal();
 }
 
 void ScriptedAlignment::begin(const TrialCues& cues) {
-  cues_ = cues;
-  random_ = Random(cues.seed);
-  sense_ = drawBodySense(limits_, random_);
-  touch_.begin(limits_, cues, sense_);
+  beginHand(cues);
   belief_.begin(flatModelOf(cues, limits_), random_);
   target_ = cues.target_angle + target_shared_ + limits_.target_trial_sd * random_.normal();
-  const Vec3 span_W = cues.fingers[1].home_W - cues.fingers[0].home_W;
-  axis_W_ = span_W.normalized();
-  home_ = {0.5 * (cues.fingers[0].home_W + cues.fingers[1].home_W), 0.5 * span_W.norm(), 0};
-  posture_ = home_;
-  now_ = dt_ = contact_time_ = 0;
-  heard_ = kSilence;
   opening_ = answers_ = turning_ = false;
   probes_ = turns_ = 0;
   simple_best_ = std::numeric_limits<double>::infinity();
-  enter(HandPhase::kListen);
 }
 
-HandAction ScriptedAlignment::act(const Percept& percept) {
-  dt_ = std::max(percept.time - now_, 0.0);
-  now_ = percept.time;
-  cue_ = percept.cue;
-  reading_.reset();
-  touch_.feel(percept);
-  if (cue_ == Cue::kSuccess || cue_ == Cue::kEnd) {
-    opening_ = false;
-    enterReach(home_, HandPhase::kReturn);
-  }
-  switch (phase_) {
-    case HandPhase::kListen:
-      listen();
-      break;
-    case HandPhase::kReach:
-    case HandPhase::kReturn:
-      goAlong();
-      break;
-    case HandPhase::kClose:
-      close();
-      break;
-    case HandPhase::kRead:
-      read();
-      break;
-    case HandPhase::kSqueeze:
-      squeeze();
-      break;
-    case HandPhase::kTurn:
-      turn();
-      break;
-    case HandPhase::kLift:  // of the other task
-    case HandPhase::kHold:
-    case HandPhase::kRest:
-      break;
-  }
-  HandAction action;
-  for (int i = 0; i < kHandFingers; ++i) action.pulls[static_cast<std::size_t>(i)] = pullOf(i);
-  action.intent = {phase_, false, answers_, reading_};
-  return action;
-}
+void ScriptedAlignment::ended() { opening_ = false; }
+
+void ScriptedAlignment::mean(HandIntent& intent) const { intent.answers = answers_; }
 
 void ScriptedAlignment::listen() {
-  if (cue_ == Cue::kStart) heard_ = now_;
-  if (heard_ != kSilence && now_ >= heard_ + limits_.reaction_time) probe(-options_.reach_angle, "first");
+  if (heardStart()) probe(-options_.reach_angle, "first");
 }
 
 void ScriptedAlignment::goAlong() {
@@ -196,8 +147,7 @@ void ScriptedAlignment::probe(double angle, const char* why) {
 }
 
 void ScriptedAlignment::squeeze() {
-  const double stiffness = 0.5 * (body_.hands[0].stiffness + body_.hands[1].stiffness);
-  posture_.half = std::max(posture_.half - options_.squeeze_rate / stiffness * dt_, 0.0);
+  posture_.half = std::max(posture_.half - options_.squeeze_rate / meanStiffness() * dt_, 0.0);
   if (touch_.grip() < options_.turn_grip && posture_.half > 0 && now_ < entered_ + options_.patience) return;
   Posture goal = posture_;
   goal.angle += turn_by_;
@@ -217,22 +167,11 @@ void ScriptedAlignment::turn() {
   probe(-options_.reach_angle, "turned");
 }
 
-void ScriptedAlignment::enter(HandPhase phase) {
-  phase_ = phase;
-  entered_ = now_;
-  contact_time_ = 0;
-}
-
-void ScriptedAlignment::enterReach(const Posture& goal, HandPhase phase) {
-  reach_ = reach(posture_, goal, now_, body_.speed);
-  if (phase == HandPhase::kReach && heard_ != kSilence && opening_) reach_.duration = std::min(reach_.duration, kLongestReach);
-  enter(phase);
-}
-
 void ScriptedAlignment::openThenReach(double angle) {
   next_angle_ = angle;
   opening_ = true;
   enterReach({posture_.centre_W, openHalf(), posture_.angle}, HandPhase::kReach);
+  reach_.duration = std::min(reach_.duration, kLongestReach);
 }
 
 Vec3 ScriptedAlignment::centre_W() const {
@@ -242,16 +181,5 @@ Vec3 ScriptedAlignment::centre_W() const {
 }
 
 double ScriptedAlignment::openHalf() const { return cues_.fingers[0].tip_radius + cues_.half_width + options_.clearance; }
-
-devices::HandPull ScriptedAlignment::pullOf(int finger) const {
-  const auto k = static_cast<std::size_t>(finger);
-  const double side = finger == 0 ? -1 : 1;
-  const Vec3 misplacement_W = minimumJerk(now_, options_.settle_time) * sense_.misplacement_W[k];
-  const Vec3 u_W = Eigen::AngleAxisd(posture_.angle, Vec3::UnitZ()) * axis_W_;
-  const Vec3 felt_W = posture_.centre_W + side * posture_.half * u_W;
-  devices::HandPull pull = body_.hands[k];
-  pull.p_D = cues_.fingers[k].q_WD.conjugate() * (felt_W + misplacement_W - cues_.fingers[k].p_WD);
-  return pull;
-}
 
 }  // namespace pincer::tasks

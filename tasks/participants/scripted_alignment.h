@@ -15,12 +15,8 @@
 // `simple`: no belief over the misplacement; the flat is where a finger came nearest to where the axis is told to be, or, where a tactor
 // moved, where the pads of the fingers said the normal was; one sweep of probes after every turn, two turns at most.
 #pragma once
-#include "tasks/participants/body.h"
 #include "tasks/participants/flat_belief.h"
-#include "tasks/participants/participant.h"
-#include "tasks/participants/random.h"
-#include "tasks/participants/reach.h"
-#include "tasks/participants/touch.h"
+#include "tasks/participants/scripted_hand.h"
 
 namespace pincer::tasks {
 
@@ -41,25 +37,24 @@ struct ScriptedAlignmentOptions {
   double patience = 4.0;       // without finding both fingers a contact, then reach again [s] (choice)
 };
 
-class ScriptedAlignment final : public Participant {
+class ScriptedAlignment final : public ScriptedHand {
  public:
   // `seed` makes the participant: hands, speed, and where the monitor is felt. What varies between trials comes from the trial's own seed.
   ScriptedAlignment(std::uint64_t seed, bool simple, const ScriptedAlignmentOptions& options = {}, const SensingLimits& limits = {},
                     const HandRanges& ranges = {});
 
   void begin(const TrialCues& cues) override;
-  HandAction act(const Percept& percept) override;
 
  private:
-  void listen();
-  void goAlong();
-  void close();
-  void read();
-  void squeeze();
-  void turn();
+  void listen() override;
+  void goAlong() override;
+  void close() override;
+  void read() override;
+  void squeeze() override;
+  void turn() override;
+  void ended() override;
+  void mean(HandIntent& intent) const override;
 
-  void enter(HandPhase phase);
-  void enterReach(const Posture& goal, HandPhase phase);
   void openThenReach(double angle);
   void observe();
   void decide();
@@ -69,25 +64,11 @@ class ScriptedAlignment final : public Participant {
   double believedSpread() const;
   Vec3 centre_W() const;
   double openHalf() const;
-  devices::HandPull pullOf(int finger) const;
 
   bool simple_;
   ScriptedAlignmentOptions options_;
-  SensingLimits limits_;
-  Body body_;
   double target_shared_ = 0;  // of where the monitor is felt [rad]
-  Random random_;
-  TrialCues cues_;
-  BodySense sense_;
-  Touch touch_;
   FlatBelief belief_;
-
-  HandPhase phase_ = HandPhase::kListen;
-  Cue cue_ = Cue::kNone;
-  double now_ = 0, dt_ = 0, entered_ = 0, heard_ = 0, contact_time_ = 0;  // [s]
-  Vec3 axis_W_ = Vec3::UnitX();                                           // of the pinch at angle 0, from finger 0 to finger 1
-  Posture home_, posture_;
-  Reach reach_;
   bool opening_ = false;   // the reach under way only opens the hand
   double next_angle_ = 0;  // and then the hand goes there [rad]
   bool answers_ = false;
@@ -96,7 +77,6 @@ class ScriptedAlignment final : public Participant {
   double turn_by_ = 0;    // [rad]
   int probes_ = 0, turns_ = 0;
   double simple_best_ = 0, simple_direction_ = 0;  // smallest felt distance from the axis [m], and where
-  std::optional<HandReading> reading_;
 };
 
 }  // namespace pincer::tasks

@@ -7,7 +7,6 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr double kNotHeard = -1;
 constexpr double kNothingRead = std::numeric_limits<double>::quiet_NaN();
 
 PlaceModel placeModelOf(const TrialCues& cues, const SensingLimits& limits, const ScriptedPickupOptions& options) {
@@ -29,73 +28,24 @@ PlaceModel placeModelOf(const TrialCues& cues, const SensingLimits& limits, cons
 
 ScriptedPickup::ScriptedPickup(std::uint64_t seed, const ScriptedPickupOptions& options, const SensingLimits& limits,
                                const HandRanges& ranges, bool rational)
-    : options_(options), limits_(limits), body_(drawBody(ranges, seed)), random_(seed), rational_(rational) {}
+    : ScriptedHand(seed, limits, ranges, options.settle_time), options_(options), rational_(rational) {}
 
 void ScriptedPickup::begin(const TrialCues& cues) {
-  cues_ = cues;
-  random_ = Random(cues.seed);
-  sense_ = drawBodySense(limits_, random_);
-  touch_.begin(limits_, cues, sense_);
-  const Vec3 span_W = cues.fingers[1].home_W - cues.fingers[0].home_W;
-  axis_W_ = span_W.normalized();
+  beginHand(cues);
   side_W_ = Vec3::UnitZ().cross(axis_W_);
-  home_ = {0.5 * (cues.fingers[0].home_W + cues.fingers[1].home_W), 0.5 * span_W.norm(), 0};
-  posture_ = home_;
   believed_W_ = cues.place_W;
   step_W_.setZero();
   wanted_grip_ = options_.grip_safety * cues.mass * options_.gravity / (2 * options_.expected_mu);
   shifts_ = 0;
-  now_ = dt_ = contact_time_ = 0;
-  heard_ = kNotHeard;
   if (rational_) belief_.begin(placeModelOf(cues, limits_, options_), random_);
-  enter(HandPhase::kListen);
 }
 
-HandAction ScriptedPickup::act(const Percept& percept) {
-  dt_ = std::max(percept.time - now_, 0.0);
-  now_ = percept.time;
-  cue_ = percept.cue;
-  reading_.reset();
-  touch_.feel(percept);
-  if (cue_ == Cue::kSuccess || cue_ == Cue::kEnd) enterReach(home_, HandPhase::kReturn);
-  switch (phase_) {
-    case HandPhase::kListen:
-      listen();
-      break;
-    case HandPhase::kReach:
-    case HandPhase::kReturn:
-      goAlong();
-      break;
-    case HandPhase::kClose:
-      close();
-      break;
-    case HandPhase::kRead:
-      read();
-      break;
-    case HandPhase::kSqueeze:
-      squeeze();
-      break;
-    case HandPhase::kLift:
-      lift();
-      break;
-    case HandPhase::kHold:
-      hold();
-      break;
-    case HandPhase::kTurn:  // of the other task
-    case HandPhase::kRest:
-      break;
-  }
-  HandAction action;
-  for (int i = 0; i < kHandFingers; ++i) action.pulls[static_cast<std::size_t>(i)] = pullOf(i);
-  action.intent.phase = phase_;
-  action.intent.reading = reading_;
-  action.intent.wants_lift = phase_ == HandPhase::kSqueeze || phase_ == HandPhase::kLift || phase_ == HandPhase::kHold;
-  return action;
+void ScriptedPickup::mean(HandIntent& intent) const {
+  intent.wants_lift = phase_ == HandPhase::kSqueeze || phase_ == HandPhase::kLift || phase_ == HandPhase::kHold;
 }
 
 void ScriptedPickup::listen() {
-  if (cue_ == Cue::kStart) heard_ = now_;
-  if (heard_ != kNotHeard && now_ >= heard_ + limits_.reaction_time) enterReach(besideThePinch(), HandPhase::kReach);
+  if (heardStart()) enterReach(besideThePinch(), HandPhase::kReach);
 }
 
 void ScriptedPickup::goAlong() {
@@ -202,19 +152,6 @@ void ScriptedPickup::tightenWhereItSlips() {
   for (double* half : {&reach_.from.half, &reach_.to.half, &posture_.half}) *half = std::max(*half - closer, 0.0);
 }
 
-double ScriptedPickup::meanStiffness() const { return 0.5 * (body_.hands[0].stiffness + body_.hands[1].stiffness); }
-
-void ScriptedPickup::enter(HandPhase phase) {
-  phase_ = phase;
-  entered_ = now_;
-  contact_time_ = 0;
-}
-
-void ScriptedPickup::enterReach(const Posture& goal, HandPhase phase) {
-  reach_ = reach(posture_, goal, now_, body_.speed);
-  enter(phase);
-}
-
 void ScriptedPickup::raise(double height) { enterReach({posture_.centre_W + height * Vec3::UnitZ(), posture_.half}, HandPhase::kLift); }
 
 bool ScriptedPickup::lostIt() {
@@ -264,15 +201,5 @@ void ScriptedPickup::believe(const Vec3& place_W) {
 Posture ScriptedPickup::besideThePinch() const { return {believed_W_ + step_W_, touchingHalf() + options_.clearance}; }
 
 double ScriptedPickup::touchingHalf() const { return cues_.fingers[0].tip_radius + cues_.half_width; }
-
-devices::HandPull ScriptedPickup::pullOf(int finger) const {
-  const auto k = static_cast<std::size_t>(finger);
-  const double side = finger == 0 ? -1 : 1;
-  const Vec3 misplacement_W = minimumJerk(now_, options_.settle_time) * sense_.misplacement_W[k];
-  const Vec3 felt_W = posture_.centre_W + side * posture_.half * axis_W_;
-  devices::HandPull pull = body_.hands[k];
-  pull.p_D = cues_.fingers[k].q_WD.conjugate() * (felt_W + misplacement_W - cues_.fingers[k].p_WD);
-  return pull;
-}
 
 }  // namespace pincer::tasks

@@ -19,12 +19,8 @@
 //
 // The hand pulls each fingertip towards a place (its equilibrium); grip comes from equilibria inside the object.
 #pragma once
-#include "tasks/participants/body.h"
-#include "tasks/participants/participant.h"
 #include "tasks/participants/place_belief.h"
-#include "tasks/participants/random.h"
-#include "tasks/participants/reach.h"
-#include "tasks/participants/touch.h"
+#include "tasks/participants/scripted_hand.h"
 
 namespace pincer::tasks {
 
@@ -51,23 +47,23 @@ struct ScriptedPickupOptions {
   double gravity = 9.81;           // [m/s^2]
 };
 
-class ScriptedPickup final : public Participant {
+class ScriptedPickup final : public ScriptedHand {
  public:
   // `seed` makes the participant: hands and speed. What varies between trials comes from the trial's own seed.
   explicit ScriptedPickup(std::uint64_t seed, const ScriptedPickupOptions& options = {}, const SensingLimits& limits = {},
                           const HandRanges& ranges = {}, bool rational = false);
 
   void begin(const TrialCues& cues) override;
-  HandAction act(const Percept& percept) override;
 
  private:
-  void listen();
-  void goAlong();
-  void close();
-  void read();
-  void squeeze();
-  void lift();
-  void hold();
+  void listen() override;
+  void goAlong() override;
+  void close() override;
+  void read() override;
+  void squeeze() override;
+  void lift() override;
+  void hold() override;
+  void mean(HandIntent& intent) const override;
 
   void readSimply(const std::optional<Vec3>& offset_W);
   void readRationally(const std::optional<Vec3>& offset_W);
@@ -77,8 +73,6 @@ class ScriptedPickup final : public Participant {
   Vec2 across(const Vec3& v_W) const { return {v_W.dot(side_W_), v_W.z()}; }
   Vec3 along(const Vec2& v) const { return v.x() * side_W_ + v.y() * Vec3::UnitZ(); }
 
-  void enter(HandPhase phase);
-  void enterReach(const Posture& goal, HandPhase phase);
   void raise(double height);
   void believe(const Vec3& place_W);
   void retry(double step_sd);
@@ -88,35 +82,16 @@ class ScriptedPickup final : public Participant {
   Posture besideThePinch() const;
   double heightOnDish(double beside) const;
   double touchingHalf() const;
-  double meanStiffness() const;  // of the two hands [N/m]
-  devices::HandPull pullOf(int finger) const;
 
   ScriptedPickupOptions options_;
-  SensingLimits limits_;
-  Body body_;
-  Random random_;
-  TrialCues cues_;
-  BodySense sense_;
-  Touch touch_;
   bool rational_;
   PlaceBelief belief_;
-  std::optional<HandReading> reading_;
-
-  HandPhase phase_ = HandPhase::kListen;
-  Cue cue_ = Cue::kNone;
-  double now_ = 0, dt_ = 0;         // [s]
-  double entered_ = 0;              // when the phase began [s]
-  double heard_ = 0;                // when the start tone sounded [s], negative before
-  double contact_time_ = 0;         // how long both fingers have felt something [s]
-  Vec3 axis_W_ = Vec3::UnitX();     // of the pinch, from finger 0 to finger 1
-  Vec3 side_W_ = Vec3::UnitY();     // across it, level
+  Vec3 side_W_ = Vec3::UnitY();     // across the pinch, level
   Vec3 believed_W_ = Vec3::Zero();  // place of the object's centre [m]
   Vec3 step_W_ = Vec3::Zero();      // random step from there to where the pinch is tried [m]
-  Posture home_, posture_;          // of the equilibria
-  Reach reach_;
-  double wanted_grip_ = 0;  // [N]
-  double felt_factor_ = 1;  // of felt over true magnitude, in this squeeze [-]
-  int shifts_ = 0;          // in this attempt
+  double wanted_grip_ = 0;          // [N]
+  double felt_factor_ = 1;          // of felt over true magnitude, in this squeeze [-]
+  int shifts_ = 0;                  // in this attempt
 };
 
 }  // namespace pincer::tasks
