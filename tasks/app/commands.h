@@ -20,6 +20,7 @@ void addExportCommand(CLI::App& app, int& exit_code);
 void addReplayCommand(CLI::App& app, int& exit_code);
 void addKeysCommand(CLI::App& app, int& exit_code);
 void addDevicesCommand(CLI::App& app, int& exit_code);
+void addSweepCommand(CLI::App& app, int& exit_code);
 void addSchemaCommand(CLI::App& app, int& exit_code);
 
 }  // namespace pincer::tasks

@@ -10,9 +10,11 @@ namespace pincer::tasks {
 
 std::string studyFile(const ManipulationStudy& study) { return studyText(study); }
 
-ManipulationStudy parseStudyFile(std::string_view text, const std::string& name) {
+ManipulationStudy parseStudyFile(std::string_view text, const std::string& name) { return studyOfJson(parseJson(text, name)); }
+
+ManipulationStudy studyOfJson(const JsonValue& file) {
   ManipulationStudy study;
-  readStudyText(parseJson(text, name), study);
+  readStudyText(file, study);
   validate(study);
   return study;
 }

@@ -10,11 +10,14 @@
 
 namespace pincer::tasks {
 
+class JsonValue;
+
 // The study as a file: every value, and what it means behind it as a comment.
 std::string studyFile(const ManipulationStudy& study);
 
 // Throws InputError: file, line, path, value, range, remedy.
 ManipulationStudy readStudyFile(const std::string& path);
 ManipulationStudy parseStudyFile(std::string_view text, const std::string& name);
+ManipulationStudy studyOfJson(const JsonValue& file);
 
 }  // namespace pincer::tasks

@@ -10,6 +10,7 @@
 #include <sstream>
 #include <thread>
 
+#include "tasks/experiments/row_sink.h"
 #include "tasks/experiments/simulated_trial.h"
 #include "tasks/measure/timing.h"
 
@@ -19,17 +20,6 @@ namespace {
 constexpr double kSignificant = 0.05;
 constexpr int kFewest = 4;      // with fewer not even all of them are certainly more than half (Wilson)
 constexpr double kRate = 1000;  // [Hz]
-
-// Keeps the rows alone: no sample is made.
-class RowSink final : public RecordSink {
- public:
-  bool wantsSample(std::int64_t) const override { return false; }
-  void sample(const SampleRecord&) override {}
-  void event(const EventRecord&) override {}
-  void reading(const ReadingRecord&) override {}
-  void trial(const TrialRecord& trial) override { rows.push_back(trial); }
-  std::vector<TrialRecord> rows;
-};
 
 ManipulationStudy studyOf(const FindingsOptions& options, const FindingsVariant& variant, int experiment) {
   ManipulationStudy study;
@@ -178,14 +168,6 @@ FindingResult summarise(const std::vector<std::vector<PersonMeans>>& experiments
   return result;
 }
 
-// `only`: parts of names, separated by commas; empty: all.
-bool isWanted(const std::string& name, const std::string& only) {
-  std::istringstream parts(only);
-  bool wanted = only.empty();
-  for (std::string part; std::getline(parts, part, ',');) wanted = wanted || name.find(part) != std::string::npos;
-  return wanted;
-}
-
 void requireSizes(const FindingsOptions& o) {
   const auto require = [](const char* name, int value, int low, int high) {
     if (value >= low && value <= high) return;
@@ -201,6 +183,13 @@ void requireSizes(const FindingsOptions& o) {
 
 }  // namespace
 
+bool isWanted(const std::string& name, const std::string& only) {
+  std::istringstream parts(only);
+  bool wanted = only.empty();
+  for (std::string part; std::getline(parts, part, ',');) wanted = wanted || name.find(part) != std::string::npos;
+  return wanted;
+}
+
 FindingsResult runFindings(const FindingsOptions& options, const std::atomic<bool>& interrupted,
                            const std::function<void(std::int64_t, std::int64_t)>& progress) {
   requireSizes(options);
@@ -208,8 +197,8 @@ FindingsResult runFindings(const FindingsOptions& options, const std::atomic<boo
   for (const FindingsVariant& variant : findingsVariants()) {
     if (isWanted(variant.name, options.only)) chosen.push_back(&variant);
   }
-  if (chosen.empty()) throw InputError(fmt::format("findings: no variant's name holds one of \"{}\".", options.only));
-  FindingsResult result{options, studyOf(options, findingsVariants().front(), 0), {}, 0, 0, false};
+  FindingsResult result{options, studyOf(options, findingsVariants().front(), 0), {}, 0, 0, 0, false};
+  if (chosen.empty()) return result;
   const auto start = std::chrono::steady_clock::now();
   Workshop workshop(options, chosen, interrupted, progress);
   workshop.run();

@@ -24,17 +24,29 @@ std::string suggestedScene(std::string_view name) {
   return suggestion(name, names);
 }
 
+NamedJson parseBuiltin(std::string_view name) {
+  const BuiltinScene* scene = findBuiltin(name);
+  if (!scene) throw InputError(fmt::format("there is no built-in scene \"{}\".{}", name, suggestedScene(name)));
+  const std::string file = fmt::format("{}.json", name);
+  return {file, parseJson(scene->json, file)};
+}
+
 }  // namespace
 
 Scene readBuiltinScene(std::string_view name) {
-  if (const BuiltinScene* scene = findBuiltin(name)) return parseScene(scene->json, fmt::format("{}.json", name));
-  throw InputError(fmt::format("there is no built-in scene \"{}\".{}", name, suggestedScene(name)));
+  const NamedJson scene = parseBuiltin(name);
+  return sceneOf(scene.json, scene.name);
+}
+
+NamedJson parseSceneOrBuiltin(const std::string& path_or_name) {
+  const bool is_word = path_or_name.find_first_of("/.") == std::string::npos;
+  if (!is_word || std::filesystem::exists(path_or_name)) return {path_or_name, readJson(path_or_name)};
+  return parseBuiltin(path_or_name);
 }
 
 Scene readSceneOrBuiltin(const std::string& path_or_name) {
-  const bool is_word = path_or_name.find_first_of("/.") == std::string::npos;
-  if (!is_word || std::filesystem::exists(path_or_name)) return readScene(path_or_name);
-  return readBuiltinScene(path_or_name);
+  const NamedJson scene = parseSceneOrBuiltin(path_or_name);
+  return sceneOf(scene.json, scene.name);
 }
 
 }  // namespace pincer::tasks

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "tasks/scene/scene.h"
+#include "tasks/scene/strict_json.h"
 
 namespace pincer::tasks {
 
@@ -25,5 +26,12 @@ Scene readBuiltinScene(std::string_view name);
 
 // A file's path, or the name of a built-in scene: what a user gives to `sim` and `plan`. A file of that path wins. Throws InputError.
 Scene readSceneOrBuiltin(const std::string& path_or_name);
+
+// The same, not yet read (sceneOf), and what it is called in messages.
+struct NamedJson {
+  std::string name;
+  JsonValue json;
+};
+NamedJson parseSceneOrBuiltin(const std::string& path_or_name);
 
 }  // namespace pincer::tasks

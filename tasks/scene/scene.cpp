@@ -44,7 +44,9 @@ void readTimes(const JsonValue& json, Scene& scene) {
     duration.reject(fmt::format("isn't a whole number of ticks of {} s.", scene.options.h));
 }
 
-Scene interpret(const JsonValue& json, const std::string& name) {
+}  // namespace
+
+Scene sceneOf(const JsonValue& json, const std::string& name) {
   json.allowOnly(keys::kScene);
   checkVersion(json);
   Scene scene;
@@ -71,13 +73,11 @@ Scene interpret(const JsonValue& json, const std::string& name) {
   return scene;
 }
 
-}  // namespace
-
 std::int64_t Scene::ticks() const { return wholeTicks(duration, options.h); }
 
-Scene readScene(const std::string& path) { return interpret(readJson(path), path); }
+Scene readScene(const std::string& path) { return sceneOf(readJson(path), path); }
 
-Scene parseScene(std::string_view json, const std::string& name) { return interpret(parseJson(json, name), name); }
+Scene parseScene(std::string_view json, const std::string& name) { return sceneOf(parseJson(json, name), name); }
 
 grasp::GraspModel buildWorld(const Scene& scene) {
   try {

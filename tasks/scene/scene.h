@@ -13,6 +13,8 @@
 
 namespace pincer::tasks {
 
+class JsonValue;
+
 struct SceneFinger {
   grasp::FingerModel model;
   Trajectory trajectory;    // of the device; a single point when the finger rests
@@ -61,6 +63,11 @@ constexpr int kSceneVersion = 1;
 Scene readScene(const std::string& path);
 // The same from text; files that it names are relative to the folder of `name`.
 Scene parseScene(std::string_view json, const std::string& name);
+// The same from what was parsed already.
+Scene sceneOf(const JsonValue& json, const std::string& name);
+
+// A quantity of the scene by its name (docs/scenes.md). Throws InputError, with a did-you-mean.
+Quantity quantityOf(const std::string& name, const Scene& scene);
 
 grasp::GraspModel buildWorld(const Scene& scene);
 grasp::GraspState startState(const Scene& scene, const grasp::GraspModel& model);

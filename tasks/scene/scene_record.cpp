@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <functional>
 
 #include "tasks/scene/scene_keys.h"
 #include "tasks/scene/scene_parts.h"
@@ -28,24 +29,31 @@ std::vector<std::string_view> ownersOf(const Scene& scene) {
   return names;
 }
 
-Quantity find(const JsonValue& json, std::span<const QuantityKind> kinds, std::string_view word, std::size_t index) {
+// `reject` throws, with where the text stands before what it is told.
+using Reject = std::function<void(const std::string&)>;
+
+Quantity find(const std::string& text, std::span<const QuantityKind> kinds, std::string_view word, std::size_t index,
+              const Reject& reject) {
   const QuantityKind* kind = findKind(kinds, word);
-  if (!kind) json.reject(fmt::format("isn't known.{}", suggestion(word, namesOf(kinds))));
-  return {json.text(), kind, index};
+  if (!kind) reject(fmt::format("isn't known.{}", suggestion(word, namesOf(kinds))));
+  return {text, kind, index};
 }
 
-Quantity readQuantity(const JsonValue& json, const Scene& scene) {
-  const std::string& text = json.text();
+Quantity findQuantity(const std::string& text, const Scene& scene, const Reject& reject) {
   const std::size_t dot = text.find('.');
-  if (dot == std::string::npos) return find(json, worldQuantities(), text, 0);
+  if (dot == std::string::npos) return find(text, worldQuantities(), text, 0, reject);
   const std::string_view owner = std::string_view(text).substr(0, dot);
   const std::string_view word = std::string_view(text).substr(dot + 1);
   const std::vector<std::string_view> owners = ownersOf(scene);
   const auto it = std::find(owners.begin(), owners.end(), owner);
-  if (it == owners.end()) json.reject(fmt::format("names no body or finger of this scene.{}", suggestion(owner, owners)));
+  if (it == owners.end()) reject(fmt::format("names no body or finger of this scene.{}", suggestion(owner, owners)));
   const std::size_t place = static_cast<std::size_t>(it - owners.begin());
   const std::size_t bodies = scene.bodies.size();
-  return place < bodies ? find(json, bodyQuantities(), word, place) : find(json, fingerQuantities(), word, place - bodies);
+  return place < bodies ? find(text, bodyQuantities(), word, place, reject) : find(text, fingerQuantities(), word, place - bodies, reject);
+}
+
+Quantity readQuantity(const JsonValue& json, const Scene& scene) {
+  return findQuantity(json.text(), scene, [&](const std::string& problem) { json.reject(problem); });
 }
 
 std::int64_t readTicks(const JsonValue& json, const Scene& scene, const NumberRule& rule) {
@@ -77,6 +85,10 @@ void readTolerance(const JsonValue& json, Expectation& expectation) {
 bool isNameLetter(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-'; }
 
 }  // namespace
+
+Quantity quantityOf(const std::string& name, const Scene& scene) {
+  return findQuantity(name, scene, [&](const std::string& problem) { throw InputError(fmt::format("quantity \"{}\" {}", name, problem)); });
+}
 
 Recording readRecording(const JsonValue& json, const Scene& scene) {
   json.allowOnly(keys::kRecord);

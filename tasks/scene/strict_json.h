@@ -59,6 +59,7 @@ class JsonValue {
 
  private:
   friend class JsonTreeBuilder;
+  friend class JsonChange;
   void require(Kind kind, std::string_view what) const;
   std::string shown() const;
 

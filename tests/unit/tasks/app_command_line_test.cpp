@@ -45,7 +45,8 @@ TEST(CommandLine, HelpsEverywhereWithAnExample) {
                                                                                        {"mesh", "info"},
                                                                                        {"mesh", "check"},
                                                                                        {"mesh", "convert"},
-                                                                                       {"mesh", "round-edges"}}) {
+                                                                                       {"mesh", "round-edges"},
+                                                                                       {"sweep"}}) {
     std::vector<std::string> arguments = command;
     arguments.push_back("--help");
     const AppResult help = runPincer(arguments);
