@@ -3,11 +3,13 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "contact/error.h"
 #include "tasks/app/app.h"
 #include "tasks/app/interrupt.h"
 #include "tasks/app/progress.h"
 #include "tasks/app/run_options.h"
 #include "tasks/app/run_tasks.h"
+#include "tasks/app/study_runs.h"
 #include "tasks/findings/findings_report.h"
 #include "tasks/session/atomic_file.h"
 
@@ -15,39 +17,64 @@ namespace pincer::tasks {
 namespace {
 
 constexpr const char* kFindingsExample = R"(
-Do the published findings of both manipulation tasks follow from what people can feel? Simulated experiments of the published design, each
-judged as the original was, beside controls that change one thing. The participants' parameters are the same whatever comes out; their hash
-stands in the report.
+Do the published findings follow from what people can feel? Simulated experiments of the published designs, each judged as the original was: of the
+five studies with one finger, and of both manipulation tasks beside controls that change one thing. The participants' parameters are the same
+whatever comes out; their hashes stand in the report. The studies' sessions are kept in --out; the same command goes on with them.
 
-Example:
-  pincer run findings --experiments 20 --out out/findings)";
+Examples:
+  pincer run findings --experiments 20 --out out/findings
+  pincer run findings --only primary,infinite-noise --out out/manipulation
+  pincer run findings --only discrimination,localisation,identification --study-experiments 20 --out out/studies)";
 
 struct FindingsArguments {
   FindingsOptions options;
+  StudyRuns studies;
   RunOptions run;
 };
 
-int runFindingsCommand(const FindingsArguments& arguments) {
-  const std::atomic<bool>& interrupted = interruptFlag();
+FindingsResult runManipulationFindings(const FindingsOptions& options) {
   std::unique_ptr<Progress> line;
-  const FindingsResult result = runFindings(arguments.options, interrupted, [&](std::int64_t done, std::int64_t total) {
+  return runFindings(options, interruptFlag(), [&](std::int64_t done, std::int64_t total) {
     if (!line) line = std::make_unique<Progress>("participants", total);
     line->update(done);
   });
-  line.reset();
-  if (result.variants.empty()) {
-    fmt::print(stderr, "pincer: interrupted before an experiment was whole; nothing was written.\n");
+}
+
+PublishedFindings runStudyFindings(StudyRuns studies, const FindingsOptions& options, const std::string& directory) {
+  studies.participants = options.participants;
+  studies.seed = options.seed;
+  studies.threads = options.threads;
+  studies.only = options.only;
+  studies.directory = directory;
+  std::unique_ptr<Progress> line;
+  const auto sessions = runPublishedStudies(studies, interruptFlag(), [&](std::int64_t done, std::int64_t total) {
+    if (!line) line = std::make_unique<Progress>("studies", total);
+    line->update(done);
+  });
+  PublishedFindings findings;
+  for (const StudySessions& study : sessions) judgeStudy(study.paths, findings);
+  return findings;
+}
+
+int runFindingsCommand(const FindingsArguments& arguments) {
+  const std::string directory = outputDirectory(arguments.run, "findings");
+  const PublishedFindings studies = runStudyFindings(arguments.studies, arguments.options, directory + "/sessions");
+  const FindingsResult result = runManipulationFindings(arguments.options);
+  const bool interrupted = interruptFlag();
+  if (result.variants.empty() && studies.figures.empty()) {
+    if (!interrupted) throw InputError(fmt::format("findings: no variant's or study's name holds one of \"{}\".", arguments.options.only));
+    fmt::print(stderr, "pincer: interrupted before an experiment was whole; the studies' sessions go on with the same command.\n");
     return kExitInterrupted;
   }
-  const int exit_code = result.interrupted ? kExitInterrupted : kExitOk;
-  if (result.interrupted) fmt::print(stderr, "pincer: interrupted; these are the experiments that were whole.\n");
-  fmt::print("{}", findingsText(result));
-  if (!arguments.run.report) return exit_code;
-  const std::string directory = outputDirectory(arguments.run, "findings");
-  makeDirectory(directory);
-  writeFindingsPage(result, directory + "/report.html");
-  fmt::print("Report: {}/report.html\n", directory);
-  return exit_code;
+  if (interrupted) fmt::print(stderr, "pincer: interrupted; these are the experiments that were whole.\n");
+  if (!result.variants.empty()) fmt::print("{}", findingsText(result));
+  if (!studies.figures.empty()) fmt::print("{}", publishedText(studies));
+  if (arguments.run.report) {
+    makeDirectory(directory);
+    writeFindingsPage(result, studies, directory + "/report.html");
+    fmt::print("Report: {}/report.html\n", directory);
+  }
+  return interrupted ? kExitInterrupted : kExitOk;
 }
 
 }  // namespace
@@ -58,13 +85,16 @@ void addFindingsTask(CLI::App& run, int& exit_code) {
   CLI::App* command = run.add_subcommand("findings", "Do the published findings follow? Many simulated experiments, with controls");
   command->add_option("--experiments", options.experiments, "Of the primary analysis")->capture_default_str();
   command->add_option("--control-experiments", options.control_experiments, "Of every other variant")->capture_default_str();
+  command->add_option("--study-experiments", arguments->studies.experiments, "Of every study with one finger")
+      ->check(CLI::Range(0, 1000))
+      ->capture_default_str();
   command->add_option("--participants", options.participants, "In an experiment")->capture_default_str();
   command->add_option("--pickups", options.pickups, "Of every friction, per participant and condition")->capture_default_str();
   command->add_option("--alignments", options.alignments, "Per participant and condition")->capture_default_str();
   command->add_option("--threads", options.threads, "That work at once")->capture_default_str();
   command->add_option("--seed", options.seed, "Of all that varies")->capture_default_str();
-  command->add_option("--only", options.only, "Only variants whose name holds one of these, separated by commas");
-  command->add_option("--out", arguments->run.out, "Directory for the report (default: out/findings-DATE-TIME)");
+  command->add_option("--only", options.only, "Only variants and studies whose name holds one of these, separated by commas");
+  command->add_option("--out", arguments->run.out, "Directory for report and sessions (default: out/findings-DATE-TIME)");
   command->add_flag("!--no-report", arguments->run.report, "Only the table");
   command->footer(kFindingsExample);
   command->callback([arguments, &exit_code] { exit_code = runFindingsCommand(*arguments); });

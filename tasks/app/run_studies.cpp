@@ -15,7 +15,6 @@
 #include "tasks/app/study_file.h"
 #include "tasks/app/study_session.h"
 #include "tasks/report/study_report.h"
-#include "tasks/scene/json_writer.h"
 #include "tasks/session/atomic_file.h"
 
 namespace pincer::tasks {
@@ -67,12 +66,6 @@ int strideOf(const RunOptions& options) {
                   rate));
 }
 
-std::string devicesJsonOf(const RunOptions& options, const char* display) {
-  JsonWriter json;
-  json.beginObject().key("arms").value("simulated").key("tactile_display").value(display).key("rate").value(options.servo.rate);
-  return json.key("sample_rate").value(options.sample_rate).key("real_time").value(options.servo.real_time).endObject().text();
-}
-
 int showStudy(const StudyArguments& arguments, const std::string& directory, const StudyOutcome& outcome) {
   const SessionReader session(directory + "/session.db");
   const StudySummary summary = summariseStudy(session, session.responses());
@@ -93,8 +86,7 @@ int showStudy(const StudyArguments& arguments, const std::string& directory, con
 }
 
 template <class Study, class MakeExperiment>
-int runStudyTask(const std::string& task, const Study& published, const StudyArguments& arguments, const char* display,
-                 const MakeExperiment& make) {
+int runStudyTask(const std::string& task, const Study& published, const StudyArguments& arguments, const MakeExperiment& make) {
   const std::atomic<bool>& interrupted = interruptFlag();
   const Study study = arguments.resume ? resumedStudy(task, published, arguments) : studyOf(published, arguments);
   if (arguments.print_study) {
@@ -106,14 +98,8 @@ int runStudyTask(const std::string& task, const Study& published, const StudyArg
   makeDirectory(directory);
   StudySession session;
   session.resume = arguments.resume;
-  session.info.task = task;
-  session.info.seed = study.seed;
-  session.info.version = PINCER_VERSION;
-  session.info.build = "compiler " __VERSION__;
-  session.info.protocol_json = studyJson(study);
-  session.info.devices_json = devicesJsonOf(arguments.run, display);
-  session.info.participants_json = participantsJson(study);
-  session.info.participants_hash = fingerprint(session.info.participants_json);
+  session.info =
+      studySessionInfo(task, study.seed, studyJson(study), participantsJson(study), arguments.run.servo, arguments.run.sample_rate);
   session.path = directory + "/session.db";
   session.real_time = arguments.run.servo.real_time;
   Progress line("study", 1000);
@@ -142,7 +128,7 @@ void addArcTask(CLI::App& run, int& exit_code, const ArcStudy& published, const 
   const auto arguments = addStudyTask(run, published.task, what, more, command);
   command->callback([arguments, published, &exit_code] {
     const auto make = [](const ArcStudy& s, const ServoOptions& servo, int stride) { return ArcExperiment(s, servo, stride); };
-    exit_code = runStudyTask(published.task, published, *arguments, "simulated 1-DOF", make);
+    exit_code = runStudyTask(published.task, published, *arguments, make);
   });
 }
 
@@ -170,7 +156,7 @@ void addShapeTask(CLI::App& run, int& exit_code) {
                    "A finger feels solids, shaded or not, with and without a contact location display, and names them.", command);
   command->callback([arguments, &exit_code] {
     const auto make = [](const ShapeStudy& s, const ServoOptions& servo, int stride) { return ShapeExperiment(s, servo, stride); };
-    exit_code = runStudyTask("shape-identification", ShapeStudy{}, *arguments, "simulated 2-DOF", make);
+    exit_code = runStudyTask("shape-identification", ShapeStudy{}, *arguments, make);
   });
 }
 
@@ -182,7 +168,7 @@ void addLocalisationTask(CLI::App& run, int& exit_code) {
     const auto make = [](const LocalisationStudy& s, const ServoOptions& servo, int stride) {
       return LocalisationExperiment(s, servo, stride);
     };
-    exit_code = runStudyTask("repeated-localisation", LocalisationStudy{}, *arguments, "simulated 1-DOF", make);
+    exit_code = runStudyTask("repeated-localisation", LocalisationStudy{}, *arguments, make);
   });
 }
 

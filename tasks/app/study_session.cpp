@@ -1,5 +1,8 @@
 #include "tasks/app/study_session.h"
 
+#include "tasks/app/study_file.h"
+#include "tasks/scene/json_writer.h"
+
 namespace pincer::tasks {
 namespace {
 
@@ -15,6 +18,23 @@ class StudyFileSink final : public StudySink {
 };
 
 }  // namespace
+
+SessionInfo studySessionInfo(const std::string& task, std::uint64_t seed, const std::string& protocol_json,
+                             const std::string& participants_json, const ServoOptions& servo, int sample_rate) {
+  SessionInfo info;
+  info.task = task;
+  info.seed = seed;
+  info.version = PINCER_VERSION;
+  info.build = "compiler " __VERSION__;
+  info.protocol_json = protocol_json;
+  info.participants_json = participants_json;
+  info.participants_hash = fingerprint(participants_json);
+  const char* display = task == "shape-identification" ? "simulated 2-DOF" : "simulated 1-DOF";
+  JsonWriter json;
+  json.beginObject().key("arms").value("simulated").key("tactile_display").value(display).key("rate").value(servo.rate);
+  info.devices_json = json.key("sample_rate").value(sample_rate).key("real_time").value(servo.real_time).endObject().text();
+  return info;
+}
 
 StudyOutcome runStudySession(Experiment& experiment, const StudySession& session, const std::atomic<bool>& interrupted,
                              const std::function<void(const StudyProgress&)>& progress) {

@@ -35,6 +35,9 @@ struct FindingsOptions {
   std::string only;  // variants whose name holds one of these, separated by commas; empty: all
 };
 
+// `only`: parts of names, separated by commas; empty: all.
+bool isWanted(const std::string& name, const std::string& only);
+
 struct FindingResult {
   Estimate force, cld;                                        // over the experiments' means
   Estimate difference;                                        // cld - force, likewise
@@ -59,7 +62,8 @@ struct FindingsResult {
 };
 
 // Runs all: first the primary analysis, then one experiment of each control after the other. Where it is interrupted the experiments that are
-// whole are reported; variants that have none are left out. `progress(done, total)` after every participant, from any thread, one at a time. Throws InputError.
+// whole are reported; variants that have none are left out. `progress(done, total)` after every participant, from any thread, one at a time. Where no variant is wanted
+// nothing runs. Throws InputError.
 FindingsResult runFindings(const FindingsOptions& options, const std::atomic<bool>& interrupted,
                            const std::function<void(std::int64_t, std::int64_t)>& progress);
 

@@ -147,17 +147,27 @@ std::string findingsCsv(const FindingsResult& result) {
   return table.take();
 }
 
-void writeFindingsPage(const FindingsResult& result, const std::string& path) {
-  std::vector<Picture> pictures{{forestFigure(result), "", ""}};
+void writeFindingsPage(const FindingsResult& result, const PublishedFindings& studies, const std::string& path) {
+  std::vector<Picture> pictures;
+  const bool manipulation = !result.variants.empty(), one_finger = !studies.figures.empty();
+  if (manipulation) pictures.push_back({forestFigure(result), "", ""});
+  if (one_finger) pictures.push_back({publishedForest(studies), "", ""});
   ReportFiles files;
   const std::string figures = plotAndWrite(pictures, path, {}, files);
-  writeAtomically(files.figures_directory + "/table.csv", findingsCsv(result));
   std::string html = htmlHead("Do the published findings follow?", "");
-  html += fmt::format("<p>{}</p>\n<p>{}</p>\n<p class=\"note\">{}</p>\n", escaped(designOf(result)), escaped(runCost(result)),
-                      escaped(kReading));
+  if (manipulation) {
+    writeAtomically(files.figures_directory + "/table.csv", findingsCsv(result));
+    html += fmt::format("<p>{}</p>\n<p>{}</p>\n<p class=\"note\">{}</p>\n", escaped(designOf(result)), escaped(runCost(result)),
+                        escaped(kReading));
+  }
   for (std::size_t v = 0; v < result.variants.size(); ++v) {
     html += variantTable(result.variants[v]);
     if (v == 0) html += htmlFigure(pictures[0], figures);
+  }
+  if (one_finger) {
+    writeAtomically(files.figures_directory + "/published_table.csv", publishedCsv(studies));
+    writeAtomically(files.figures_directory + "/published_orders.csv", publishedOrdersCsv(studies));
+    html += publishedHtml(studies) + htmlFigure(pictures.back(), figures);
   }
   SessionInfo info;
   info.protocol_json = studyFile(result.study);

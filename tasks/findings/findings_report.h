@@ -3,12 +3,14 @@
 #include <string>
 
 #include "tasks/findings/findings.h"
+#include "tasks/findings/published_figures.h"
 
 namespace pincer::tasks {
 
 std::string findingsText(const FindingsResult& result);
 std::string findingsCsv(const FindingsResult& result);
-// The page, its picture inside; beside it <name>_figures/ with the picture as PNG and the numbers as CSV. Needs gnuplot. Throws InputError.
-void writeFindingsPage(const FindingsResult& result, const std::string& path);
+// `studies`: what was found of the published figures of the studies with one finger; may be empty.
+// The page, its pictures inside; beside it <name>_figures/ with the pictures as PNG and the numbers as CSV. Needs gnuplot. Throws InputError.
+void writeFindingsPage(const FindingsResult& result, const PublishedFindings& studies, const std::string& path);
 
 }  // namespace pincer::tasks

@@ -139,12 +139,9 @@ std::string estimateText(const Estimate& e, double scale, int digits) {
   return fmt::format("{:.{}f} ± {:.{}f}", scale * e.mean, digits, scale * e.half_width, digits);
 }
 
-// A staircase that settles is answered right in 70.7 % of its trials and more; at chance it has only begun to rise from where it started.
-bool unsettled(const StudyCondition& c) { return c.averaged > 0 && c.right.n > 0 && c.right.mean < kSettled; }
-
 // Whether the published figure lies in pincer's interval; where not, how far off the mean is.
 std::string followsText(const StudyCondition& c) {
-  if (std::isnan(c.published) || c.headline.n < 2 || unsettled(c)) return "–";
+  if (std::isnan(c.published) || c.headline.n < 2 || isUnsettled(c)) return "–";
   if (std::abs(c.headline.mean - c.published) <= c.headline.half_width) return "yes";
   return fmt::format("no, {:.2g} times", c.headline.mean / c.published);
 }
@@ -160,6 +157,8 @@ std::size_t characters(const std::string& text) {
 }
 
 }  // namespace
+
+bool isUnsettled(const StudyCondition& c) { return c.averaged > 0 && c.right.n > 0 && c.right.mean < kSettled; }
 
 bool isStudy(const std::string& task) { return kindOf(task) != nullptr; }
 
@@ -191,7 +190,7 @@ std::vector<std::string> studyTableHeads(const StudySummary& s) {
 std::vector<std::string> studyTableRow(const StudySummary& s, const StudyCondition& c) {
   const int digits = s.headline.unit == "ms" || s.headline.unit == "%" ? 1 : 2;
   return {c.name == c.label ? c.name : c.name + ": " + c.label,
-          (unsettled(c) ? "≥ " : "") + estimateText(c.headline, s.headline.scale, digits),
+          (isUnsettled(c) ? "≥ " : "") + estimateText(c.headline, s.headline.scale, digits),
           std::isnan(c.published) ? "–" : fmt::format("{:.3g}", s.headline.scale * c.published),
           followsText(c),
           std::to_string(c.people.size()),
@@ -217,7 +216,7 @@ std::string studyNote(const StudySummary& s) {
     unanswered += c.unanswered;
     for (const StudyPerson& person : c.people) lost += std::isnan(person.headline);
   }
-  if (std::any_of(s.conditions.begin(), s.conditions.end(), unsettled)) {
+  if (std::any_of(s.conditions.begin(), s.conditions.end(), isUnsettled)) {
     note += fmt::format(
         " ≥ marks conditions with fewer than {:.0f} % right answers: their staircases ended before they had risen to a threshold.",
         100 * kSettled);

@@ -39,6 +39,10 @@ struct StudyCondition {
   Estimate finger_speed, tactor_speed;  // [m/s]
 };
 
+// Whether its staircases ended before they had risen to a threshold: one that settles is answered right in 70.7 % of its trials and more; at chance
+// it has only begun to rise from where it started.
+bool isUnsettled(const StudyCondition& condition);
+
 struct StudySummary {
   std::string path;
   SessionInfo info;
