@@ -16,9 +16,9 @@ Pose shapeArmBase() {
   return {q_WD, -(q_WD * Vec3(0, 0.02, 0.02))};
 }
 
-ShapeCues shapeCues(const ShapeTrialSetup& setup) {
+ShapeCues shapeCues(const ShapeTrialSetup& setup, const devices::TactileDisplay& display) {
   const Pose X_WD = shapeArmBase();
-  return {setup.seed, X_WD.q, X_WD.p, Vec3::Zero(), setup.finger_radius};
+  return {setup.seed, X_WD.q, X_WD.p, Vec3::Zero(), setup.finger_radius, display.capabilities().reach.minCoeff()};
 }
 
 TickModel shapeModel(const ShapeTrialSetup& setup) {
@@ -67,7 +67,7 @@ ShapeTrial::ShapeTrial(const ShapeTrialSetup& setup, ShapeExplorer& explorer, St
       arm_(shapeArm()),
       inputs_(1) {
   model_.mounts[0].gate = devices::within(model_.mounts[0].gate, arm_.capabilities());
-  explorer_.begin(shapeCues(setup));
+  explorer_.begin(shapeCues(setup, display_));
   const ShapeAction action = explorer_.act({arm_.sample(), Vec3::Zero(), display_.sample()}, 0, Cue::kNone);
   arm_.setHand(action.finger.pull);
   arm_.setGimbal(model_.mounts[0].X_WD.q.conjugate() * action.q_WF);

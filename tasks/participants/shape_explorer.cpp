@@ -9,6 +9,8 @@ namespace {
 
 constexpr double kFeltPush = 0.3;    // while following, a weaker push means that the finger has left the surface [N]
 constexpr double kSinkSpeed = 0.05;  // then the aim goes in [m/s]
+constexpr double kRoundOff = 1e-12;  // keeps a variance of 0 positive [m^2]
+constexpr double kLeast = 1e-12;     // a likelihood: no reading rules a solid out for ever
 constexpr double kGiveWay = 20;      // else the aim follows the finger, at this rate [1/s]
 
 double angleBetweenUnits(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
@@ -136,7 +138,8 @@ void ShapeExplorer::read(const FingerPercept& finger, const Vec3& p_W) {
   Vec3 n_W = blurred((cues_.q_WD * finger.f_D).normalized(), sd_push, random_);
   double sd_n = sd_push;
   if (const auto shown = directionOfTactor(finger, held())) {
-    const double sd_shown = std::hypot(limits_.common.tactor_sd / cues_.tip_radius, limits_.common.orientation_sd);
+    const double sd_place = limits_.common.tactor_sd / limits_.common.tactor_bias;
+    const double sd_shown = std::hypot(sd_place / cues_.tip_radius, limits_.common.orientation_sd);
     const double w_push = 1 / (sd_push * sd_push), w_shown = 1 / (sd_shown * sd_shown);
     n_W = (w_push * n_W + w_shown * *shown).normalized();
     sd_n = 1 / std::sqrt(w_push + w_shown);
@@ -150,16 +153,37 @@ void ShapeExplorer::believe(SolidBelief& b, const KnownSolid& solid, const Vec3&
   const double off = (q_W - solid.nearest(q_W)).norm() - cues_.tip_radius;
   const Vec3 spread_W = b.covariance * outward_W;
   const double S = outward_W.dot(spread_W) + limits_.place_sd * limits_.place_sd;
-  const double angle = angleBetweenUnits(n_W, outward_W);
-  b.log_likelihood -= 0.5 * (off * off / S + std::log(S) + angle * angle / (sd_n * sd_n));
+  b.log_likelihood -= 0.5 * (off * off / S + std::log(S));
+  b.log_likelihood += std::log(likelihoodOf(n_W, sd_n, solid, q_W, outward_W, off, b.covariance));
   b.misplacement_W += spread_W * (off / S);
   b.covariance -= spread_W * spread_W.transpose() / S;
 }
 
-// Out of the surface, from where the contact is on the pad. Absent where the tactor has stood still since the trial began.
+// Of a felt direction: where the finger is on the solid is known as badly as it was felt, and near an edge another place has another direction. The
+// mean over six places spread as the place is once the finger is known to touch.
+double ShapeExplorer::likelihoodOf(const Vec3& n_W, double sd_n, const KnownSolid& solid, const Vec3& q_W, const Vec3& outward_W,
+                                   double off, const Mat3& covariance) const {
+  const Mat3 spread = covariance + limits_.place_sd * limits_.place_sd * Mat3::Identity();
+  const Vec3 gain = spread * outward_W / outward_W.dot(spread * outward_W);
+  const Vec3 touching_W = q_W - gain * off;
+  const Mat3 left = spread - gain * (spread * outward_W).transpose() + kRoundOff * Mat3::Identity();
+  const Mat3 root = std::sqrt(3.0) * Mat3(left.llt().matrixL());
+  double sum = 0;
+  for (int i = 0; i < 3; ++i) {
+    for (const double sign : {-1.0, 1.0}) {
+      const double angle = angleBetweenUnits(n_W, solid.outward(touching_W + sign * root.col(i))) / sd_n;
+      sum += std::exp(-0.5 * angle * angle);
+    }
+  }
+  return sum / 6 + kLeast;
+}
+
+// Out of the surface, from where the contact is on the pad. Absent where the tactor has stood still since the trial began, or may be at its stop.
 std::optional<Vec3> ShapeExplorer::directionOfTactor(const FingerPercept& finger, const Quat& q_WF) {
   if (!tactor_moves_ || !finger.tactile.valid || !finger.tactile.place_L) return std::nullopt;
-  const Vec2 place = limits_.common.tactor_bias * *finger.tactile.place_L + limits_.common.tactor_sd * random_.normal2();
+  const double sd = limits_.common.tactor_sd / limits_.common.tactor_bias;
+  const Vec2 place = *finger.tactile.place_L + sd * random_.normal2();  // felt place over the gain
+  if (place.norm() > cues_.tactor_reach - sd) return std::nullopt;
   const double a = place.norm() / cues_.tip_radius;
   Vec3 to_contact_F(0, 0, -1);
   if (a > 0) {

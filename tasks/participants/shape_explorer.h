@@ -7,12 +7,15 @@
 // read     every reading time, while something is felt: the place of the fingertip and the direction of the surface,
 //
 //   place      p + m + sigma_p n                 m constant in a trial: placement_sd
-//   direction  felt from the push on the finger, direction_sd per axis; and, where the tactor moves, from its place on the pad,
-//              sigma / tip radius and the felt orientation's error, constant in a trial; the two weighed by their variances
+//   direction  felt from the push on the finger, direction_sd per axis; and, where the tactor moves, from its place on the pad, s = (b a r + noise),
+//              a ~ s / b r with sigma / b r and the felt orientation's error, constant in a trial; the two weighed by their variances.
+//              a angle on the fingertip, r its radius, b the felt over the true place: known, as to the other participants (flat_belief.h).
+//              How far the tactor goes is known from training: a place felt within sigma of there, or beyond, may be anywhere beyond, and
+//              isn't taken for a direction
 //
 // believe  each solid known by heart (known_solids.h) has its own Gaussian over m, by a Kalman filter: were it this one, the finger would be its tip's
 //          radius r away from it,   y = |q - nearest(q)| - r,  q = felt place - mean of m,  S = n' P n + sigma_p^2,  n the solid's normal at q,
-//          and it gets  -y^2/2S - ln(S)/2 - angle(n, felt direction)^2 / 2 s_n^2  per reading. The answer is the likeliest, and exploring ends
+//          and it gets  -y^2/2S - ln(S)/2 + ln E[exp(-angle(n, felt direction)^2 / 2 s_n^2)]  per reading, E over where the finger may be on it. The answer is the likeliest, and exploring ends
 //          when it is sure.
 // The reading's own noise sigma_p and the wanted sureness are ours (choice); the rest is in body.h. The same plan in every condition.
 #pragma once
@@ -42,6 +45,7 @@ struct ShapeCues {
   Vec3 p_WD = Vec3::Zero();      // arm base [m]
   Vec3 middle_W = Vec3::Zero();  // of the solid [m]
   double tip_radius = 8e-3;      // of the finger [m]
+  double tactor_reach = 7.5e-3;  // largest place that the tactor can show [m]
 };
 
 struct ShapeAction {
@@ -73,6 +77,8 @@ class ShapeExplorer {
 
   void enter(Phase phase);
   void believe(SolidBelief& belief, const KnownSolid& solid, const Vec3& felt_W, const Vec3& n_W, double sd_n) const;
+  double likelihoodOf(const Vec3& n_W, double sd_n, const KnownSolid& solid, const Vec3& q_W, const Vec3& outward_W, double off,
+                      const Mat3& covariance) const;
   void follow(const FingerPercept& finger, double dt);
   void read(const FingerPercept& finger, const Vec3& p_W);
   std::optional<Vec3> directionOfTactor(const FingerPercept& finger, const Quat& q_WF);

@@ -125,8 +125,15 @@ TEST(ParticipantSkin, SettlesAtForceOverStiffness) {
   EXPECT_NEAR(u.y(), -1e-3, 1e-9);
 }
 
+// Where the tactor touches the pad for a contact in this direction of the finger, as far as it goes.
+Vec2 placeShown(const Vec3& to_contact_F, const ShapeCues& cues) {
+  const Vec2 across(to_contact_F.x(), -to_contact_F.y());
+  const double place = cues.tip_radius * std::atan2(across.norm(), -to_contact_F.z());
+  return across.norm() > 0 ? Vec2(std::min(place, cues.tactor_reach) * across.normalized()) : Vec2::Zero();
+}
+
 // A finger that keeps to a solid, pushed off along its normal, as long as the explorer wants; what it says then.
-int answerAbout(const KnownSolid& solid, std::uint64_t seed) {
+int answerAbout(const KnownSolid& solid, std::uint64_t seed, bool display) {
   ShapeExplorer explorer(1);
   ShapeCues cues;
   cues.seed = seed;
@@ -142,19 +149,31 @@ int answerAbout(const KnownSolid& solid, std::uint64_t seed) {
     const double depth = cues.tip_radius - away.norm();
     percept.arm.p_DF = depth > 0 ? Vec3(aim + depth * solid.outward(aim)) : aim;
     percept.f_D = depth > 0 ? Vec3(400 * depth * solid.outward(aim)) : Vec3::Zero();
+    if (!display) continue;
+    percept.tactile.valid = true;
+    percept.tactile.place_L = placeShown(action.q_WF.conjugate() * -solid.outward(aim), cues);
   }
   return explorer.answer();
 }
 
-// The hand's misplacement of 7 mm per axis is the same for all readings of a trial; taken for noise of each, it made the solids look alike: 58 %
-// right answers in the study, and here 185 of 280; now 242.
-TEST(ShapeExplorer, IsNotMisledByAMisplacementThatStays) {
+int rightAnswers(bool display) {
   const auto solids = knownSolids();
   int right = 0;
   for (int k = 0; k < kSolids; ++k) {
-    for (std::uint64_t seed = 1; seed <= 40; ++seed) right += answerAbout(solids[static_cast<std::size_t>(k)], seed) == k;
+    for (std::uint64_t seed = 1; seed <= 40; ++seed) right += answerAbout(solids[static_cast<std::size_t>(k)], seed, display) == k;
   }
-  EXPECT_GE(right, 225);
+  return right;
+}
+
+// The hand's misplacement of 7 mm per axis is the same for all readings of a trial; taken for noise of each, it made the solids look alike: 58 %
+// right answers in the study, and here 185 of 280; then 242.
+TEST(ShapeExplorer, IsNotMisledByAMisplacementThatStays) { EXPECT_GE(rightAnswers(false), 225); }
+
+// Who feels more can't know less. With the display 231 of 280 were right and without it 242: places of a tactor at its stop (7.5 mm of a fingertip of
+// 8 mm: 54 degrees) were taken for directions, and the direction that a solid has where the finger was felt for known; now 253 and 252.
+TEST(ShapeExplorer, IsNotMisledByTheDisplay) {
+  constexpr int kByRoundOff = 4;  // so many answers may turn with another compiler's mathematical functions
+  EXPECT_GE(rightAnswers(true), rightAnswers(false) - kByRoundOff);
 }
 
 TEST(KnownSolids, DistancesAreThoseOfTheClosedForms) {
