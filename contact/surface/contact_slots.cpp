@@ -139,15 +139,20 @@ void SurfaceTouch::takeNearest() {
 }
 
 // The nearest solution; not converged if there is none nearer than `bound`. In free space a seed that leads to no solution as near (shading
-// normals may point past the nearest place by a few degrees) stands for itself: far from contact the distance counts, not the direction.
-ShellContact SurfaceTouch::nearestWithin(double bound) const {
+// normals may point past the nearest place by a few degrees) stands for itself: far from contact the distance counts, not the direction. So
+// does one in overlap that leads to none at all, on a ridge between two of a hollow that the finger is too large for.
+ShellContact SurfaceTouch::nearestWithin(double bound) {
   constexpr double kStrayed = 2.5e-3;  // of r
   const SurfaceSeed seed = s_.search.nearest(s_.net, cache_, C_, bound, tracker_.has_centre ? Facing::front : Facing::both);
   if (!seed.found) return {};
   ShellContact contact = follow(seed.foot);
   const bool strayed = !contact.converged || std::abs(contact.h) > seed.distance + kStrayed * r_;
   if (strayed && seed.distance > r_) return straightTo(seed);
-  if (!contact.converged) contact = tangentContact(s_.net, cache_, C_, seed.foot);
+  if (!contact.converged) {
+    contact = straightTo(seed);
+    status_ |= kQueryReseeded;
+    ++cost_.reseeds;
+  }
   contact.converged = contact.converged && std::abs(contact.h) < bound;
   return contact;
 }

@@ -28,16 +28,14 @@ bool isMinimumAtVertex(const SurfaceNet& net, const CellCorner& at, const Vec3& 
   return is_least && (is_border || R.dot(outward) > 0);
 }
 
-// As far as it is less than `most`.
+// As far as it is less than `most`. Of a border's two edges one counts.
 double wayToMinimumAtVertex(const SurfaceNet& net, const CellCorner& at, const Vec3& p, double most) {
   const Vec3& from = net.vertex(at.triangle, at.corner);
   const Vec3 R = p - from;
   double way = 0;
   net.visitCorners(at, [&](const CellCorner& c) {
-    for (const int end : {(c.corner + 1) % 3, (c.corner + 2) % 3}) {
-      const Vec3 edge = net.vertex(c.triangle, end) - from;
-      if (const double passed = R.dot(edge); passed > 0) way = std::max(way, passed / edge.norm());
-    }
+    const Vec3 edge = net.vertex(c.triangle, (c.corner + 1) % 3) - from;
+    if (const double passed = R.dot(edge); passed > 0) way = std::max(way, passed / edge.norm());
     return way < most;
   });
   return way;

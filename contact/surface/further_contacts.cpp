@@ -166,8 +166,20 @@ bool SurfaceTouch::wasSeen(std::int32_t triangle, const PatchBounds& part) const
   return std::any_of(seen_.begin(), seen_.end(), [&](const TriedPlace& s) { return stands(s.foot, s.S, s.n, triangle, part); });
 }
 
+// As far as into a triangle in which a followed contact is: that one.
+ShellContact SurfaceTouch::followUntilKnown(const Foot& foot) const {
+  ShortList<std::int32_t, kMaxSurfaceContacts> known;
+  for (const FollowedContact& f : list_) {
+    if (!f.fades) known.push_back(f.contact.foot.triangle);
+  }
+  const ShellContact found = solveShell(s_.net, cache_, C_, foot, {known.begin(), known.end()});
+  if (!found.has_met) return found;
+  const auto isThere = [&](const FollowedContact& f) { return !f.fades && f.contact.foot.triangle == found.foot.triangle; };
+  return std::find_if(list_.begin(), list_.end(), isThere)->contact;
+}
+
 void SurfaceTouch::tryPlace(const Foot& foot) {
-  const ShellContact candidate = follow(foot);
+  const ShellContact candidate = s_.variant == SurfaceVariant::smooth ? followUntilKnown(foot) : follow(foot);
   seen_.push_back({candidate.foot, placeOf(candidate), candidate.n});
   if (candidate.converged && candidate.h > 0 && candidate.h < reach_ && isNew(candidate)) keepDeepestFurther(candidate);
 }

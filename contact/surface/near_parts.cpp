@@ -41,7 +41,8 @@ void findNearParts(const SurfaceNet& net, const SurfaceSearch& search, const Sur
   const ConesAlong passed(look.n);
   search.visitParts(look.p_BC, look.reach, found.look.horizon, passed, [&](std::int32_t place, double approach) {
     if (found.parts.size() == kMostParts) halve(found);
-    if (approach < found.look.horizon) found.parts.push_back({place, below(approach), below(approach)});
+    const float rounded = below(approach);
+    if (approach < found.look.horizon) found.parts.push_back({place, rounded, rounded});
   });
   std::sort(found.parts.begin(), found.parts.end(), comesFirst);
   if (!(found.look.horizon > 0)) keepMinima(net, search, found);

@@ -15,6 +15,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <span>
 
 #include "contact/math.h"
 #include "contact/surface/surface_net.h"
@@ -42,13 +43,15 @@ struct ShellContact {
   Foot foot;
   Vec3 n = Vec3::UnitZ();  // unit; C - h n is the contact point to within 1e-9 m
   double h = 0;            // [m], negative when the centre lies under the surface
-  bool converged = false;  // false: no solution within the budget of 20 steps, and `foot` is where the walk began
+  bool converged = false;  // false: no solution within the budget of 20 steps, and `foot` is where the walk began, or where it met
   WalkCost cost;
   FootMotion motion = {};
+  bool has_met = false;  // came into a triangle at which it was to end
 };
 
-// Walks from `start` to a solution for centre `C`. Allocates nothing, throws nothing.
-ShellContact solveShell(const SurfaceNet& net, PatchCache& cache, const Vec3& C, const Foot& start);
+// Walks from `start` to a solution for centre `C`, no further than into one of the triangles `ends`. Allocates nothing, throws nothing.
+ShellContact solveShell(const SurfaceNet& net, PatchCache& cache, const Vec3& C, const Foot& start,
+                        std::span<const std::int32_t> ends = {});
 
 // The solution beside the place to which `start` moves with a centre that has moved by `dC` [m], over smooth edges as on the flat mesh, if one
 // Newton step leads there; else not converged. What most ticks need: one look at one patch.

@@ -70,7 +70,7 @@ void setCentre(Patch& p) {
 }
 
 // Where the smooth edge from corner i to the middle of the side across has come to after 2/3 of the way, over the triangle's middle.
-Vec3 placeOnMedian(const Patch& p, int i) {
+[[gnu::flatten]] Vec3 placeOnMedian(const Patch& p, int i) {
   const auto side = edgeCurve(p, (i + 1) % 3);
   const auto normals = edgeNormals(p, (i + 1) % 3);
   const Vec3 P = edgeCurve(p, i)[0], n = edgeNormals(p, i)[0];

@@ -65,10 +65,11 @@ class SurfaceTouch {
   void findLost();
   void hold(int slot);
   void takeNearest();
-  ShellContact nearestWithin(double bound) const;
+  ShellContact nearestWithin(double bound);
   ShellContact straightTo(const SurfaceSeed& seed) const;
   void addFurther();
   void tryPlace(const Foot& foot);
+  ShellContact followUntilKnown(const Foot& foot) const;
   bool isNew(const ShellContact& candidate) const;
   bool stands(const Foot& foot, const Vec3& S, const Vec3& n, std::int32_t triangle, const PatchBounds& part) const;
   bool isFollowed(std::int32_t triangle, const PatchBounds& part) const;

@@ -306,5 +306,23 @@ TEST(SurfaceQuery, TellsWhatAFingerWillNotFeelWell) {
   EXPECT_TRUE(tight->findings(0.002).empty());
 }
 
+// Over the ridge between two places of a hollow tighter than the finger, on a mesh that is its own mirror image: the walk stays on the ridge.
+// It was once left without an answer, its place a plane 0.3 um above the surface.
+TEST(SurfaceQuery, AFingerOverARidgeOfAHollowThatItDoesNotFitIntoIsAnswered) {
+  const auto surface = SmoothMesh::build(bumpySphere(0.03, 0.06, 9, 24));
+  for (const double aside : {0.0, 1e-7, -1e-6}) {
+    SurfaceTracker tracker;
+    PatchCache cache;
+    const Vec3 C(0.016661347 + aside, 0.024938140, 0.021988938);
+    const SurfaceContacts found = surface->querySphere(C, kFinger, 1e-3, tracker, cache);
+    EXPECT_EQ(found.cost.held, 0);
+    EXPECT_EQ(tracker.status & kQueryHeldDirection, 0u);
+    for (int k = 0; k < found.count; ++k) {
+      const SurfaceContact& c = found.points[static_cast<std::size_t>(k)];
+      EXPECT_LT((C - c.p_BS - (c.phi + kFinger) * c.n_B).norm(), 1e-15);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace pincer::contact
