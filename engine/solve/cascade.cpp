@@ -5,6 +5,7 @@
 #include "engine/solve/contact_equations.h"
 #include "engine/solve/gauss_seidel.h"
 #include "engine/solve/interior_point.h"
+#include "engine/solve/large_problem.h"
 #include "engine/solve/newton.h"
 #include "engine/solve/residual.h"
 #include "engine/solve/small_problem.h"
@@ -50,8 +51,8 @@ bool project(const ContactProblem& problem, double* r) {
 class Search {
  public:
   // r, u, residual: the warm start, evaluated
-  Search(const ContactProblem& problem, SolverScratch& scratch, const double* r, const double* u, double residual)
-      : form_(chooseForm(problem, scratch)),
+  Search(const ContactProblem& problem, EquationForm form, SolverScratch& scratch, const double* r, const double* u, double residual)
+      : form_(form),
         unscaled_(problem),
         problem_(scaleProblem(problem, form_ == EquationForm::kContacts, scratch)),
         equations_(problem_, form_, scratch),
@@ -71,7 +72,6 @@ class Search {
   }
 
   SolveMethod run(const SolverOptions& options) {
-    if (form_ == EquationForm::kTooLarge) return sweep(options);
     if (finish(options)) return SolveMethod::kNewton;
     if (isSpent()) return sweep(options);
     restartFromBest();
@@ -89,7 +89,6 @@ class Search {
     scaleSides(unscaled_, scratch_);
     for (int sweeps = 0; sweeps < options.gauss_seidel_sweeps && !isSpent(); sweeps += kSweepsPerRound) {
       restartFromBest();
-      prepareGaussSeidel(problem_, scratch_);
       sweepGaussSeidel(problem_, kSweepsPerRound, scratch_, current_);
       iterations_ += kSweepsPerRound;
       if (finish(options)) return SolveMethod::kGaussSeidel;
@@ -100,13 +99,12 @@ class Search {
   // What is within the tolerance already, brought to round-off.
   SolveMethod polish(const SolverOptions& options) {
     keepBest();
-    if (form_ == EquationForm::kTooLarge) return SolveMethod::kWarmStart;
     iterations_ += iterateNewton(problem_, kStrictness * options.tolerance, kPolishSteps, equations_, scratch_, current_, trial_);
     keepBest();
     return SolveMethod::kNewton;
   }
 
-  // Too large for the costlier methods, or for linear equations at all: Gauss-Seidel, warm-started from tick to tick.
+  // Too large for the costlier methods: Gauss-Seidel, warm-started from tick to tick.
   SolveMethod sweep(const SolverOptions& options) {
     if (problem_.W) scaleSides(unscaled_, scratch_);
     keepBest();
@@ -115,7 +113,6 @@ class Search {
     const bool is_spent = isSpent();
     if (is_spent) scratch_.operations_left = kNoLimit;  // the few sweeps that every tick gets: contacts that are new have no impulse yet
     const int most = is_spent ? kSweepsPerLook : options.large_sweeps;
-    prepareGaussSeidel(problem_, scratch_);
     for (int sweeps = 0; sweeps < most && !(best_.residual <= enough); sweeps += kSweepsPerLook) {
       sweepGaussSeidel(problem_, kSweepsPerLook, scratch_, current_);
       iterations_ += kSweepsPerLook;
@@ -189,16 +186,26 @@ class Search {
 // Scales r so that  E(r) = r . (q + W r / 2),  the energy that it brings in, isn't positive: to the minimum of E on its ray.
 // The biases within q count as velocities, and compliance within W as inertia: the best that can be said without knowing the bodies, and on
 // the safe side but for work that a bias does on purpose (a penetration pushed out, a restitution).
-void removeAddedEnergy(const ContactProblem& problem, VectorMap r, VectorMap u) {
+// False if there was nothing to do.
+bool removeAddedEnergy(const ContactProblem& problem, VectorMap r, VectorMap u) {
   double work = 0;      // r . q
   double response = 0;  // r . W r
   for (int row = 0; row < problem.rowCount(); ++row) {
     work += r.data()[row] * problem.q.data()[row];
     response += r.data()[row] * (u.data()[row] - problem.q.data()[row]);
   }
-  if (work + 0.5 * response <= 0) return;
+  if (work + 0.5 * response <= 0) return false;
   const double scale = work < 0 ? -work / response : 0;
   for (int row = 0; row < problem.rowCount(); ++row) r.data()[row] *= scale;
+  return true;
+}
+
+// What didn't converge; its residual is known.
+SolveResult withoutAddedEnergy(const ContactProblem& problem, SolveResult result, SolverScratch& scratch, VectorMap r, VectorMap u) {
+  result.method = SolveMethod::kNotConverged;
+  result.converged = false;
+  if (removeAddedEnergy(problem, r, u)) result.residual = weighedResidual(problem, r.data(), scratch, u.data());
+  return result;
 }
 
 }  // namespace
@@ -221,6 +228,7 @@ SolverScratch::SolverScratch(int contacts, int movers)
   node.resize(static_cast<std::size_t>(movers));
   sides.resize(n);
   terms.resize(n);
+  local.resize(2 * kMaxContactRows * m);
   scale.resize(n);
   shift.resize(n);
   active.resize(n);
@@ -235,17 +243,22 @@ SolveResult solveContacts(const ContactProblem& problem, const SolverOptions& op
   const double start = weighedResidual(problem, r.data(), scratch, u.data());
   const bool is_close = start <= options.tolerance;
   if (is_close && !(problem.strict && start > kStrictness * options.tolerance)) return {SolveMethod::kWarmStart, 0, start, start, true};
-  Search search(problem, scratch, r.data(), u.data(), start);
-  SolveMethod method = is_close ? search.polish(options) : search.run(options);
-  search.write(r.data(), u.data());
-  double residual = search.residual();
-  if (!project(problem, r.data()) || method == SolveMethod::kNotConverged) residual = weighedResidual(problem, r.data(), scratch, u.data());
-  if (!(residual <= std::max(options.tolerance, contentResidual(options, referenceSpeed(problem))))) {
-    method = SolveMethod::kNotConverged;
-    removeAddedEnergy(problem, r, u);
-    residual = weighedResidual(problem, r.data(), scratch, u.data());
+  const EquationForm form = chooseForm(problem, scratch);
+  if (form == EquationForm::kTooLarge) {
+    const double enough = std::max(contentResidual(options, referenceSpeed(problem)), kLargeSpeed / referenceSpeed(problem));
+    const SolveResult large = solveLargeProblem(problem, enough, start, scratch, r.data(), u.data());
+    return large.converged ? large : withoutAddedEnergy(problem, large, scratch, r, u);
   }
-  return {method, search.iterations(), residual, start, method != SolveMethod::kNotConverged};
+  Search search(problem, form, scratch, r.data(), u.data(), start);
+  SolveResult result{is_close ? search.polish(options) : search.run(options), search.iterations(), search.residual(), start, true};
+  search.write(r.data(), u.data());
+  if (!project(problem, r.data()) || result.method == SolveMethod::kNotConverged)
+    result.residual = weighedResidual(problem, r.data(), scratch, u.data());
+  if (result.residual <= std::max(options.tolerance, contentResidual(options, referenceSpeed(problem)))) {
+    result.converged = result.method != SolveMethod::kNotConverged;
+    return result;
+  }
+  return withoutAddedEnergy(problem, result, scratch, r, u);
 }
 
 }  // namespace pincer::engine

@@ -2,6 +2,7 @@
 //
 //   warm start's residual -> semi-smooth Newton (Alart-Curnier) -> the same with a proximal term -> interior point -> interior point with frozen shift, updated ->
 //   projected Gauss-Seidel with exact local solves -> best iterate, flagged.     Newton's method finishes what the others begin.
+// Few contacts go to small_problem.h, heaps of hundreds to large_problem.h.
 //
 // A body that has come to rest under impulses that are off by less than the tolerance drifts until they aren't, then is put right, in a cycle
 // without end. So after an answer that took iterations the next ones are `strict`: a warm start must be exact to round-off, for as many ticks as
@@ -30,7 +31,7 @@ struct SolverOptions {
   int interior_point_iterations = 30;  // each time that the interior-point method is tried
   int shift_updates = 3;               // of the interior-point method with frozen shift
   int gauss_seidel_sweeps = 60;
-  int large_sweeps = 10;  // of Gauss-Seidel, where contacts are too many and too entangled for anything else
+  int large_sweeps = 10;  // of Gauss-Seidel, where Newton's method failed on many contacts
   // What the iterations of all solves of a tick may cost [s], 0 or 1e-6 .. 10; 0: no limit. Counted by kOperationsPerSecond, not measured, so
   // that results don't depend on what else the machine does. Where it runs out the best iterate counts, flagged and energy-safe.
   double budget = 0;
@@ -76,6 +77,7 @@ struct SolverScratch {
   std::array<std::vector<double>, 3> impulses, velocities;  // current, trial and best iterate
   std::vector<int> active, pivots;                          // contacts in the dense equations; row swaps
   std::vector<ContactTerms> terms;                          // contact_equations.h
+  std::vector<double> local;                                // gauss_seidel.h
   std::vector<int> node;                                    // of movers in movers_lu
   BlockLu movers_lu;
 };

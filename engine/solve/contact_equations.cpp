@@ -125,7 +125,7 @@ void ContactEquations::setGeneral(int i, const double* E, const double* P) {
 std::int64_t ContactEquations::cost() const {
   constexpr std::int64_t kPerContact = 1000, kPerProduct = BlockLu::kBlock * BlockLu::kBlock * BlockLu::kBlock;
   const std::int64_t m = problem_.rowCount(), contacts = kPerContact * problem_.contactCount();
-  return contacts + (form_ == EquationForm::kContacts ? m * m * (m + 12) / 3 : kPerProduct * scratch_.movers_lu.products());
+  return contacts + (form_ == EquationForm::kContacts ? m * m * (m + 24) / 3 : kPerProduct * scratch_.movers_lu.products());
 }
 
 bool ContactEquations::factorise() {

@@ -1,6 +1,7 @@
 #include "engine/solve/gauss_seidel.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "engine/solve/cone.h"
 #include "engine/solve/linear.h"
@@ -10,89 +11,130 @@
 namespace pincer::engine {
 namespace {
 
-constexpr int kWidth = kMaxContactRows;
+// Of three rows, by the adjugate; W is symmetric.
+void invertOwn3(const double* W, double* inverse) {
+  const double xx = W[4] * W[8] - W[5] * W[5], xy = W[5] * W[2] - W[1] * W[8], xz = W[1] * W[5] - W[4] * W[2];
+  const double scale = 1 / (W[0] * xx + W[1] * xy + W[2] * xz);
+  inverse[0] = scale * xx;
+  inverse[1] = inverse[3] = scale * xy;
+  inverse[2] = inverse[6] = scale * xz;
+  inverse[4] = scale * (W[0] * W[8] - W[2] * W[2]);
+  inverse[5] = inverse[7] = scale * (W[1] * W[2] - W[0] * W[5]);
+  inverse[8] = scale * (W[0] * W[4] - W[1] * W[1]);
+}
 
-// t.K_inverse = t.G^-1, t.coupling says whether there is one.
-void invertOwn(int rows, ContactTerms& t) {
-  double factors[ContactTerms::kSize];
-  for (int k = 0; k < rows; ++k) {
-    for (int l = 0; l < rows; ++l) factors[l * rows + k] = t.G[kWidth * k + l];
-  }
-  t.coupling = factoriseLdlt(factors, rows) ? Coupling::kGeneral : Coupling::kNone;
-  for (int l = 0; l < rows && t.coupling == Coupling::kGeneral; ++l) {
-    double column[kMaxContactRows] = {};
+// inverse = W^-1, rows x rows. Not a number where there is none: such a stop is in no cone.
+void invertOwn(int rows, const double* W, double* inverse) {
+  if (rows == kTorsionRow) return invertOwn3(W, inverse);
+  double factors[kMaxContactRows * kMaxContactRows];
+  std::copy(W, W + rows * rows, factors);
+  if (!factoriseLdlt(factors, rows)) return std::fill(inverse, inverse + rows * rows, std::numeric_limits<double>::quiet_NaN());
+  for (int l = 0; l < rows; ++l) {
+    double* const column = inverse + rows * l;
+    std::fill(column, column + rows, 0.0);
     column[l] = 1;
     solveLdlt(factors, rows, column);
-    for (int k = 0; k < rows; ++k) t.K_inverse[kWidth * k + l] = column[k];
   }
 }
 
-// W_ii and its inverse, where it has one, of each contact: in ContactTerms::G and K_inverse.
-void prepareContact(const ScaledProblem& problem, int i, ContactTerms& t) {
-  const int rows = problem.rows(i);
-  std::fill(t.G, t.G + kWidth * rows, 0.0);
-  std::fill(t.K_inverse, t.K_inverse + kWidth * rows, 0.0);
-  for (const ContactSide& side : problem.sides[static_cast<std::size_t>(i)]) {
-    if (side.mover >= 0) addCoupling(side, rows, side, rows, t.G, kWidth);
-  }
-  invertOwn(rows, t);
-}
-
-// y = A x
-void multiplyLocal(const double* A, const double* x, int rows, double* y) {
-  for (int k = 0; k < rows; ++k) {
-    y[k] = 0;
-    for (int l = 0; l < rows; ++l) y[k] += A[kWidth * k + l] * x[l];
-  }
-}
-
-// The impulses r that solve contact i where the others leave the velocity `others`; `change` takes it from r_i to a standstill.
-void solveLocally(const ContactTerms& t, const double* others, const double* r_i, const double* change, int rows, double mu, double* r) {
-  for (int k = 0; k < rows; ++k) r[k] = 0;
-  if (others[kNormalRow] >= 0) return;
-  if (t.coupling == Coupling::kGeneral) {  // as nearly always: it sticks
-    for (int k = 0; k < rows; ++k) r[k] = r_i[k] - change[k];
-    if (isInCone(r, rows, mu)) return;
-  }
-  solveOneContact(t.G, kWidth, others, rows, mu, r);
-}
-
-// Solves contact i with all others held; the movers' y follows.
-void relaxContact(const ScaledProblem& problem, const ContactTerms& t, int i, Iterate& it) {
-  const ContactSides& sides = problem.sides[static_cast<std::size_t>(i)];
-  double* const r_i = it.r + problem.firstRow(i);
-  const double* const q_i = problem.q + problem.firstRow(i);
-  withRows(problem.rows(i), [&](auto rows) {
-    double u[kMaxContactRows], own[kMaxContactRows], stop[kMaxContactRows], r[kMaxContactRows];
-    for (int k = 0; k < rows; ++k) u[k] = q_i[k];
-    addVelocity(sides, rows, problem.y, u);
-    if (r_i[kNormalRow] == 0 && u[kNormalRow] >= 0) return;  // open, and stays so
-    multiplyLocal(t.G, r_i, rows, own);
-    multiplyLocal(t.K_inverse, u, rows, stop);
-    for (int k = 0; k < rows; ++k) u[k] -= own[k];
-    solveLocally(t, u, r_i, stop, rows, problem.friction(i), r);
-    for (int k = 0; k < rows; ++k) {
-      stop[k] = r[k] - r_i[k];
-      r_i[k] = r[k];
-    }
-    addImpulse(sides, rows, stop, problem.y);
-  });
+int mostRows(const SweptProblem& problem) {
+  int most = 0;
+  for (int i = 0; i < problem.contactCount(); ++i) most = std::max(most, problem.rows(i));
+  return most;
 }
 
 }  // namespace
 
-void prepareGaussSeidel(const ScaledProblem& problem, SolverScratch& scratch) {
-  for (int i = 0; i < problem.contactCount(); ++i) prepareContact(problem, i, scratch.terms[static_cast<std::size_t>(i)]);
+GaussSeidel::GaussSeidel(const SweptProblem& problem, SolverScratch& scratch, double* r)
+    : problem_(problem),
+      r_(r),
+      terms_(scratch.local.data()),
+      before_(scratch.step.data()),
+      direction_(scratch.response.data()),
+      weight_(scratch.weight.data()) {
+  const int most = mostRows(problem);
+  stride_ = 2 * most * most;
+  for (int i = 0; i < problem.contactCount(); ++i) {
+    const int rows = problem.rows(i);
+    double* const W = termsOf(i);
+    std::fill(W, W + rows * rows, 0.0);
+    for (const ContactSide& side : problem.sides[static_cast<std::size_t>(i)]) {
+      if (side.mover >= 0) addCoupling(side, rows, side, rows, W, rows);
+    }
+    invertOwn(rows, W, W + rows * rows);
+  }
+  respond();
+}
+
+// y = A^T r
+void GaussSeidel::respond() {
+  std::fill(problem_.y, problem_.y + kMoverFreedoms * problem_.movers, 0.0);
+  for (int i = 0; i < problem_.contactCount(); ++i) {
+    addImpulse(problem_.sides[static_cast<std::size_t>(i)], problem_.rows(i), r_ + problem_.firstRow(i), problem_.y);
+  }
+}
+
+// Solves contact i with all others held; the movers' y follows.
+void GaussSeidel::relax(int i) {
+  const ContactSides& sides = problem_.sides[static_cast<std::size_t>(i)];
+  const int first = problem_.firstRow(i);
+  double* const r_i = r_ + first;
+  const double* const W = termsOf(i);
+  withRows(problem_.rows(i), [&](auto rows) {
+    double u[kMaxContactRows], r[kMaxContactRows];
+    for (int k = 0; k < rows; ++k) u[k] = problem_.q[first + k];
+    addVelocity(sides, rows, problem_.y, u);
+    if (r_i[kNormalRow] == 0 && u[kNormalRow] >= 0) return;  // open, and stays so
+    const double* const inverse = W + rows * rows;
+    for (int k = 0; k < rows; ++k) {
+      r[k] = r_i[k];
+      for (int l = 0; l < rows; ++l) r[k] -= inverse[rows * l + k] * u[l];
+    }
+    if (!isInCone(r, rows, problem_.friction(i))) {  // it doesn't stick
+      for (int k = 0; k < rows; ++k) {
+        for (int l = 0; l < rows; ++l) u[k] -= W[rows * l + k] * r_i[l];
+      }
+      solveOneContact(W, rows, u, rows, problem_.friction(i), r);
+    }
+    double change[kMaxContactRows];
+    for (int k = 0; k < rows; ++k) {
+      change[k] = r[k] - r_i[k];
+      r_i[k] = r[k];
+    }
+    addImpulse(sides, rows, change, problem_.y);
+  });
+}
+
+void GaussSeidel::sweep(bool backwards) {
+  const int n = problem_.contactCount();
+  std::copy(r_, r_ + problem_.rowCount(), before_);
+  for (int k = 0; k < n; ++k) relax(backwards ? n - 1 - k : k);
+}
+
+void GaussSeidel::accelerate() {
+  double way2 = 0;
+  for (int i = 0; i < problem_.contactCount(); ++i) {
+    for (int row = problem_.firstRow(i); row < problem_.firstRow(i + 1); ++row)
+      way2 += weight_[i] * (r_[row] - before_[row]) * (r_[row] - before_[row]);
+  }
+  const double ratio = way2_ > 0 && way2 <= way2_ ? way2 / way2_ : 0;  // 0: begin anew
+  way2_ = way2;
+  for (int row = 0; row < problem_.rowCount(); ++row) {
+    const double further = ratio > 0 ? ratio * direction_[row] : 0;
+    direction_[row] = further + r_[row] - before_[row];
+    r_[row] += further;
+  }
+  if (ratio == 0) return;
+  for (int i = 0; i < problem_.contactCount(); ++i) {
+    double* const r_i = r_ + problem_.firstRow(i);
+    projectOntoCone(r_i, problem_.rows(i), problem_.friction(i), r_i);
+  }
+  respond();
 }
 
 void sweepGaussSeidel(const ScaledProblem& problem, int sweeps, SolverScratch& scratch, Iterate& it) {
-  std::fill(problem.y, problem.y + kMoverFreedoms * problem.movers, 0.0);
-  for (int i = 0; i < problem.contactCount(); ++i) {
-    addImpulse(problem.sides[static_cast<std::size_t>(i)], problem.rows(i), it.r + problem.firstRow(i), problem.y);
-  }
-  for (int sweep = 0; sweep < sweeps && spend(kPerContactSwept * problem.contactCount(), scratch); ++sweep) {
-    for (int i = 0; i < problem.contactCount(); ++i) relaxContact(problem, scratch.terms[static_cast<std::size_t>(i)], i, it);
-  }
+  GaussSeidel method({problem.first_row, problem.mu, problem.sides, problem.q, problem.y, problem.movers}, scratch, it.r);
+  for (int n = 0; n < sweeps && spend(kPerContactSwept * problem.contactCount(), scratch); ++n) method.sweep(false);
   evaluate(problem, it);
 }
 

@@ -1,7 +1,9 @@
 // gauss_seidel: projected Gauss-Seidel with an exact solution per contact (local_contact.h).
 //
-// Slow where contacts are redundant or masses differ, but it hardly ever fails to improve: it carries Newton's method to where that converges.
-// Source: M. Jean, Comput. Methods Appl. Mech. Engrg. 177 (1999) 235-257 (non-smooth contact dynamics).
+// Slow where contacts are redundant or masses differ, but it hardly ever fails to improve: it carries Newton's method to where that converges, and
+// heaps of hundreds of contacts from tick to tick (large_problem.h).
+// Sources: M. Jean, Comput. Methods Appl. Mech. Engrg. 177 (1999) 235-257 (non-smooth contact dynamics). accelerate(): M. Silcowitz, S. Niebe,
+// K. Erleben, The Visual Computer 26 (2010) 893-901, with the length of a step measured in energy.
 #pragma once
 #include "engine/solve/scaled_problem.h"
 
@@ -9,10 +11,47 @@ namespace pincer::engine {
 
 constexpr std::int64_t kPerContactSwept = 250;  // multiplications of a sweep
 
-// Fills scratch.terms with what the sweeps need of each contact; they stay right until Newton's method or the interior point uses `scratch`.
-void prepareGaussSeidel(const ScaledProblem& problem, SolverScratch& scratch);
+// What is swept: a ContactProblem or a ScaledProblem.
+struct SweptProblem {
+  std::span<const int> first_row;
+  std::span<const double> mu;
+  std::span<const ContactSides> sides;
+  const double* q;
+  double* y;  // working memory, kMoverFreedoms per mover
+  int movers;
 
-// `sweeps` passes over all contacts, in order, each at a cost linear in their number. `it` is evaluated on return.
+  int contactCount() const { return static_cast<int>(mu.size()); }
+  int rowCount() const { return first_row.back(); }
+  int firstRow(int i) const { return first_row[static_cast<std::size_t>(i)]; }
+  int rows(int i) const { return firstRow(i + 1) - firstRow(i); }
+  double friction(int i) const { return mu[static_cast<std::size_t>(i)]; }
+};
+
+// Sweeps over the impulses `r`, each at a cost linear in the contacts. Uses scratch.local, step and response.
+class GaussSeidel {
+ public:
+  GaussSeidel(const SweptProblem& problem, SolverScratch& scratch, double* r);
+
+  void sweep(bool backwards);
+
+  // After each sweep but the last: goes on along the way that the sweeps took, as the method of conjugate gradients would.
+  void accelerate();
+
+ private:
+  double* termsOf(int i) const { return terms_ + stride_ * i; }
+  void relax(int i);
+  void respond();
+
+  const SweptProblem problem_;
+  double* const r_;
+  double* const terms_;  // W_ii and its inverse, rows x rows each, per contact
+  int stride_;
+  double *const before_, *const direction_;
+  const double* const weight_;
+  double way2_ = 0;  // of the last sweep, squared
+};
+
+// `sweeps` passes over all contacts, in order. `it` is evaluated on return.
 void sweepGaussSeidel(const ScaledProblem& problem, int sweeps, SolverScratch& scratch, Iterate& it);
 
 }  // namespace pincer::engine

@@ -40,7 +40,8 @@ class CentralPath {
   // One predictor-corrector step; false when it can't go on.
   bool step() {
     const double gap = meanGap(0);
-    if (!linearise()) return false;
+    constexpr std::int64_t kPerContact = 2000;  // scalings and products on cones, two solutions
+    if (!spend(kPerContact * problem_.contactCount() + costOfLook(problem_), scratch_) || !linearise()) return false;
     aimAtBoundary();
     const double predicted = std::min(1.0, direct());
     const double centring = std::clamp(std::pow(std::max(meanGap(predicted), 0.0) / gap, 3), 1e-6, 1.0);

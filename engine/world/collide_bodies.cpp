@@ -16,6 +16,14 @@ bool boundsTouch(const BodyModel& a, const BodyModel& b, const BodyScratch& sa, 
   return !isOver(a, b, sa, sb, margin) && !isOver(b, a, sb, sa, margin);
 }
 
+// Of the solver's budget: multiplications of a query. Solids' facets are laid over each other, spheres need little.
+void chargeQuery(const BodyModel& a, const BodyModel& b, WorldScratch& scratch) {
+  constexpr std::int64_t kOfSphere = 200, kOfSolids = 5000;
+  if (scratch.operations_left >= kNoLimit) return;
+  const bool is_sphere = std::holds_alternative<contact::Sphere>(a.shape) || std::holds_alternative<contact::Sphere>(b.shape);
+  scratch.operations_left -= is_sphere ? kOfSphere : kOfSolids;
+}
+
 // material  of the pair, null where it is combined once they touch
 void collidePair(const WorldModel& model, const BodyPair& pair, const Material* material, double h, WorldScratch& scratch) {
   const BodyModel &a = model.bodies[pair.a], &b = model.bodies[pair.b];
@@ -24,6 +32,7 @@ void collidePair(const WorldModel& model, const BodyPair& pair, const Material* 
   const double margin = model.options.contact_margin + h * (sa.start.v_W - sb.start.v_W).norm();
   if (!boundsTouch(a, b, sa, sb, margin)) return;
   noteFastPair(model, pair.a, pair.b, scratch);
+  chargeQuery(a, b, scratch);
   contact::PairPoints found;
   contact::collideShapes(a.shape, sa.X_WB_mid, b.shape, sb.X_WB_mid, margin, scratch.patches, found);
   if (found.count == 0) return;

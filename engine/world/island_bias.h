@@ -8,7 +8,7 @@
 //
 // Around loops of bodies (balls in a box) gaps and offsets can ask for what no motion gives. Rigid contacts then press against each other without
 // limit, and the solver finds no answer because there is none. What is left here can be had: by the motion z, at which all of these contacts stay
-// shut. So it is with a rod between two pads, too, which two contacts each hold. Where the contacts don't contradict each other b stays what it is. Pairs alone are made consistent by stick_bias.h, at less cost.
+// shut. Of hundreds of contacts a few steps are taken per tick: what is left is fitted again in the next one. So it is with a rod between two pads, too, which two contacts each hold. Where the contacts don't contradict each other b stays what it is. Pairs alone are made consistent by stick_bias.h, at less cost.
 // Source: conjugate gradients on the normal equations (M. Hestenes, E. Stiefel, J. Res. Natl. Bur. Stand. 49 (1952) 409-436, section 10).
 #pragma once
 #include "engine/world/scratch.h"
@@ -21,7 +21,7 @@ enum class PushingBy : std::uint8_t {
   kImpulses,  // those that `r` has in their cones
 };
 
-// Whether the problem's contacts may contradict each other around a loop of bodies, and aren't too many for a fit.
+// Whether the problem's contacts may contradict each other around a loop of bodies.
 bool mayContradict(const ContactProblem& problem);
 
 // Fits bias_C and the stick offsets of the island's contacts, and corrects problem.q through `q`. `r`: impulses of the last tick, or the best that

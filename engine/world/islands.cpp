@@ -5,6 +5,7 @@
 #include <numeric>
 #include <span>
 
+#include "engine/solve/contact_equations.h"
 #include "engine/solve/gauss_seidel.h"
 #include "engine/world/contact_rows.h"
 #include "engine/world/island_bias.h"
@@ -319,10 +320,7 @@ SolveResult again(const SolveResult& first, SolveResult second) {
   return second;
 }
 
-bool isLost(const Island& island) {
-  const SolveResult& result = island.result;
-  return !result.converged && result.residual > (island.contacts > kHeapContacts ? kHeapLost : kLost);
-}
+bool isLost(const SolveResult& result, bool is_heap) { return !result.converged && result.residual > (is_heap ? kHeapLost : kLost); }
 
 void solveIsland(const WorldModel& model, int k, int thread, WorldScratch& scratch) {
   IslandScratch& s = scratch.islands;
@@ -335,18 +333,19 @@ void solveIsland(const WorldModel& model, int k, int thread, WorldScratch& scrat
                                island.movers,
                                island.settling > 0};
   SolverScratch& memory = *s.solvers[thread];
+  const bool is_heap = island.contacts > kHeapContacts, is_entangled = is_heap && chooseForm(problem, memory) == EquationForm::kTooLarge;
   const auto fit = [&](PushingBy pushing) {
-    if (scratch.h > 0)
+    if (scratch.h > 0 && (!is_heap || is_entangled))
       fitIslandBiases(pushing, scratch.h, kTangentCorrection / model.options.h, problem, s.r.data() + island.row, s.q.data() + island.row,
                       {s.order.data() + island.place, n}, scratch.contacts, memory);
   };
-  fit(PushingBy::kLastTick);
   const bool is_limited = scratch.operations_left < kNoLimit;
   const std::int64_t share = is_limited ? std::max<std::int64_t>(scratch.operations_left, 0) * island.rows / s.rows : kNoLimit;
   const std::int64_t reserve = is_limited ? reserveFor(island) : 0;
   memory.operations_left = share - reserve;
+  fit(PushingBy::kLastTick);
   const VectorMap r(s.r.data() + island.row, island.rows), u(s.u.data() + island.row, island.rows);
-  if (scratch.h > 0 && mayContradict(problem)) {
+  if (scratch.h > 0 && !is_heap && mayContradict(problem)) {
     island.result = solveContacts(problem, withoutCostly(model.options.solver), memory, r, u);
     if (!island.result.converged) {
       fit(PushingBy::kImpulses);
@@ -356,7 +355,7 @@ void solveIsland(const WorldModel& model, int k, int thread, WorldScratch& scrat
   } else {
     island.result = solveContacts(problem, model.options.solver, memory, r, u);
   }
-  if (isLost(island)) stopOnly(problem, model.options.solver, island, memory, scratch);
+  if (isLost(island.result, is_heap)) stopOnly(problem, model.options.solver, island, memory, scratch);
   island.operations = is_limited ? share - reserve - memory.operations_left : 0;
 }
 

@@ -42,18 +42,40 @@ struct PushSide {
   }
 };
 
-// lambda is kept in c.bias_C, which nothing needs any more.
-void relax(const WorldModel& model, WorldScratch& scratch, Contact& c) {
+void markBodies(const Contact& c, WorldScratch& scratch) {
+  for (const Side& side : {c.a, c.b}) {
+    if (side.kind == SideKind::kBody) scratch.struck[static_cast<std::size_t>(side.index)] = true;
+  }
+}
+
+// lambda is kept in c.bias_C, which nothing needs any more. Whether it changed.
+bool relax(const WorldModel& model, WorldScratch& scratch, Contact& c) {
   const PushSide a(model, scratch, c.a, c.arm_a_W, c.n_W()), b(model, scratch, c.b, c.arm_b_W, -c.n_W());
   const double mobility = a.mobility() + b.mobility();
-  if (!(mobility > 0)) return;
+  if (!(mobility > 0)) return false;
   const double deep = std::min(-kNormalCorrection * c.phi, kLargestCorrection * model.options.h);
   const double want = isDeep(model, c) ? deep : -std::max(c.phi - deepGap(model), 0.0);
   double& lambda = c.bias_C[kNormalRow];
   const double before = lambda;
   lambda = std::max(0.0, lambda + (want - a.way() - b.way()) / mobility);
+  if (lambda == before) return false;
   a.add(lambda - before);
   b.add(lambda - before);
+  return true;
+}
+
+// One sweep over the contacts of bodies that are deep or were pushed, few in most heaps: those are marked in scratch.struck.
+void sweepPushes(const WorldModel& model, WorldScratch& scratch) {
+  for (std::size_t i = 0; i < scratch.contacts.size(); ++i) {
+    const ContactEnds& ends = scratch.islands.ends[i];
+    const auto isMarked = [&](int mover) {
+      return mover >= 0 && mover < static_cast<int>(scratch.struck.size()) && scratch.struck[static_cast<std::size_t>(mover)];
+    };
+    if (isMarked(ends.a) || isMarked(ends.b)) {
+      Contact& c = scratch.contacts[i];
+      if (relax(model, scratch, c)) markBodies(c, scratch);
+    }
+  }
 }
 
 }  // namespace
@@ -71,10 +93,12 @@ void pushOut(const WorldModel& model, WorldState& state, WorldScratch& scratch) 
     if (model.bodies[i].dynamic)
       scratch.bodies[i].inverse_inertia_W = inverseInertia(model.bodies[i].rotation, scratch.bodies[i].X_WI_mid.q);
   }
-  for (Contact& c : scratch.contacts) c.bias_C[kNormalRow] = 0;
-  for (int sweep = 0; sweep < kPushSweeps; ++sweep) {
-    for (Contact& c : scratch.contacts) relax(model, scratch, c);
+  std::fill(scratch.struck.begin(), scratch.struck.end(), false);
+  for (Contact& c : scratch.contacts) {
+    c.bias_C[kNormalRow] = 0;
+    if (isDeep(model, c)) markBodies(c, scratch);
   }
+  for (int sweep = 0; sweep < kPushSweeps; ++sweep) sweepPushes(model, scratch);
   const double share = scratch.h / model.options.h;  // of the tick
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
     const Motion& push = scratch.bodies[i].push;

@@ -10,10 +10,11 @@
 namespace pincer::engine {
 namespace {
 
-constexpr double kFarTurn = 0.5;                                                // of what touches, in one part of a tick [rad]
-constexpr int kMostTurningParts = 64;                                           // that a tick is cut into for that
-constexpr std::int64_t kPerBody = 300, kPerContact = 1000, kPerSearch = 10000;  // multiplications besides the solver's; the last: for a hit
-constexpr double kShortestPart = 1e-9;                                          // of a tick: a hit sooner than that is a hit at once
+constexpr double kFarTurn = 0.5;       // of what touches, in one part of a tick [rad]
+constexpr int kMostTurningParts = 64;  // that a tick is cut into for that
+constexpr std::int64_t kPerBody = 300, kPerPair = 100, kPerContact = 1000,
+                       kPerSearch = 10000;  // multiplications besides the solver's; the last: for a hit
+constexpr double kShortestPart = 1e-9;      // of a tick: a hit sooner than that is a hit at once
 
 bool isFinite(const MotionInput& in) {
   return in.X_WB.p.allFinite() && in.X_WB.q.coeffs().allFinite() && in.motion.v_W.allFinite() && in.motion.w_W.allFinite();
@@ -146,6 +147,7 @@ class Tick {
       left_ -= t;
     }
     applyImpacts(model_, state_, scratch_, source_);
+    chargeSurroundings();
     note();
     ++impacts_;
   }
@@ -156,7 +158,7 @@ class Tick {
     constexpr int kMostCuts = 4;
     constexpr double kSooner = 0.999;
     attempt(t);
-    for (int n = 0; n < kMostCuts && somethingPushesImpacts(); ++n) {
+    for (int n = 0; n < kMostCuts && !isSpent() && somethingPushesImpacts(); ++n) {
       const double sooner = searchHit();
       if (!(sooner < kSooner * t && sooner > kShortestPart * model_.options.h)) break;
       attempt(t = sooner);
@@ -211,7 +213,12 @@ class Tick {
     solveContacts(model_, state_, scratch_);
     gatherImpulses(model_, scratch_);
     mark(scratch_, Stage::kSolve);
-    charge(kPerBody * std::ssize(scratch_.bodies) + kPerContact * std::ssize(scratch_.contacts));
+    chargeSurroundings();
+  }
+
+  // What a part of a tick costs besides its solve.
+  void chargeSurroundings() {
+    charge(kPerBody * std::ssize(scratch_.bodies) + kPerPair * std::ssize(model_.pairs) + kPerContact * std::ssize(scratch_.contacts));
   }
 
   double searchHit() {
