@@ -52,7 +52,8 @@ bool areApart(const PosedSolid& a, const PosedSolid& b, double reach) {
 
 }  // namespace
 
-void collideConvex(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin, PairPoints& out) {
+void collideConvex(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin, const Vec3& last_n_W,
+                   PairPoints& out) {
   out.count = 0;
   const double radius_a = boundingRadius(a), radius_b = boundingRadius(b);
   const double furthest = radius_a + radius_b + margin;
@@ -70,10 +71,10 @@ void collideConvex(const Shape& a, const Pose& X_WA, const Shape& b, const Pose&
     const Separation s = separateBoxes(A, B);
     // Apart, the nearest may be two corners, or a corner and an edge: none of the 15 directions.
     if (!(s.gap < reach) || finish(s) || s.gap < 0) return;
-  } else if (areApart(A, B, reach)) {
+  } else if (last_n_W == Vec3::Zero() && areApart(A, B, reach)) {
     return;
   }
-  finish(separate(A, B, size, reach));
+  finish(separate(A, B, size, reach, last_n_W));
 }
 
 }  // namespace pincer::contact

@@ -1,5 +1,6 @@
 #include "contact/shape/core_distance.h"
 
+#include <algorithm>
 #include <limits>
 
 namespace pincer::contact {
@@ -16,6 +17,18 @@ class DifferenceSimplex {
   }
   void add(const Vec3& w) { points_[static_cast<std::size_t>(count_++)] = w; }
   bool holdsOrigin() const { return count_ == 4; }
+
+  // Radius of the disc about the point nearest to the origin that the triangle holds; 0 of less than a triangle.
+  double around() const {
+    if (count_ != 3) return 0;
+    const Vec3 n = (at(1) - at(0)).cross(at(2) - at(0)).normalized();
+    double least = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < 3; ++i) {
+      const Vec3 side = at((i + 1) % 3) - at(i);
+      least = std::min(least, n.cross(side).dot(-at(i)) / side.norm());
+    }
+    return std::max(least, 0.0);
+  }
 
   Vec3 nearest() {
     if (count_ == 1) return at(0);
@@ -41,7 +54,8 @@ class DifferenceSimplex {
     const double along = -a.dot(e), all = e.squaredNorm();
     if (!(along > 0)) return {a, {i}, 1};
     if (along >= all) return {at(j), {j}, 1};
-    return {a + along / all * e, {i, j}, 2};
+    const Vec3 v = a + along / all * e;
+    return {v - v.dot(e) / all * e, {i, j}, 2};
   }
 
   static const Face& nearer(const Face& x, const Face& y) { return y.v.squaredNorm() < x.v.squaredNorm() ? y : x; }
@@ -101,7 +115,7 @@ CoreDistance nearestToOrigin(Furthest furthest, const Vec3& start, double size, 
     v = next;
     length2 = next2;
   }
-  return {v, true};
+  return {v, true, simplex.around()};
 }
 
 }  // namespace

@@ -3,8 +3,8 @@
 //   v = argmin |x|,  x in (A + shift) - B        from b's nearest point to a's [m], in the axes of the world
 //
 // Source: E. Gilbert, D. Johnson, S. Keerthi, IEEE J. Robotics Automat. 4(2), 1988; nearest points of simplices after C. Ericson, Real-Time
-// Collision Detection (2005), sec. 5.1. Departure: of a triangle's inner points v is taken along the triangle's normal, which is exact to
-// round-off however slim it is. Solids made of corners end after finitely many steps with v exact to round-off; round ones when a step can
+// Collision Detection (2005), sec. 5.1. Departure: v is taken along a triangle's normal, and across a segment, exactly, however short it
+// is: the direction then loses nothing where solids all but touch. Solids made of corners end after finitely many steps with v exact to round-off; round ones when a step can
 // shorten v by no more than the accuracy asked for: its direction is right to the root of that.
 #pragma once
 #include "contact/shape/posed_solid.h"
@@ -14,6 +14,7 @@ namespace pincer::contact {
 struct CoreDistance {
   Vec3 v = Vec3::Zero();
   bool apart = false;  // false: the cores overlap, or are nearer than 1e-13 of `size`, and v says nothing
+  double around = 0;   // of the disc about v's end, across v, that is known to be in (A + shift) - B [m]; its radius
 };
 
 struct CoreAccuracy {

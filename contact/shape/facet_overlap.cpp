@@ -295,11 +295,12 @@ bool overlapFacets(const PosedSolid& a, const PosedSolid& b, const Separation& a
   std::array<Vec3, kMostShared> points;
   std::array<double, kMostShared> gaps;
   std::array<std::uint32_t, kMostShared> features;
+  const double beside = found ? leastGap(shared, surfaces) - least : 0;  // an effect of the slack
   for (int i = 0; i < shared.count; ++i) {
     const auto at = static_cast<std::size_t>(i);
     const Corner& c = shared.corners[at];
     const double top = surfaces.top(c.x), bottom = surfaces.bottom(c.x);
-    gaps[at] = found ? std::max(top - bottom, least) : least;  // less is an effect of the slack
+    gaps[at] = found ? std::max(top - bottom - std::max(beside, 0.0), least) : least;
     points[at] = surfaces.place(c.x, 0.5 * (top + bottom));
     features[at] = c.feature;
   }

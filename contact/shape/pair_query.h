@@ -43,8 +43,11 @@ void preparePair(const Shape& a, const Shape& b);
 // 1e-6 m the one of the lowest feature counts as the deepest, so that it is the same from tick to tick. Every two shapes are answered for, but two
 // supports (half-space, dish), which are both static, have no point. Convex pairs of one kind of shape, and two meshes, are symmetric in a
 // and b to round-off; all others exactly.
+// `last_n_W`: a normal of the pair's last points, or zero: where the search of two convex solids begins. It spares most of the search where
+// the pair has hardly moved; the answer depends on it by round-off only, whatever it is, but where several ways out of an overlap are equally short.
 // Allocates nothing; `cache` is memory only.
-void collideShapes(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin, PatchCache& cache, PairPoints& out);
+void collideShapes(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin, PatchCache& cache, PairPoints& out,
+                   const Vec3& last_n_W = Vec3::Zero());
 
 // Radius of the smallest sphere about the shape's own origin that holds it [m]; infinity for HalfSpace and Dish.
 double boundingRadius(const Shape& shape);

@@ -13,7 +13,6 @@ constexpr double kGapRounding = 1e-13;  // of the size: round-off
 constexpr double kTrustedGap = 1e-8;    // of the size: solids that are apart by more have nearest points to trust
 constexpr double kTrustedRound = 1e-3;  // the same for round ones, whose nearest points take the more steps the nearer they are
 constexpr double kMovedApart = 1e-2;    // of the size
-constexpr double kShallow = 1e-4;       // of the size: overlap out of which hardly more than one way leads
 
 // Kinks of gap: normals of faces, edges.
 struct Kinks {
@@ -33,37 +32,49 @@ class Search {
     const double gap = gapAlong(a_, b_, n);
     if (gap > best_.gap) best_ = {n, gap};
   }
-  void tryNearestPoints(double reach) {
-    const Vec3 start = directionOf<Vec3>(a_.p - b_.p, Vec3::UnitZ()).n;
-    const CoreAccuracy accuracy{kRelative, round_ ? kRelative * size_ : 0, reach};
+  void tryNearestPoints(const Vec3& start, double reach) {
+    const CoreAccuracy accuracy{kRelative, round_ ? kAbsolute * size_ : 0, reach};
     const CoreDistance d = distanceOfCores(a_, b_, Vec3::Zero(), start, size_, accuracy);
     if (d.apart) offer(d.v.normalized());
   }
-  void tryWaysOut() {
-    offerBoth(directionOf<Vec3>(a_.p - b_.p, Vec3::UnitZ()).n);
-    for (int i = 0; i < 3; ++i) {
-      offerBoth(a_.R.col(i));
-      offerBoth(b_.R.col(i));
-    }
-    const CoreDistance inner = distanceOfInsets(a_, b_, best_.n, size_);
-    if (inner.apart) offer(inner.v.normalized());
+  // The greatest gap around `n`, if it is greater than what is known.
+  void climb(const Vec3& n) {
+    const Separation known = best_;
+    const SeenDisc known_disc = seen_;
+    best_ = {n, gapAlong(a_, b_, n)};
     improve();
-    if (best_.gap > -kShallow * size_) return;
-    const DirectionGuess way_out = guessWayOut(a_, b_, size_);
-    if (way_out.found) offer(way_out.n);
+    if (best_.gap > known.gap) return;
+    best_ = known;
+    seen_ = known_disc;
   }
-  void improve() {
-    constexpr int kMostSteps = 12;
-    constexpr double kRoughly = 1e-6;  // of the size: Newton's method does the rest
-    for (int i = 0; i < kMostSteps && !isApart(); ++i) {
-      const Vec3 shift = (kMovedApart * size_ - best_.gap) * best_.n;
-      const CoreDistance d = distanceOfCores(a_, b_, shift, best_.n, size_, {round_ ? 1e-7 : kRelative});
-      if (!d.apart) break;
-      const double before = best_.gap;
-      offer(d.v.normalized());
-      if (!(best_.gap > before + (round_ ? kRoughly : kGapRounding) * size_)) break;
+  void tryWaysOut() {
+    Search axes(a_, b_, size_);
+    axes.offerBoth(directionOf<Vec3>(a_.p - b_.p, Vec3::UnitZ()).n);
+    for (int i = 0; i < 3; ++i) {
+      axes.offerBoth(a_.R.col(i));
+      axes.offerBoth(b_.R.col(i));
     }
-    finish();
+    climb(axes.best_.n);
+    if (isOnlyOne()) return;
+    Search edges(a_, b_, size_);
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) edges.offerBoth(directionOf<Vec3>(a_.R.col(i).cross(b_.R.col(j)), a_.R.col(i)).n);
+    }
+    climb(edges.best_.n);
+    const CoreDistance inner = distanceOfInsets(a_, b_, best_.n, size_);
+    if (inner.apart) climb(inner.v.normalized());
+    if (isOnlyOne()) return;
+    const DirectionGuess way_out = guessWayOut(a_, b_, size_);
+    if (way_out.found) climb(way_out.n);
+  }
+  // Whether no other direction can have a greater gap than the best, see separation.h.
+  bool isOnlyOne() const {
+    constexpr double kWider = 4, kSamePlane = 1e-8;  // times the depth; of the size
+    const double depth = -best_.gap;
+    if (!(depth > 4 * kGapRounding * size_)) return true;
+    if (!(seen_.radius > kWider * depth && best_.gap > seen_.gap - kSamePlane * size_)) return false;
+    const Vec3 far = a_.support(best_.n) - b_.support(-best_.n);
+    return best_.n.dot(far) > depth + 2 * depth / seen_.radius * far.norm();
   }
   // What the nearest points leave to be done.
   void finish() {
@@ -72,7 +83,32 @@ class Search {
   }
 
  private:
-  static constexpr double kRelative = 1e-9;  // of the distance
+  static constexpr double kRelative = 1e-9;   // of the distance
+  static constexpr double kAbsolute = 1e-12;  // of the size
+  static constexpr double kLargest = 0.1;     // step of Newton's method [rad]
+
+  // A disc in A - B about the point below the origin, across the way out [m]: no direction within 90 degrees of its normal has a greater gap than
+  // its own, if it is wide enough.
+  struct SeenDisc {
+    double radius = 0, gap = -std::numeric_limits<double>::infinity();
+  };
+
+  void improve() {
+    constexpr int kMostSteps = 12;
+    constexpr double kRoughly = 1e-6;  // of the size: Newton's method does the rest
+    for (int i = 0; i < kMostSteps && !isApart(); ++i) {
+      const Vec3 shift = (kMovedApart * size_ - best_.gap) * best_.n;
+      const CoreDistance d = distanceOfCores(a_, b_, shift, best_.n, size_, {round_ ? 1e-7 : kRelative});
+      if (!d.apart) break;
+      const Vec3 n = d.v.normalized();
+      seen_ = {d.around - (shift - n.dot(shift) * n).norm(), d.v.norm() - n.dot(shift)};
+      const double before = best_.gap;
+      offer(n);
+      if (!(best_.gap > before + (round_ ? kRoughly : kGapRounding) * size_)) break;
+    }
+    if (best_.gap > 0) tryNearestPoints(best_.n, kInfinity);
+    finish();
+  }
 
   void offerBoth(const Vec3& n) {
     offer(n);
@@ -149,7 +185,7 @@ class Search {
   // direction to the root of round-off only, so that the last steps are judged by their length.
   void climbFrom(Vec3 n, const Vec3* edge) {
     constexpr int kMostSteps = 20, kMostHalvings = 6;
-    constexpr double kSmallest = 1e-14, kLargest = 0.1;  // [rad]
+    constexpr double kSmallest = 1e-14;  // [rad]
     if (edge) n = (n - edge->dot(n) * *edge).normalized();
     double gap = gapAlong(a_, b_, n);
     double last = std::numeric_limits<double>::infinity(), before = -last;
@@ -172,20 +208,20 @@ class Search {
     if (gap > best_.gap - kGapRounding * size_) best_ = {n, gap};
   }
 
-  // Zero where the gap isn't concave.
+  // Where the gap isn't concave, as far uphill as one goes at most.
   Vec3 newtonStep(const Vec3& n, double gap, const Vec3* edge) const {
     const Vec3 g = a_.support(-n) - b_.support(n);
     const Mat3 H = bendAt(a_, -n) + bendAt(b_, n);
     if (edge) {
       const Vec3 w = edge->cross(n);
       const double curvature = w.dot(H * w) + gap;
-      return curvature > 0 ? Vec3(g.dot(w) / curvature * w) : Vec3(Vec3::Zero());
+      return curvature > 0 ? Vec3(g.dot(w) / curvature * w) : Vec3(kLargest * signOf(g.dot(w)) * w);
     }
     const Mat3 F = frameFromNormal(n);
     const Vec2 gt(F.col(0).dot(g), F.col(1).dot(g));
     const double m00 = F.col(0).dot(H * F.col(0)) + gap, m01 = F.col(0).dot(H * F.col(1)), m11 = F.col(1).dot(H * F.col(1)) + gap;
     const double det = m00 * m11 - m01 * m01;
-    if (!(det > 0 && m00 > 0)) return Vec3::Zero();
+    if (!(det > 0 && m00 > 0)) return kLargest * F.leftCols<2>() * directionOf<Vec2>(gt, Vec2::Zero()).n;
     return (m11 * gt.x() - m01 * gt.y()) / det * F.col(0) + (m00 * gt.y() - m01 * gt.x()) / det * F.col(1);
   }
 
@@ -194,25 +230,35 @@ class Search {
   double size_;
   bool round_;
   Separation best_{Vec3::UnitZ(), -std::numeric_limits<double>::infinity()};
+  SeenDisc seen_;
 };
 
 }  // namespace
 
 double gapAlong(const PosedSolid& a, const PosedSolid& b, const Vec3& n) { return n.dot(a.support(-n)) - n.dot(b.support(n)); }
 
-Separation separate(const PosedSolid& a, const PosedSolid& b, double size, double reach) {
+Separation separate(const PosedSolid& a, const PosedSolid& b, double size, double reach, const Vec3& last) {
   Search search(a, b, size);
-  search.tryNearestPoints(reach);
+  const bool warm = last != Vec3::Zero();
+  if (warm) search.offer(last);
   if (search.best().gap >= reach) return search.best();
-  if (!(search.best().gap > kTrustedGap * size)) search.tryWaysOut();
-  search.improve();
+  if (!warm || search.best().gap > 0) {
+    search.tryNearestPoints(warm ? last : directionOf<Vec3>(a.p - b.p, Vec3::UnitZ()).n, reach);
+    if (search.best().gap >= reach) return search.best();
+    if (search.isApart()) {
+      search.finish();
+      return search.best();
+    }
+  }
+  if (search.best().gap > -std::numeric_limits<double>::infinity()) search.climb(search.best().n);
+  if (!search.isOnlyOne()) search.tryWaysOut();
   return search.best();
 }
 
 // Half widths along each axis are sums of |R_ij| half_j; edges nearly parallel add no direction of their own.
 Separation separateBoxes(const PosedSolid& a, const PosedSolid& b) {
-  constexpr double kParallel = 1e-6;    // sine
-  constexpr double kBetterFace = 1e-9;  // of the size: faces win over edges that are no further apart
+  constexpr double kParallel = 1e-6;     // sine
+  constexpr double kBetterFace = 1e-10;  // of the size: faces win over edges that are no further apart
   const Vec3 half_a = std::get<Box>(a.shape).half, half_b = std::get<Box>(b.shape).half;
   const Vec3 d = a.p - b.p;
   const Mat3 C = a.R.transpose() * b.R;

@@ -36,7 +36,7 @@ double gapAlong(const PosedSolid& a, const PosedSolid& b, const Vec3& n);
 
 // The largest gap, or, where it is more than `reach` [m], any that is. `size` [m] is the order of magnitude of both. Allocates nothing, always
 // ends; deep overlap gives a direction that leads out, if not the shortest.
-Separation separate(const PosedSolid& a, const PosedSolid& b, double size, double reach = kInfinity);
+Separation separate(const PosedSolid& a, const PosedSolid& b, double size, double reach = kInfinity, const Vec3& last = Vec3::Zero());
 
 // The same for two boxes by trying all 15 kinks: exact where they overlap, and where a face or a pair of edges is nearest.
 // Source: S. Gottschalk, M. Lin, D. Manocha, "OBBTree", SIGGRAPH 1996, sec. 5.

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "contact/shape/pair_query.h"
 #include "engine/world/impact.h"
 
@@ -24,8 +26,18 @@ void chargeQuery(const BodyModel& a, const BodyModel& b, WorldScratch& scratch) 
   scratch.operations_left -= is_sphere ? kOfSphere : kOfSolids;
 }
 
+// Of the first contact that the pair had in the last tick; zero if it had none.
+Vec3 lastNormal(const WorldState& state, const BodyPair& pair) {
+  const std::uint64_t first = contactId(0, pair.a, pair.b, 0);
+  const auto end = state.contacts.begin() + state.contact_count;
+  const auto less = [](const ContactMemory& m, std::uint64_t id) { return m.id < id; };
+  const auto found = std::lower_bound(state.contacts.begin(), end, first, less);
+  return found != end && found->id >> 32 == first >> 32 ? found->n_W : Vec3(Vec3::Zero());
+}
+
 // material  of the pair, null where it is combined once they touch
-void collidePair(const WorldModel& model, const BodyPair& pair, const Material* material, double h, WorldScratch& scratch) {
+void collidePair(const WorldModel& model, const WorldState& state, const BodyPair& pair, const Material* material, double h,
+                 WorldScratch& scratch) {
   const BodyModel &a = model.bodies[pair.a], &b = model.bodies[pair.b];
   const BodyScratch &sa = scratch.bodies[pair.a], &sb = scratch.bodies[pair.b];
   // What closes within the tick must be seen at its middle.
@@ -34,7 +46,7 @@ void collidePair(const WorldModel& model, const BodyPair& pair, const Material* 
   noteFastPair(model, pair.a, pair.b, scratch);
   chargeQuery(a, b, scratch);
   contact::PairPoints found;
-  contact::collideShapes(a.shape, sa.X_WB_mid, b.shape, sb.X_WB_mid, margin, scratch.patches, found);
+  contact::collideShapes(a.shape, sa.X_WB_mid, b.shape, sb.X_WB_mid, margin, scratch.patches, found, lastNormal(state, pair));
   if (found.count == 0) return;
   const Material combined = material ? *material : materialOf(model, pair.a, pair.b);
   for (int i = 0; i < found.count; ++i) {
@@ -52,11 +64,11 @@ void collidePair(const WorldModel& model, const BodyPair& pair, const Material* 
 
 }  // namespace
 
-void collideBodies(const WorldModel& model, WorldScratch& scratch) {
+void collideBodies(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
   const double h = model.options.h;
-  for (const PairModel& pair : model.pairs) collidePair(model, {pair.a, pair.b}, &pair.material, h, scratch);
+  for (const PairModel& pair : model.pairs) collidePair(model, state, {pair.a, pair.b}, &pair.material, h, scratch);
   if (!scratch.broad_phase) return;
-  for (const BodyPair& pair : scratch.broad_phase->candidates(model, scratch)) collidePair(model, pair, nullptr, h, scratch);
+  for (const BodyPair& pair : scratch.broad_phase->candidates(model, scratch)) collidePair(model, state, pair, nullptr, h, scratch);
 }
 
 }  // namespace pincer::engine

@@ -346,7 +346,7 @@ double timeOfImpact(const WorldModel& model, const WorldState& state, WorldScrat
 
 void applyImpacts(const WorldModel& model, WorldState& state, WorldScratch& scratch, ContactSource* source) {
   predictImpact(model, state, scratch);
-  collideBodies(model, scratch);
+  collideBodies(model, state, scratch);
   if (source) source->addContacts(scratch);
   keepStruck(model, scratch);
   for (int quarters = 4; quarters >= 0; --quarters) {

@@ -66,7 +66,7 @@ struct StepInputs {
 // The stages. scratch.h, scratch.point_inputs and motion_inputs say how long this part of the tick is and where it leads.
 void predict(const WorldModel& model, const WorldState& state, WorldScratch& scratch);
 void predictImpact(const WorldModel& model, const WorldState& state, WorldScratch& scratch);  // the same where no time passes
-void collideBodies(const WorldModel& model, WorldScratch& scratch);
+void collideBodies(const WorldModel& model, const WorldState& state, WorldScratch& scratch);
 void solveContacts(const WorldModel& model, const WorldState& state, WorldScratch& scratch);
 void gatherImpulses(const WorldModel& model, WorldScratch& scratch);
 void advance(const WorldModel& model, WorldState& state, WorldScratch& scratch);

@@ -201,7 +201,7 @@ class Tick {
     setInputs(h);
     predict(model_, state_, scratch_);
     mark(scratch_, Stage::kPredict);
-    collideBodies(model_, scratch_);
+    collideBodies(model_, state_, scratch_);
     mark(scratch_, Stage::kCollideBodies);
     if (source_) source_->addContacts(scratch_);
     if (mayHit()) {
