@@ -42,8 +42,9 @@ class Search {
     const Separation known = best_;
     const SeenDisc known_disc = seen_;
     best_ = {n, gapAlong(a_, b_, n)};
+    seen_ = {};
     improve();
-    if (best_.gap > known.gap) return;
+    if (best_.gap > known.gap - kGapRounding * size_) return;
     best_ = known;
     seen_ = known_disc;
   }
@@ -69,7 +70,7 @@ class Search {
   }
   // Whether no other direction can have a greater gap than the best, see separation.h.
   bool isOnlyOne() const {
-    constexpr double kWider = 4, kSamePlane = 1e-8;  // times the depth; of the size
+    constexpr double kSamePlane = 1e-8;  // of the size
     const double depth = -best_.gap;
     if (!(depth > 4 * kGapRounding * size_)) return true;
     if (!(seen_.radius > kWider * depth && best_.gap > seen_.gap - kSamePlane * size_)) return false;
@@ -86,6 +87,7 @@ class Search {
   static constexpr double kRelative = 1e-9;   // of the distance
   static constexpr double kAbsolute = 1e-12;  // of the size
   static constexpr double kLargest = 0.1;     // step of Newton's method [rad]
+  static constexpr double kWider = 4;         // than the overlap is deep: a disc that proves something
 
   // A disc in A - B about the point below the origin, across the way out [m]: no direction within 90 degrees of its normal has a greater gap than
   // its own, if it is wide enough.
@@ -106,9 +108,13 @@ class Search {
       offer(n);
       if (!(best_.gap > before + (round_ ? kRoughly : kGapRounding) * size_)) break;
     }
+    snapToFaces();
+    if (isProved()) return;
     if (best_.gap > 0) tryNearestPoints(best_.n, kInfinity);
     finish();
   }
+  // Whether the disc shows that nothing around the best is better by more than round-off.
+  bool isProved() const { return seen_.radius > kWider * std::max(-best_.gap, 0.0) && best_.gap > seen_.gap - 4 * kGapRounding * size_; }
 
   void offerBoth(const Vec3& n) {
     offer(n);
@@ -242,7 +248,7 @@ Separation separate(const PosedSolid& a, const PosedSolid& b, double size, doubl
   const bool warm = last != Vec3::Zero();
   if (warm) search.offer(last);
   if (search.best().gap >= reach) return search.best();
-  if (!warm || search.best().gap > 0) {
+  if (!warm || search.isApart()) {
     search.tryNearestPoints(warm ? last : directionOf<Vec3>(a.p - b.p, Vec3::UnitZ()).n, reach);
     if (search.best().gap >= reach) return search.best();
     if (search.isApart()) {

@@ -17,10 +17,13 @@
 // At round rims gap is smooth, and Newton's method ends the search, on the sphere and on the circles across straight edges:
 //   g = a - b, tangential part;  Hessian = -(h_A'' + h_B'') - gap 1;     h'' from bendOf (convex_features.h)
 //
-// The search begins from the nearest points; of solids that overlap, from the best of: the nearest points of the solids inset
-// by 5 % of the least half width, the axes of both, the line of their origins, and Bullet's EPA. Deep overlap may end on one of several ways out that is longer than the
-// shortest.
-// Error: round-off.
+// The search begins from the nearest points, or from the direction of the last tick. Of solids that overlap the step also leaves three points of
+// A - B in a plane n1 . x = gap: with r how far the foot of the origin is within that triangle, every direction within 90 degrees of n1 that is
+// better must be turned by more than 2 atan(r / -gap). So r > 4 |gap|, and depth enough on the far side, prove that n1 is the best there is; that is so
+// wherever facets or crossing edges overlap by more than the solids are deep in each other. Where it isn't proved (beside edges and corners, deep
+// in each other), the best of several local maxima is taken: those above the axes of both and the line of their origins, the cross products of axes, the
+// nearest points of the solids inset by 5 % of the least half width, and Bullet's EPA.
+// Error: round-off; at round rims 1e-9 of the size. Of very deep overlap it may be one of several ways out that isn't the shortest.
 #pragma once
 #include "contact/shape/posed_solid.h"
 
@@ -34,8 +37,8 @@ struct Separation {
 // gap(n) for a unit `n`.
 double gapAlong(const PosedSolid& a, const PosedSolid& b, const Vec3& n);
 
-// The largest gap, or, where it is more than `reach` [m], any that is. `size` [m] is the order of magnitude of both. Allocates nothing, always
-// ends; deep overlap gives a direction that leads out, if not the shortest.
+// The largest gap, or, where it is more than `reach` [m], any that is. `size` [m] is the order of magnitude of both. `last`: where to begin, unit,
+// or zero: then from the line of the origins. Allocates nothing, always ends.
 Separation separate(const PosedSolid& a, const PosedSolid& b, double size, double reach = kInfinity, const Vec3& last = Vec3::Zero());
 
 // The same for two boxes by trying all 15 kinks: exact where they overlap, and where a face or a pair of edges is nearest.
