@@ -1,5 +1,6 @@
 // From impulses to momenta, from momenta to poses, and what each contact remembers of it.
 #include "engine/world/contact_rows.h"
+#include "engine/world/held_body.h"
 #include "engine/world/joints.h"
 #include "engine/world/rest.h"
 #include "engine/world/step.h"
@@ -201,8 +202,14 @@ void rememberContacts(const WorldScratch& scratch, double h, WorldState& state) 
 void advance(const WorldModel& model, WorldState& state, WorldScratch& scratch) {
   const double h = scratch.h;
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
-    if (model.bodies[i].dynamic) advanceBody(model.bodies[i], h, scratch.bodies[i], state.bodies[i]);
-    if (model.bodies[i].driven) advanceDriven(scratch.bodies[i], state.bodies[i]);
+    const BodyModel& body = model.bodies[i];
+    if (isHeldBody(model, body)) {
+      const int n = body.joint_group;
+      advanceHeldBody(model, model.joint_groups[n], scratch.joint_groups[n], h, scratch.bodies[i], state.bodies[i]);
+    } else if (body.dynamic) {
+      advanceBody(body, h, scratch.bodies[i], state.bodies[i]);
+    }
+    if (body.driven) advanceDriven(scratch.bodies[i], state.bodies[i]);
   }
   for (std::size_t i = 0; i < model.points.size(); ++i) {
     advancePoint(model.point_forms[i], h, scratch.points[i], state.points[i]);

@@ -1,9 +1,7 @@
 #include "engine/world/impact.h"
 
 #include <algorithm>
-#include <limits>
 
-#include "contact/shape/pair_query.h"
 #include "engine/solve/local_contact.h"
 #include "engine/world/contact_rows.h"
 
@@ -13,21 +11,9 @@ namespace {
 constexpr double kShortestFlight = 1.0 / 16;  // of a tick
 constexpr double kSlowWay = 0.5;              // of half the thickness, in a tick: the pair need not be swept
 constexpr double kEnergyRoundOff = 1e-12;     // of the energy that goes to and fro in a hit
+constexpr double kHardLanding = 1;            // of what gravity adds to a velocity in a tick
+constexpr double kLate = 1.5;                 // times the part of the tick: what closes so late may still close in it
 constexpr double kTouching = 1e-7;            // gap at which a contact takes part in an impact [m]: what other contacts leave of the root
-constexpr double kGapRoundOff = 1e-14;        // at which the root is found [m]
-constexpr int kRootSteps = 40;                // a sphere above a plane needs one, rotating boxes five or six
-
-// Gap of one contact point, its rate and acceleration, as they are at one moment.
-struct Approach {
-  double phi, u, a;
-
-  // Time to phi = 0 on the parabola; infinite if it opens before it closes. What overlaps has closed, if ever, in the past.
-  double timeLeft() const {
-    const double root = std::sqrt(std::max(u * u - 2 * a * phi, 0.0));
-    if (u < 0) return phi > 0 && u * u < 2 * a * phi ? std::numeric_limits<double>::infinity() : 2 * phi / (root - u);
-    return a < 0 ? (root + u) / -a : std::numeric_limits<double>::infinity();
-  }
-};
 
 bool isDynamic(const WorldModel& model, const Side& side) { return side.kind == SideKind::kBody && model.bodies[side.index].dynamic; }
 
@@ -88,36 +74,44 @@ bool mayBounce(const WorldModel& model, const WorldState& state, const WorldScra
   return !isTouching(state, c.a.index, c.b.index);
 }
 
-// Where the body is, and how it moves, `t` after the start of this part of the tick, on the path that advance() takes.
-struct Moment {
-  Pose X_WI;
-  Motion motion;
-};
-
-Moment momentOf(const WorldModel& model, const WorldState& state, const WorldScratch& scratch, int i, double t) {
-  const BodyModel& body = model.bodies[i];
-  const BodyState& s = state.bodies[i];
-  const BodyScratch& now = scratch.bodies[i];
-  if (!body.dynamic) {
-    if (!body.driven) return {s.X_WI, {}};
-    const DrivenPlace place = drivenPlace({s.X_WI, {s.v_W, s.L_W}}, {now.X_WB_end, now.free}, scratch.h, t / scratch.h);
-    return {place.X_WB, place.motion};
+// Those that bounce, or are too fast.
+void holdBackHits(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
+  for (const auto* pairs : {&scratch.fast_pairs, &scratch.pushed_pairs}) {
+    for (const ImpactPair& pair : *pairs) {
+      if (isNoted(scratch.impact_pairs, pair.a, pair.b) || isTouching(state, pair.a, pair.b) || hasLanded(scratch, pair)) continue;
+      scratch.impact_pairs.push_back(pair);
+    }
   }
-  const Vec3 dv_W = now.free.v_W + body.inverse_mass * now.impulse_W - s.v_W;
-  const double share = now.closing ? 1 : t / scratch.h;     // of the change of velocity that has happened
-  const double mean_share = now.closing ? 1 : 0.5 * share;  // in the mean until then
-  Moment m;
-  m.X_WI.p = s.X_WI.p + t * (s.v_W + mean_share * dv_W);
-  m.X_WI.q = s.X_WI.q;
-  rotateFreely(body.rotation, s.L_W + mean_share * now.angular_impulse_W, t, m.X_WI.q);
-  m.motion.v_W = s.v_W + share * dv_W;
-  m.motion.w_W = angularVelocity(body.rotation, m.X_WI.q, s.L_W + share * now.angular_impulse_W);
-  return m;
+  std::erase_if(scratch.contacts, [&](const Contact& c) {
+    if (c.a.kind != SideKind::kBody || c.b.kind != SideKind::kBody) return false;
+    if (isNoted(scratch.impact_pairs, c.a.index, c.b.index)) return true;
+    if (!mayBounce(model, state, scratch, c)) return false;
+    scratch.impact_pairs.push_back({c.a.index, c.b.index});
+    return true;
+  });
 }
 
-Vec3 endVelocity(const WorldModel& model, const WorldScratch& scratch, int i) {
-  const BodyScratch& now = scratch.bodies[i];
-  return model.bodies[i].dynamic ? Vec3(now.free.v_W + model.bodies[i].inverse_mass * now.impulse_W) : now.free.v_W;
+// A contact that closes in this part of the tick, and how fast: a new one, whose gap isn't round-off.
+bool closesFaster(const WorldModel& model, const WorldState& state, const WorldScratch& scratch, const Contact& c, double speed) {
+  if (c.a.kind != SideKind::kBody || c.b.kind != SideKind::kBody) return false;
+  if (c.material.restitution > 0 || pushedBefore(state, c.id)) return false;
+  const double u = normalVelocity(scratch, c), a = std::min(gapAcceleration(model, c), 0.0);
+  const double phi = c.phi - 0.5 * scratch.h * u, u_end = u + a * scratch.h;
+  return phi > kTouching && u_end < -speed && phi + kLate * scratch.h * u_end < 0;
+}
+
+// Notes the pairs that land hard, and takes the contacts that close out of scratch.contacts.
+void holdBackLandings(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
+  const double hard = hardLanding(model);
+  const std::size_t before = scratch.impact_pairs.size();
+  for (const Contact& c : scratch.contacts) {
+    if (!closesFaster(model, state, scratch, c, hard) || isNoted(scratch.impact_pairs, c.a.index, c.b.index)) continue;
+    scratch.impact_pairs.push_back({c.a.index, c.b.index, true});
+  }
+  if (scratch.impact_pairs.size() == before) return;
+  std::erase_if(scratch.contacts, [&](const Contact& c) {
+    return closesFaster(model, state, scratch, c, kAlongWith * hard) && isNoted(scratch.impact_pairs, c.a.index, c.b.index);
+  });
 }
 
 // Whether contacts push some body so hard that it goes far for what it is, which its velocity at the start didn't show.
@@ -129,78 +123,6 @@ bool somethingIsPushed(const WorldModel& model, const WorldScratch& scratch) {
   }
   return false;
 }
-
-// The search for when one pair closes.
-class ClosingPair {
- public:
-  ClosingPair(const WorldModel& model, const WorldState& state, WorldScratch& scratch, ImpactPair pair)
-      : model_(model), state_(state), scratch_(scratch), pair_(pair) {
-    const double before = (scratch.bodies[pair.a].start.v_W - scratch.bodies[pair.b].start.v_W).norm();
-    const double after = (endVelocity(model, scratch, pair.a) - endVelocity(model, scratch, pair.b)).norm();
-    margin_ = 2 * (model.options.contact_margin + scratch.h * std::max(before, after));
-  }
-
-  // Newton's method on the parabolas of the points. A gap between convex bodies that don't turn is a convex function of time, so that each
-  // step falls short of the root; how far the bodies may turn in a step is limited by the gap.
-  double time() const {
-    double t = 0;
-    for (int n = 0; n < kRootSteps; ++n) {
-      const Next next = look(t);
-      if (!(next.step <= scratch_.h - t)) return std::numeric_limits<double>::infinity();
-      t = std::max(t + next.step, 0.0);
-      if (std::abs(next.phi) <= kGapRoundOff || t == 0 || next.is_exact) return t;
-    }
-    return t;
-  }
-
- private:
-  struct Next {
-    double step = std::numeric_limits<double>::infinity();  // [s]
-    double phi = std::numeric_limits<double>::infinity();   // gap of the point that closes first [m]
-    bool is_exact = false;                                  // the step is below the round-off of the time
-  };
-
-  Next look(double t) const {
-    const BodyModel &A = model_.bodies[pair_.a], &B = model_.bodies[pair_.b];
-    const Moment a = momentOf(model_, state_, scratch_, pair_.a, t), b = momentOf(model_, state_, scratch_, pair_.b, t);
-    contact::PairPoints found;
-    contact::collideShapes(A.shape, a.X_WI * A.X_IB, B.shape, b.X_WI * B.X_IB, margin_, scratch_.patches, found);
-    const Vec3 acceleration_W = acceleration(pair_.a) - acceleration(pair_.b);
-    Next next;
-    double nearest = margin_;
-    for (int i = 0; i < found.count; ++i) {
-      const contact::PairPoint& point = found.points[i];
-      const Vec3 v_a = a.motion.v_W + a.motion.w_W.cross(point.p_W - a.X_WI.p),
-                 v_b = b.motion.v_W + b.motion.w_W.cross(point.p_W - b.X_WI.p);
-      const Approach approach{point.phi, point.n_W.dot(v_a - v_b), point.n_W.dot(acceleration_W)};
-      nearest = std::min(nearest, point.phi);
-      const double step = approach.timeLeft();
-      if (step < next.step) next = {step, point.phi, false};
-    }
-    return limitTurn(a, b, nearest, next);
-  }
-
-  Next limitTurn(const Moment& a, const Moment& b, double nearest, Next next) const {
-    const BodyModel &A = model_.bodies[pair_.a], &B = model_.bodies[pair_.b];
-    const double turning = a.motion.w_W.norm() * A.corner_reach + b.motion.w_W.norm() * B.corner_reach;  // speed of what turns [m/s]
-    const double longest = (std::max(nearest, 0.0) + 0.25 * std::min(A.inner_radius, B.inner_radius)) / turning;
-    if (turning > 0 && next.step > longest) return {longest, next.phi, false};
-    next.is_exact = std::abs(next.step) <= 1e-15 * scratch_.h;
-    return next;
-  }
-
-  Vec3 acceleration(int i) const {
-    const BodyScratch& now = scratch_.bodies[i];
-    if (now.closing) return Vec3::Zero();
-    return (endVelocity(model_, scratch_, i) - now.start.v_W) / scratch_.h;
-  }
-
-  const WorldModel& model_;
-  const WorldState& state_;
-  WorldScratch& scratch_;
-  ImpactPair pair_;
-  double margin_;
-};
 
 // A massless fingertip behind its spring gives way: in no time it takes no impulse.
 bool givesWay(const WorldModel& model, const Side& side) {
@@ -277,6 +199,19 @@ bool addsEnergy(const WorldModel& model, const WorldScratch& scratch) {
 
 }  // namespace
 
+bool pushedBefore(const WorldState& state, std::uint64_t id) {
+  const auto all = memories(state);
+  const auto m = std::lower_bound(all.begin(), all.end(), id, [](const ContactMemory& x, std::uint64_t y) { return x.id < y; });
+  return m != all.end() && m->id == id && m->active;
+}
+
+double hardLanding(const WorldModel& model) { return kHardLanding * model.options.h * model.options.gravity_W.norm(); }
+
+Vec3 endVelocity(const WorldModel& model, const WorldScratch& scratch, int i) {
+  const BodyScratch& now = scratch.bodies[i];
+  return model.bodies[i].dynamic ? Vec3(now.free.v_W + model.bodies[i].inverse_mass * now.impulse_W) : now.free.v_W;
+}
+
 double gapAcceleration(const WorldModel& model, const Contact& c) {
   const int falling = static_cast<int>(isDynamic(model, c.a)) - static_cast<int>(isDynamic(model, c.b));
   return falling * c.n_W().dot(model.options.gravity_W);
@@ -309,22 +244,10 @@ void notePushedPairs(const WorldModel& model, const WorldState& state, WorldScra
   }
 }
 
-void holdBackImpacts(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
+void holdBackImpacts(const WorldModel& model, const WorldState& state, bool landings, WorldScratch& scratch) {
   scratch.impact_pairs.clear();
-  if (scratch.fast_pairs.empty() && scratch.pushed_pairs.empty() && !model.bounces) return;
-  for (const auto* pairs : {&scratch.fast_pairs, &scratch.pushed_pairs}) {
-    for (const ImpactPair& pair : *pairs) {
-      if (isNoted(scratch.impact_pairs, pair.a, pair.b) || isTouching(state, pair.a, pair.b) || hasLanded(scratch, pair)) continue;
-      scratch.impact_pairs.push_back(pair);
-    }
-  }
-  std::erase_if(scratch.contacts, [&](const Contact& c) {
-    if (c.a.kind != SideKind::kBody || c.b.kind != SideKind::kBody) return false;
-    if (isNoted(scratch.impact_pairs, c.a.index, c.b.index)) return true;
-    if (!mayBounce(model, state, scratch, c)) return false;
-    scratch.impact_pairs.push_back({c.a.index, c.b.index});
-    return true;
-  });
+  if (!scratch.fast_pairs.empty() || !scratch.pushed_pairs.empty() || model.bounces) holdBackHits(model, state, scratch);
+  if (landings) holdBackLandings(model, state, scratch);
 }
 
 bool impactsWait(const WorldModel& model, const WorldState& state, const WorldScratch& scratch) {
@@ -336,12 +259,6 @@ bool impactsWait(const WorldModel& model, const WorldState& state, const WorldSc
   return model.bounces && std::any_of(scratch.contacts.begin(), scratch.contacts.end(), [&](const Contact& c) {
            return c.a.kind == SideKind::kBody && c.b.kind == SideKind::kBody && mayBounce(model, state, scratch, c);
          });
-}
-
-double timeOfImpact(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
-  double first = std::numeric_limits<double>::infinity();
-  for (const ImpactPair& pair : scratch.impact_pairs) first = std::min(first, ClosingPair(model, state, scratch, pair).time());
-  return first;
 }
 
 void applyImpacts(const WorldModel& model, WorldState& state, WorldScratch& scratch, ContactSource* source) {

@@ -21,6 +21,11 @@
 
 namespace pincer::engine {
 
+// What lands without bouncing, fast and on a part that didn't touch (a corner of a block that rocks), cuts the tick as well, at most kMostLandings
+// times: taken with the rest of the tick its impulse would act at another place and time than the landing, first order.
+constexpr int kMostLandings = 2;     // by which a tick is cut; what lands after them lands at its end
+constexpr double kAlongWith = 0.25;  // of hardLanding: what closes faster lands with what lands hard
+
 // How often a tick is cut by impacts at most; what hits then lands, or bounces at the tick's end.
 constexpr int kMostImpacts = 16;
 
@@ -38,15 +43,24 @@ void noteFastPair(const WorldModel& model, int a, int b, WorldScratch& scratch);
 // near enough to be seen; for the rest of the tick. Only in worlds without a broad phase.
 void notePushedPairs(const WorldModel& model, const WorldState& state, WorldScratch& scratch);
 
-// Takes the contacts of pairs that may hit each other in this tick out of scratch.contacts, and notes the pairs.
-void holdBackImpacts(const WorldModel& model, const WorldState& state, WorldScratch& scratch);
+// Takes the contacts of pairs that may hit each other in this tick out of scratch.contacts, and notes the pairs. `landings`: those that land, too.
+void holdBackImpacts(const WorldModel& model, const WorldState& state, bool landings, WorldScratch& scratch);
 
-// Whether there are any such.
+// Whether there are any that bounce or are too fast.
 bool impactsWait(const WorldModel& model, const WorldState& state, const WorldScratch& scratch);
 
 // When the first of the noted pairs closes [s] after the start of this part of the tick, on the path that the solved contacts give;
 // infinity if none does. Call gatherImpulses before.
 double timeOfImpact(const WorldModel& model, const WorldState& state, WorldScratch& scratch);
+
+// Whether the contact pushed in the last part of a tick.
+bool pushedBefore(const WorldState& state, std::uint64_t id);
+
+// The speed from which a landing cuts the tick [m/s].
+double hardLanding(const WorldModel& model);
+
+// Of the body's centre of mass at the end of this part of the tick, contacts included. Call gatherImpulses before.
+Vec3 endVelocity(const WorldModel& model, const WorldScratch& scratch, int body);
 
 // Makes the velocities of `state` those just after the hits at its present poses.
 void applyImpacts(const WorldModel& model, WorldState& state, WorldScratch& scratch, ContactSource* source);

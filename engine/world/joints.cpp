@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/solve/linear.h"
+#include "engine/world/held_body.h"
 
 namespace pincer::engine {
 namespace {
@@ -195,6 +196,7 @@ void predictGroup(const WorldModel& model, const JointGroup& g, WorldScratch& sc
 
 void predictJoints(const WorldModel& model, WorldScratch& scratch) {
   for (std::size_t n = 0; n < model.joint_groups.size(); ++n) {
+    if (model.joint_groups[n].is_held_body) continue;
     JointGroupScratch& group = scratch.joint_groups[n];
     predictGroup(model, model.joint_groups[n], scratch, group);
     if (group.may_touch) factoriseInverseMass(model, scratch, model.joint_groups[n], group);
@@ -216,6 +218,10 @@ void predictJoints(const WorldModel& model, WorldScratch& scratch) {
 void gatherJointImpulses(const WorldModel& model, WorldScratch& scratch) {
   for (std::size_t n = 0; n < model.joint_groups.size(); ++n) {
     JointGroupScratch& group = scratch.joint_groups[n];
+    if (model.joint_groups[n].is_held_body) {
+      gatherHeldBody(model, model.joint_groups[n], scratch, group);
+      continue;
+    }
     std::fill(group.lambda.begin(), group.lambda.end(), 0.0);
     for (const int body : model.joint_groups[n].bodies) {
       const BodyScratch& s = scratch.bodies[body];
@@ -242,6 +248,7 @@ void settleJoints(const WorldModel& model, WorldState& state, WorldScratch& scra
     return Motion{state.bodies[body].v_W, bodyAngularVelocity(model, state, body)};
   };
   for (std::size_t n = 0; n < model.joint_groups.size(); ++n) {
+    if (model.joint_groups[n].is_held_body) continue;
     JointGroupScratch& group = scratch.joint_groups[n];
     for (int pass = 0; pass < kSettlings; ++pass) {
       writeGroup(model, model.joint_groups[n], moment, group);

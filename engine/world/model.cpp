@@ -95,6 +95,19 @@ void groupJoints(WorldModel& model) {
   }
 }
 
+// Whether the group has one coordinate, and what that one is.
+void findHeldBody(const WorldModel& model, JointGroup& group) {
+  const JointModel& joint = model.joints[group.first];
+  const bool turns = joint.kind == JointKind::kPivot, slides = joint.kind == JointKind::kSlider;
+  const bool stands = joint.b < 0 || (!model.bodies[joint.b].dynamic && !model.bodies[joint.b].driven);
+  if (group.count != 1 || !stands || !(turns || slides)) return;
+  const BodyModel& body = model.bodies[joint.a];
+  group.is_held_body = true;
+  group.axis_A = joint.X_AJ.q * Vec3::UnitZ();
+  const double about_centre = group.axis_A.cwiseAbs2().dot(body.moments), arm2 = group.axis_A.cross(joint.X_AJ.p).squaredNorm();
+  group.inertia = turns ? about_centre + body.mass * arm2 : body.mass;
+}
+
 int blockedBy(JointKind kind) { return kind == JointKind::kWeld ? 6 : kind == JointKind::kBall ? 3 : 5; }
 
 // A group of joined bodies is one mover of the contact solver, which knows so many freedoms.
@@ -106,6 +119,7 @@ void checkGroups(WorldModel& model) {
   }
   for (JointGroup& group : model.joint_groups) {
     group.may_touch = group.may_touch || !model.points.empty() || model.has_broad_phase;
+    findHeldBody(model, group);
     int freedoms = 6 * static_cast<int>(group.bodies.size());
     const bool large = freedoms > kMostGroupFreedoms;
     for (int j = group.first; j < group.first + group.count; ++j) freedoms -= blockedBy(model.joints[j].kind);

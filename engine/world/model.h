@@ -103,6 +103,10 @@ struct JointGroup {
   int first = 0, count = 0;
   std::vector<int> bodies;  // ascending; static and driven ones don't count
   bool may_touch = false;   // something can touch one of them
+  // One body that one pivot or slider holds to what never moves (held_body.h):
+  bool is_held_body = false;
+  Vec3 axis_A = Vec3::UnitZ();  // of the joint in the body's inertial frame
+  double inertia = 0;           // about the pivot's axis [kg m^2], or the mass [kg]
 };
 constexpr int kMostGroupFreedoms = 48;  // of the bodies of a group that something can touch, without their joints
 constexpr int kMostJointRows = 7;       // of one joint: a weld's six, a pivot's five and its damper
@@ -134,6 +138,10 @@ struct WorldModel {
   bool bounces = false;  // some pair has restitution
   int driven_count = 0;  // of bodies
 };
+
+inline bool isHeldBody(const WorldModel& model, const BodyModel& body) {
+  return body.joint_group >= 0 && model.joint_groups[body.joint_group].is_held_body;
+}
 
 // What the builder is told about a body; B's pose and velocity at the start live in BodyStart.
 struct BodySpec {

@@ -1,4 +1,5 @@
 // Where everything would be in the middle of the tick, and how fast at its end, if nothing touched.
+#include "engine/world/held_body.h"
 #include "engine/world/joints.h"
 #include "engine/world/step.h"
 
@@ -32,6 +33,12 @@ void predictBody(const BodyModel& body, const BodyState& s, const Vec3& dv_gravi
   predictRotation(body.rotation, s, h, out);
   place(body, out);
   if (body.joint_group >= 0) out.inverse_inertia_W = inverseInertia(body.rotation, out.X_WI_mid.q);
+}
+
+void predictHeld(const WorldModel& model, const WorldState& state, int i, WorldScratch& scratch) {
+  const BodyModel& body = model.bodies[i];
+  predictHeldBody(model, state, model.joint_groups[body.joint_group], scratch, scratch.joint_groups[body.joint_group]);
+  if (model.joint_groups[body.joint_group].may_touch) place(body, scratch.bodies[i]);
 }
 
 void predictDriven(const BodyState& s, const MotionInput& in, double h, BodyScratch& out) {
@@ -134,7 +141,9 @@ void predict(const WorldModel& model, const WorldState& state, WorldScratch& scr
   const double h = scratch.h;
   const Vec3 dv_gravity_W = h * model.options.gravity_W;
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
-    if (model.bodies[i].dynamic) {
+    if (isHeldBody(model, model.bodies[i])) {
+      predictHeld(model, state, static_cast<int>(i), scratch);
+    } else if (model.bodies[i].dynamic) {
       predictBody(model.bodies[i], state.bodies[i], dv_gravity_W, h, scratch.bodies[i]);
     } else {
       BodyScratch& body = scratch.bodies[i];
@@ -161,6 +170,7 @@ void predictImpact(const WorldModel& model, const WorldState& state, WorldScratc
     out.free = out.end = out.start;
     if (model.bodies[i].dynamic) out.inverse_inertia_W = inverseInertia(model.bodies[i].rotation, s.X_WI.q);
     place(model.bodies[i], out);
+    if (isHeldBody(model, model.bodies[i])) predictHeld(model, state, static_cast<int>(i), scratch);
   }
   for (std::size_t i = 0; i < model.points.size(); ++i) {
     PointScratch& out = scratch.points[i];

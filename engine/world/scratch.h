@@ -117,6 +117,14 @@ struct JointRow {
   double softness, bias;  // R and b
   double miss;            // how far the constraint is violated [m, rad]
 };
+// A held body's coordinate in this part of the tick (held_body.h): its rate at the start and, without contact, at the end [rad/s, m/s].
+struct HeldScratch {
+  Vec3 p_WJ, axis_W;                     // of the joint
+  double start_rate = 0, free_rate = 0;  // at the start; at the end, were there no contact
+  double free_way = 0;                   // until then [rad, m]
+  double inverse_inertia = 0;            // for impulses spread over this part of the tick [1/(kg m^2), 1/kg]
+  double gained_rate = 0;                // by contacts
+};
 struct JointGroupScratch {
   std::vector<JointRow> rows;
   std::vector<double> A, lambda;
@@ -125,11 +133,13 @@ struct JointGroupScratch {
   std::vector<double> factor;  // F: per body a 6 x kMoverFreedoms block, column-major
   bool sound = true;           // A could be factorised
   bool may_touch = false;      // something can touch one of its bodies, so that F is needed
+  HeldScratch held;            // of a group that is a held body, instead of rows, A, lambda
 };
 
 // Two bodies that may hit each other within the tick.
 struct ImpactPair {
   int a = 0, b = 0;
+  bool lands = false;  // without bouncing, where it didn't touch; what touches goes on touching
 };
 
 // A tick that ended where it started, to the bit, see rest.h.

@@ -119,7 +119,7 @@ class Tick {
   void runInParts(int parts) {
     const double h = model_.options.h;
     left_ = part_ = h;
-    impacts_ = 0;
+    impacts_ = landings_ = 0;
     scratch_.pushed_pairs.clear();
     report_ = {};
     report_.parts = 0;
@@ -146,6 +146,7 @@ class Tick {
       conclude();
       left_ -= t;
     }
+    landings_ += std::any_of(scratch_.impact_pairs.begin(), scratch_.impact_pairs.end(), [](const ImpactPair& p) { return p.lands; });
     applyImpacts(model_, state_, scratch_, source_);
     chargeSurroundings();
     note();
@@ -205,7 +206,7 @@ class Tick {
     mark(scratch_, Stage::kCollideBodies);
     if (source_) source_->addContacts(scratch_);
     if (mayHit()) {
-      holdBackImpacts(model_, state_, scratch_);
+      holdBackImpacts(model_, state_, !model_.has_broad_phase && landings_ < kMostLandings, scratch_);
     } else {
       scratch_.impact_pairs.clear();
       if (impactsWait(model_, state_, scratch_)) report_.status |= kImpactsCut;
@@ -272,10 +273,11 @@ class Tick {
   WorldScratch& scratch_;
   const StepInputs& inputs_;
   ContactSource* source_;
-  double left_;      // of the tick [s]
-  double part_ = 0;  // length of the last part, before a hit cut it [s]
-  double stop_ = 0;  // what is left of the tick at the end of this part [s]
-  int impacts_ = 0;
+  double left_;       // of the tick [s]
+  double part_ = 0;   // length of the last part, before a hit cut it [s]
+  double stop_ = 0;   // what is left of the tick at the end of this part [s]
+  int impacts_ = 0;   // in this tick
+  int landings_ = 0;  // of them that don't bounce
   StepReport report_;
 };
 

@@ -187,6 +187,41 @@ TEST(Impact, ABallThatLandsObliquelyInALongTickSlidesOnTheFloor) {
   }
 }
 
+// Housner's block of half width 0.03 and half height 0.09, let go at 0.15 rad: the tilt that it reaches on its other edge. Between impacts
+// (2 R / (3 g)) w^2 + cos(alpha - th) is constant; the impact leaves 1 - 1.5 sin^2 alpha of w (G. W. Housner, Bull. Seismol. Soc. Am. 53 (1963)).
+double rockingPeakError(double h) {
+  constexpr double kTilt = 0.15, kB = 0.03, kH = 0.09;
+  WorldOptions options;
+  options.h = h;
+  WorldBuilder builder(options);
+  const Material rough{1, 1, 0, 0};
+  builder.addBody({"floor", contact::HalfSpace{}, false, 0, rough});
+  builder.addBody({"block", contact::Box{Vec3(kB, 0.03, kH)}, true, 0.5, rough});
+  const WorldModel model = builder.build();
+  const Quat q(Eigen::AngleAxisd(kTilt, Vec3::UnitY()));
+  BodyStart start;
+  start.X_WB = {q, -(q * Vec3(kB, 0, -kH))};
+  WorldState state = makeState(model, {BodyStart{}, start}, {});
+  WorldScratch scratch(model);
+  double peak = 0;
+  for (double tilt = kTilt; (peak < 0.01 || -tilt > peak - 0.01) && state.time < 2;) {
+    EXPECT_EQ(step(model, state, scratch).status, kStepOk);
+    const Quat now = state.bodies[1].X_WI.q;
+    tilt = 2 * std::atan2(now.y(), now.w());
+    peak = std::max(peak, -tilt);
+  }
+  const double alpha = std::atan2(kB, kH), kept = 1 - 1.5 * std::sin(alpha) * std::sin(alpha);
+  const double top = std::cos(alpha) + kept * kept * (std::cos(alpha - kTilt) - std::cos(alpha));
+  return std::abs(peak / (alpha - std::acos(top)) - 1);
+}
+
+TEST(Impact, RockingBlockLandsWithinTheTickToSecondOrder) {
+  const double coarse = rockingPeakError(4e-3), fine = rockingPeakError(1e-3);
+  RecordProperty("fine", std::to_string(fine));
+  EXPECT_LT(coarse, 4e-3);
+  EXPECT_LT(fine, 3e-4);
+}
+
 TEST(Impact, AllocatesNothing) {
   if (!tests::allocationsAreCounted()) GTEST_SKIP() << "a sanitizer owns the allocator";
   Bouncing world(0.9, 0.3, startAt(Vec3(0, 0, 0.03), Vec3(1, 0, 0), Vec3(0, 50, 20)));

@@ -1,0 +1,145 @@
+// When bodies hit each other: the root of the gap along the path that the solved contacts give.
+#include <algorithm>
+#include <limits>
+
+#include "contact/shape/pair_query.h"
+#include "engine/world/held_body.h"
+#include "engine/world/impact.h"
+
+namespace pincer::engine {
+namespace {
+
+constexpr double kGapRoundOff = 1e-14;  // at which the root is found [m]
+constexpr int kRootSteps = 40;          // a sphere above a plane needs one, rotating boxes five or six
+
+// Gap of one contact point, its rate and acceleration, as they are at one moment.
+struct Approach {
+  double phi, u, a;
+
+  // Time to phi = 0 on the parabola; infinite if it opens before it closes. What overlaps has closed, if ever, in the past.
+  double timeLeft() const {
+    const double root = std::sqrt(std::max(u * u - 2 * a * phi, 0.0));
+    if (u < 0) return phi > 0 && u * u < 2 * a * phi ? std::numeric_limits<double>::infinity() : 2 * phi / (root - u);
+    return a < 0 ? (root + u) / -a : std::numeric_limits<double>::infinity();
+  }
+};
+
+// Where the body is, and how it moves, `t` after the start of this part of the tick, on the path that advance() takes.
+struct Moment {
+  Pose X_WI;
+  Motion motion;
+};
+
+Moment momentOf(const WorldModel& model, const WorldState& state, const WorldScratch& scratch, int i, double t) {
+  const BodyModel& body = model.bodies[i];
+  const BodyState& s = state.bodies[i];
+  const BodyScratch& now = scratch.bodies[i];
+  if (!body.dynamic) {
+    if (!body.driven) return {s.X_WI, {}};
+    const DrivenPlace place = drivenPlace({s.X_WI, {s.v_W, s.L_W}}, {now.X_WB_end, now.free}, scratch.h, t / scratch.h);
+    return {place.X_WB, place.motion};
+  }
+  if (isHeldBody(model, body)) {
+    const int n = body.joint_group;
+    const BodyState at = heldBodyAt(model, model.joint_groups[n], scratch.joint_groups[n], now, s, scratch.h, t);
+    return {at.X_WI, {at.v_W, angularVelocity(body.rotation, at.X_WI.q, at.L_W)}};
+  }
+  const Vec3 dv_W = now.free.v_W + body.inverse_mass * now.impulse_W - s.v_W;
+  const double share = now.closing ? 1 : t / scratch.h;     // of the change of velocity that has happened
+  const double mean_share = now.closing ? 1 : 0.5 * share;  // in the mean until then
+  Moment m;
+  m.X_WI.p = s.X_WI.p + t * (s.v_W + mean_share * dv_W);
+  m.X_WI.q = s.X_WI.q;
+  rotateFreely(body.rotation, s.L_W + mean_share * now.angular_impulse_W, t, m.X_WI.q);
+  m.motion.v_W = s.v_W + share * dv_W;
+  m.motion.w_W = angularVelocity(body.rotation, m.X_WI.q, s.L_W + share * now.angular_impulse_W);
+  return m;
+}
+
+// The search for when one pair closes.
+class ClosingPair {
+ public:
+  ClosingPair(const WorldModel& model, const WorldState& state, WorldScratch& scratch, ImpactPair pair)
+      : model_(model), state_(state), scratch_(scratch), pair_(pair) {
+    const double before = (scratch.bodies[pair.a].start.v_W - scratch.bodies[pair.b].start.v_W).norm();
+    const double after = (endVelocity(model, scratch, pair.a) - endVelocity(model, scratch, pair.b)).norm();
+    margin_ = 2 * (model.options.contact_margin + scratch.h * std::max(before, after));
+  }
+
+  // Newton's method on the parabolas of the points. A gap between convex bodies that don't turn is a convex function of time, so that each
+  // step falls short of the root; how far the bodies may turn in a step is limited by the gap.
+  double time() const {
+    double t = 0;
+    for (int n = 0; n < kRootSteps; ++n) {
+      const Next next = look(t);
+      if (!(next.step <= scratch_.h - t)) return std::numeric_limits<double>::infinity();
+      t = std::max(t + next.step, 0.0);
+      if (std::abs(next.phi) <= kGapRoundOff || t == 0 || next.is_exact) return t;
+    }
+    return t;
+  }
+
+ private:
+  struct Next {
+    double step = std::numeric_limits<double>::infinity();  // [s]
+    double phi = std::numeric_limits<double>::infinity();   // gap of the point that closes first [m]
+    bool is_exact = false;                                  // the step is below the round-off of the time
+  };
+
+  Next look(double t) const {
+    const BodyModel &A = model_.bodies[pair_.a], &B = model_.bodies[pair_.b];
+    const Moment a = momentOf(model_, state_, scratch_, pair_.a, t), b = momentOf(model_, state_, scratch_, pair_.b, t);
+    contact::PairPoints found;
+    contact::collideShapes(A.shape, a.X_WI * A.X_IB, B.shape, b.X_WI * B.X_IB, margin_, scratch_.patches, found);
+    const Vec3 acceleration_W = acceleration(pair_.a) - acceleration(pair_.b);
+    Next next;
+    double nearest = margin_;
+    for (int i = 0; i < found.count; ++i) {
+      const contact::PairPoint& point = found.points[i];
+      const Vec3 v_a = a.motion.v_W + a.motion.w_W.cross(point.p_W - a.X_WI.p),
+                 v_b = b.motion.v_W + b.motion.w_W.cross(point.p_W - b.X_WI.p);
+      const Approach approach{point.phi, point.n_W.dot(v_a - v_b), point.n_W.dot(acceleration_W)};
+      nearest = std::min(nearest, point.phi);
+      const double step = approach.timeLeft();
+      if (pair_.lands && isBystander(point, approach)) continue;
+      if (step < next.step) next = {step, point.phi, false};
+    }
+    return limitTurn(a, b, nearest, next);
+  }
+
+  // Of a pair that touches already: what touches, and what closes slowly.
+  bool isBystander(const contact::PairPoint& point, const Approach& approach) const {
+    return approach.u > -kAlongWith * hardLanding(model_) || pushedBefore(state_, contactId(0, pair_.a, pair_.b, point.feature));
+  }
+
+  Next limitTurn(const Moment& a, const Moment& b, double nearest, Next next) const {
+    const BodyModel &A = model_.bodies[pair_.a], &B = model_.bodies[pair_.b];
+    const double turning = a.motion.w_W.norm() * A.corner_reach + b.motion.w_W.norm() * B.corner_reach;  // speed of what turns [m/s]
+    const double longest = (std::max(nearest, 0.0) + 0.25 * std::min(A.inner_radius, B.inner_radius)) / turning;
+    if (turning > 0 && next.step > longest) return {longest, next.phi, false};
+    next.is_exact = std::abs(next.step) <= 1e-15 * scratch_.h;
+    return next;
+  }
+
+  Vec3 acceleration(int i) const {
+    const BodyScratch& now = scratch_.bodies[i];
+    if (now.closing) return Vec3::Zero();
+    return (endVelocity(model_, scratch_, i) - now.start.v_W) / scratch_.h;
+  }
+
+  const WorldModel& model_;
+  const WorldState& state_;
+  WorldScratch& scratch_;
+  ImpactPair pair_;
+  double margin_;
+};
+
+}  // namespace
+
+double timeOfImpact(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
+  double first = std::numeric_limits<double>::infinity();
+  for (const ImpactPair& pair : scratch.impact_pairs) first = std::min(first, ClosingPair(model, state, scratch, pair).time());
+  return first;
+}
+
+}  // namespace pincer::engine
