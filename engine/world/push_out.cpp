@@ -10,6 +10,7 @@ namespace {
 constexpr int kPushSweeps = 10;
 
 bool isFree(const WorldModel& model, const Side& side) {
+  if (side.kind != SideKind::kBody) return false;
   const BodyModel& body = model.bodies[side.index];
   return body.dynamic && body.joint_group < 0;
 }
@@ -26,7 +27,7 @@ struct PushSide {
   Vec3 arm_x_n_W;
 
   PushSide(const WorldModel& model, WorldScratch& scratch, const Side& side, const Vec3& arm_W, const Vec3& normal_W) : n_W(normal_W) {
-    if (side.kind != SideKind::kBody || !isFree(model, side)) return;
+    if (!isFree(model, side)) return;
     BodyScratch& body = scratch.bodies[side.index];
     push = &body.push;
     inverse_mass = model.bodies[side.index].inverse_mass;
@@ -48,13 +49,19 @@ void markBodies(const Contact& c, WorldScratch& scratch) {
   }
 }
 
+double wantedWay(const WorldModel& model, const Contact& c) {
+  if (!isDeep(model, c)) return -std::max(c.phi - deepGap(model), 0.0);
+  const double thickness = std::min(model.bodies[c.a.index].inner_radius, model.bodies[c.b.index].inner_radius);
+  const double largest = kLargestCorrection * model.options.h * std::max(1.0, -c.phi / thickness);
+  return std::min(-kNormalCorrection * c.phi, largest);
+}
+
 // lambda is kept in c.bias_C, which nothing needs any more. Whether it changed.
 bool relax(const WorldModel& model, WorldScratch& scratch, Contact& c) {
   const PushSide a(model, scratch, c.a, c.arm_a_W, c.n_W()), b(model, scratch, c.b, c.arm_b_W, -c.n_W());
   const double mobility = a.mobility() + b.mobility();
   if (!(mobility > 0)) return false;
-  const double deep = std::min(-kNormalCorrection * c.phi, kLargestCorrection * model.options.h);
-  const double want = isDeep(model, c) ? deep : -std::max(c.phi - deepGap(model), 0.0);
+  const double want = wantedWay(model, c);
   double& lambda = c.bias_C[kNormalRow];
   const double before = lambda;
   lambda = std::max(0.0, lambda + (want - a.way() - b.way()) / mobility);
@@ -64,15 +71,16 @@ bool relax(const WorldModel& model, WorldScratch& scratch, Contact& c) {
   return true;
 }
 
-// One sweep over the contacts of bodies that are deep or were pushed, few in most heaps: those are marked in scratch.struck.
-void sweepPushes(const WorldModel& model, WorldScratch& scratch) {
+// Half a sweep, over the contacts of bodies that are deep or were pushed, few in most heaps: those are marked in scratch.struck.
+//   standing  those with what stands, or those between two bodies that can be moved
+void sweepPushes(const WorldModel& model, bool standing, WorldScratch& scratch) {
   for (std::size_t i = 0; i < scratch.contacts.size(); ++i) {
     const ContactEnds& ends = scratch.islands.ends[i];
     const auto isMarked = [&](int mover) {
       return mover >= 0 && mover < static_cast<int>(scratch.struck.size()) && scratch.struck[static_cast<std::size_t>(mover)];
     };
-    if (isMarked(ends.a) || isMarked(ends.b)) {
-      Contact& c = scratch.contacts[i];
+    Contact& c = scratch.contacts[i];
+    if ((isMarked(ends.a) || isMarked(ends.b)) && (isFree(model, c.a) != isFree(model, c.b)) == standing) {
       if (relax(model, scratch, c)) markBodies(c, scratch);
     }
   }
@@ -98,7 +106,10 @@ void pushOut(const WorldModel& model, WorldState& state, WorldScratch& scratch) 
     c.bias_C[kNormalRow] = 0;
     if (isDeep(model, c)) markBodies(c, scratch);
   }
-  for (int sweep = 0; sweep < kPushSweeps; ++sweep) sweepPushes(model, scratch);
+  // What stands comes last: between it and something heavier a light body must not end deeper in it than it was.
+  for (int sweep = 0; sweep < kPushSweeps; ++sweep) {
+    for (const bool standing : {false, true}) sweepPushes(model, standing, scratch);
+  }
   const double share = scratch.h / model.options.h;  // of the tick
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
     const Motion& push = scratch.bodies[i].push;

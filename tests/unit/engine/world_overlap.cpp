@@ -64,6 +64,24 @@ TEST(Overlap, WhatOverlapsInAllDirectionsDoesNotFallThroughTheFloor) {
   }
 }
 
+// `pincer stress --only '*overlap'`, seeds 212, 409, 522, 740, 911: what was moved out of a heavier body above ended deeper in the floor, tick by tick.
+TEST(Overlap, LightBodyBetweenAHeavyOneAndTheFloorDoesNotSink) {
+  WorldBuilder builder{WorldOptions{}};
+  builder.addBody({"floor", contact::HalfSpace{}, false, 0, {}});
+  builder.addBody({"light", contact::Sphere{0.005}, true, 1e-3, {}});
+  builder.addBody({"heavy", contact::Sphere{0.02}, true, 100, {}});
+  const WorldModel model = builder.build();
+  WorldState state = makeState(model, {startAt(Vec3::Zero()), startAt(Vec3(0, 0, 0.001)), startAt(Vec3(0, 0, 0.022))}, {});
+  WorldScratch scratch(model);
+  double lowest = 1;
+  for (int i = 0; i < 200; ++i) {
+    step(model, state, scratch);
+    lowest = std::min(lowest, state.bodies[1].X_WI.p.z());
+  }
+  EXPECT_GT(lowest, 0.001 - 1e-6);
+  EXPECT_GT(state.bodies[1].X_WI.p.z(), 0.003);
+}
+
 // `pincer stress --only '*teleport' --seed 7`: the part of the tick up to the hit was solved again, shorter, in which what pushes pushed harder, so that
 // the ball was through the floor when it was asked to bounce off it.
 class JumpingPush final : public ContactSource {
