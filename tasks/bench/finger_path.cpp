@@ -31,7 +31,7 @@ FingerPath strokeOver(const contact::SmoothMesh& mesh, const Stroke& stroke, Mea
   BenchFinger finger;
   Random random(stroke.seed);
   Vec3 C = Vec3::Zero(), heading = Vec3::UnitX();
-  contact::SurfaceContact touch;
+  contact::SurfaceContact touch{Vec3::Zero(), Vec3::UnitZ()};
   for (std::int64_t i = 0; i < stroke.ticks && !context.interrupted(); ++i) {
     if (i % stroke.restart_every == 0) {
       C = comeDown(mesh, finger, random);

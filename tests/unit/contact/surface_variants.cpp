@@ -41,7 +41,7 @@ Jumps slideAroundCylinder(SurfaceVariant variant, double step) {
   const double h = 0.025 + kFinger - 0.001;
   SurfaceTracker tracker;
   Jumps worst;
-  SurfaceContact last;
+  SurfaceContact last{Vec3::Zero(), Vec3::UnitZ()};
   Vec3 last_place = Vec3::Zero();
   for (int i = 0; i * step < 60 * kDegree * h; ++i) {
     const double a = i * step / h;
