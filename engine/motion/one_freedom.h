@@ -29,4 +29,7 @@ OneFreedomCourse followFreedom(const OneFreedomLaw& law, double rate, double h);
 // Share of an impulse, spread evenly over `h`, that a damper leaves: (1 - exp(-c h)) / (c h), 1 without damper.
 double dampedShare(double c, double h);
 
+// How far a constant push leads in `h`, over h and the rate that it leads to: 1/(1 - exp(-c h)) - 1/(c h), 1/2 without damper.
+double dampedWay(double c, double h);
+
 }  // namespace pincer::engine

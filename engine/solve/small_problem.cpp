@@ -104,7 +104,14 @@ class SmallProblem {
     }
   }
 
+  // Where blocks lose too many digits, as where little moves and much is held, again by rows.
   bool solve(const SolverOptions& options, bool strict, double* r_out, double* u_out, SolveResult& result) {
+    return solveBy(rows == 3, options, strict, r_out, u_out, result) ||
+           (rows == 3 && solveBy(false, options, strict, r_out, u_out, result));
+  }
+
+ private:
+  bool solveBy(bool blocks, const SolverOptions& options, bool strict, double* r_out, double* u_out, SolveResult& result) {
     std::copy(r_out, r_out + m, r_);
     const double start = evaluate();
     const bool is_close = start <= options.tolerance;
@@ -119,7 +126,7 @@ class SmallProblem {
     if (is_close) keep(r_out, u_out);
     const int steps = std::min(is_close ? kSmallPolishSteps : kSmallSteps, options.newton_iterations);
     for (int n = 0; n < steps; ++n) {
-      if (!step()) break;
+      if (!step(blocks)) break;
       ++result.iterations;
       const double residual = evaluate();
       if (!std::isfinite(residual)) break;
@@ -133,7 +140,6 @@ class SmallProblem {
     return found || is_close;
   }
 
- private:
   void keep(double* r_out, double* u_out) const {
     std::copy(r_, r_ + m, r_out);
     std::copy(u_, u_ + m, u_out);
@@ -193,19 +199,22 @@ class SmallProblem {
   }
 
   // A full step of Newton's method.
-  bool step() {
+  bool step(bool blocks) {
     for (int i = 0; i < count; ++i) linearise(i);
-    if constexpr (rows == 3) {
-      if (!eliminateBlocks(J_, b_)) return false;
-    } else {
-      if (!eliminateRows(J_, b_)) return false;
-    }
+    if (!eliminate(blocks)) return false;
     for (int i = 0; i < count; ++i) {
       double* const r_i = r_ + rows * i;
       for (int k = 0; k < rows; ++k) r_i[k] += b_[rows * i + k];
       projectOntoCone(r_i, rows, mu_[i], r_i);
     }
     return true;
+  }
+
+  bool eliminate([[maybe_unused]] bool blocks) {
+    if constexpr (rows == 3) {
+      if (blocks) return eliminateBlocks(J_, b_);
+    }
+    return eliminateRows(J_, b_);
   }
 
   void linearise(int i) {

@@ -87,6 +87,7 @@ void predictHeldBody(const WorldModel& model, const WorldState& state, const Joi
   out.free = motionAt(model, g, held, placeAt(model, g, held, s.X_WI, end.way), end.rate);
   out.end = out.free;
   held.inverse_inertia = dampedShare(law.c, scratch.h) / g.inertia;
+  held.gained_way = scratch.h * dampedWay(law.c, scratch.h);
   fillFactor(model, g, out.X_WI_mid, group);
 }
 
@@ -114,8 +115,8 @@ BodyState heldBodyAt(const WorldModel& model, const JointGroup& g, const JointGr
   const double share = t / h, end_rate = held.free_rate + held.gained_rate;
   if (scratch.closing) return stateAt(model, g, held, placeAt(model, g, held, s.X_WI, t * end_rate), end_rate);
   // What the free course is besides the mean of its rates goes with the square of the time, as that does.
-  const double bent = held.free_way - h * held.start_rate + 0.5 * h * held.gained_rate;
-  const double way = t == h ? held.free_way + 0.5 * h * held.gained_rate : t * held.start_rate + share * share * bent;
+  const double gained = held.gained_way * held.gained_rate, bent = held.free_way - h * held.start_rate + gained;
+  const double way = t == h ? held.free_way + gained : t * held.start_rate + share * share * bent;
   return stateAt(model, g, held, placeAt(model, g, held, s.X_WI, way), held.start_rate + share * (end_rate - held.start_rate));
 }
 

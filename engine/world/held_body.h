@@ -6,7 +6,7 @@
 //
 // Without contact that is solved to round-off (motion/one_freedom.h). Contacts see the velocity that it leads to and one column of F (joints.h):
 // (n x r, n)/sqrt(I') or (n, 0)/sqrt(I'), I' = I c h/(1 - exp(-c h)), c = d/I: of an impulse that comes during the tick the damper takes its part.
-// What they add to th' acts by half on the way, as for free bodies (decision 3). The body is placed on its joint by the coordinate: nothing
+// What they add to th' is taken as a constant push, as for free bodies (decision 3): half of it acts on the way, with a damper a little more. The body is placed on its joint by the coordinate: nothing
 // drifts, nothing is projected. Joints that bind several bodies: joints.h.
 #pragma once
 #include "engine/world/scratch.h"

@@ -124,6 +124,7 @@ struct HeldScratch {
   double free_way = 0;                   // until then [rad, m]
   double inverse_inertia = 0;            // for impulses spread over this part of the tick [1/(kg m^2), 1/kg]
   double gained_rate = 0;                // by contacts
+  double gained_way = 0;                 // how far that leads, over its rate [s]
 };
 struct JointGroupScratch {
   std::vector<JointRow> rows;

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "engine/motion/one_freedom.h"
 #include "engine/world/joints.h"
 #include "engine/world/step.h"
 #include "tests/support/allocation_guard.h"
@@ -215,6 +216,20 @@ TEST(Joints, PivotBetweenTwoBodiesKeepsTheirMomenta) {
   EXPECT_LT((spin() - L).norm(), 2e-6 * L.norm());  // poses are projected along the inertia of the tick's middle: second order
   EXPECT_LT(world.gap(), 1e-14);
   EXPECT_LE(world.energy(), energy * (1 + 1e-6));
+}
+
+// A knob that fingers turned lagged behind them by (c h)^2 / 12 of the way: what contacts gave a damped coordinate counted by half on the way.
+TEST(Joints, ADampedCoordinateGoesAsFarAsAConstantPushTakesIt) {
+  for (const double ch : {0.0, 1e-9, 1e-3, 0.0999, 0.1001, 1.0, 30.0}) {
+    const long double h = 1e-3L, c = static_cast<long double>(ch) / h, x = c * h;
+    const long double rate = x > 0 ? -std::expm1(-x) / c : h;  // of a push of 1
+    const long double way = x > 1e-2L ? h / c - rate / c : h * h * (0.5L - x / 6 + x * x / 24 - x * x * x / 120 + x * x * x * x / 720);
+    const double w = 0.3, push = 2.1;
+    const OneFreedomCourse course = followFreedom({push, 0, static_cast<double>(c), false}, w, 1e-3);
+    const OneFreedomCourse free = followFreedom({0, 0, static_cast<double>(c), false}, w, 1e-3);
+    EXPECT_NEAR(dampedWay(static_cast<double>(c), 1e-3), static_cast<double>(way / (h * rate)), 1e-13) << ch;
+    EXPECT_NEAR(free.way + dampedWay(static_cast<double>(c), 1e-3) * 1e-3 * (course.rate - free.rate), course.way, 1e-16) << ch;
+  }
 }
 
 // Bodies joined at the wrong place are refused, and so is a joint that holds nothing.
