@@ -91,10 +91,17 @@ void holdBackHits(const WorldModel& model, const WorldState& state, WorldScratch
   });
 }
 
+// Further than a gap can be told in advance from where it is in the middle of the part.
+bool turnsFar(const WorldScratch& scratch, int body) {
+  constexpr double kFar = 0.05;  // [rad]
+  return scratch.h * scratch.h * scratch.bodies[body].start.w_W.squaredNorm() > kFar * kFar;
+}
+
 // A contact that closes in this part of the tick, and how fast: a new one, whose gap isn't round-off.
 bool closesFaster(const WorldModel& model, const WorldState& state, const WorldScratch& scratch, const Contact& c, double speed) {
   if (c.a.kind != SideKind::kBody || c.b.kind != SideKind::kBody) return false;
   if (c.material.restitution > 0 || pushedBefore(state, c.id)) return false;
+  if (turnsFar(scratch, c.a.index) || turnsFar(scratch, c.b.index)) return false;
   const double u = normalVelocity(scratch, c), a = std::min(gapAcceleration(model, c), 0.0);
   const double phi = c.phi - 0.5 * scratch.h * u, u_end = u + a * scratch.h;
   return phi > kTouching && u_end < -speed && phi + kLate * scratch.h * u_end < 0;

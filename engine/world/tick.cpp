@@ -140,13 +140,17 @@ class Tick {
     if (mayHit()) notePushedPairs(model_, state_, scratch_);
     double t = h;
     if (!scratch_.impact_pairs.empty()) t = searchHit();
+    if (!(t < h) && somethingLands()) {  // and misses, by a little: its contact counts in this part after all
+      attempt(h, false);
+      t = scratch_.impact_pairs.empty() ? h : searchHit();
+    }
     if (!(t < h)) return finish(h);
     if (t > kShortestPart * model_.options.h) {
       t = cutAt(t);
       conclude();
       left_ -= t;
     }
-    landings_ += std::any_of(scratch_.impact_pairs.begin(), scratch_.impact_pairs.end(), [](const ImpactPair& p) { return p.lands; });
+    landings_ += somethingLands();
     applyImpacts(model_, state_, scratch_, source_);
     chargeSurroundings();
     note();
@@ -165,6 +169,10 @@ class Tick {
       attempt(t = sooner);
     }
     return t;
+  }
+
+  bool somethingLands() const {
+    return std::any_of(scratch_.impact_pairs.begin(), scratch_.impact_pairs.end(), [](const ImpactPair& p) { return p.lands; });
   }
 
   bool somethingPushesImpacts() const {
@@ -197,7 +205,8 @@ class Tick {
     mark(scratch_, Stage::kAdvance);
   }
 
-  void attempt(double h) {
+  // `landings`: what lands is held back.
+  void attempt(double h, bool landings = true) {
     scratch_.h = h;
     setInputs(h);
     predict(model_, state_, scratch_);
@@ -206,7 +215,7 @@ class Tick {
     mark(scratch_, Stage::kCollideBodies);
     if (source_) source_->addContacts(scratch_);
     if (mayHit()) {
-      holdBackImpacts(model_, state_, !model_.has_broad_phase && landings_ < kMostLandings, scratch_);
+      holdBackImpacts(model_, state_, landings && !model_.has_broad_phase && landings_ < kMostLandings, scratch_);
     } else {
       scratch_.impact_pairs.clear();
       if (impactsWait(model_, state_, scratch_)) report_.status |= kImpactsCut;
