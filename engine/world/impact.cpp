@@ -93,7 +93,7 @@ void holdBackHits(const WorldModel& model, const WorldState& state, WorldScratch
 
 // Further than a gap can be told in advance from where it is in the middle of the part.
 bool turnsFar(const WorldScratch& scratch, int body) {
-  constexpr double kFar = 0.05;  // [rad]
+  constexpr double kFar = 0.02;  // [rad]: it errs by 2 um where the body reaches 10 mm
   return scratch.h * scratch.h * scratch.bodies[body].start.w_W.squaredNorm() > kFar * kFar;
 }
 

@@ -5,6 +5,7 @@
 
 #include "engine/solve/cone.h"
 #include "engine/solve/mobility.h"
+#include "engine/world/contact_rows.h"
 
 namespace pincer::engine {
 namespace {
@@ -110,6 +111,7 @@ class BiasFit {
     const double* const r_i = r_ + problem_.firstRow(i);
     if (!(r_i[kNormalRow] > 0)) return 0;
     if (pushing_ == PushingBy::kLastTick && c.closing) return 0;
+    if (c.bias_C[kNormalRow] > kLargestCorrection) return 0;  // far from touching: it may land, and asks for nothing
     if (k == kNormalRow) return kNormalRowWeight;
     const bool sticks = pushing_ == PushingBy::kLastTick ? c.stuck : isInCone(r_i, problem_.rows(i), problem_.friction(i), kInside);
     return sticks ? 1 : 0;
