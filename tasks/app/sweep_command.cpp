@@ -24,7 +24,7 @@ prints what came of it. PATH names the number as messages do; in a scene a body,
 
 Examples:
   pincer sweep s4_pinch --vary sphere.material.mu_s=0.1:0.5:9 --vary duration=1 --measure sphere.p_z
-  pincer sweep pickup --vary sphere.mass=0.05:0.2:4 --vary sphere.material.mu_s=0.3,0.6 --measure sphere.p_z:max --out out/pickup
+  pincer sweep pickup --vary sphere.mass=0.05:0.2:4 --vary sphere.material.mu_s=0.6,0.9 --measure sphere.p_z:max --out out/pickup
   pincer sweep sphere-pickup --vary people.tactor_sd=0.0005:0.01:5:log --participants 4)";
 
 struct SweepArguments {
