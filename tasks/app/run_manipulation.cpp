@@ -126,6 +126,8 @@ Stage setStage(const ManipulationArguments& arguments, ManipulationSessionOption
   Stage stage;
   const std::string& choice = arguments.devices.devices;
   options.servo.real_time = options.servo.real_time || arguments.view.view;
+  constexpr double kMouseStall = 0.1;  // that ends no trial [s]: a mouse has no motors
+  if (choice == "mouse") options.servo.watchdog = kMouseStall;
   if (choice != "mouse") stage.devices = openDevices(arguments.devices, options.servo);
   ViewOptions view = arguments.view;
   view.title = taskName(options.study);
