@@ -27,7 +27,8 @@ void addDeviceOptions(CLI::App& command, DeviceRunOptions& options) {
   command.add_option("--displays", options.which.displays, "Serial numbers of their displays")->delimiter(',');
   command
       .add_option("--watchdog", options.watchdog_ms,
-                  "So long may the program stall before forces are cut; samples count for 0.6 of it, arms go limp after 0.8 [ms]; a mouse has no motors: 100")
+                  "So long may the program stall before forces are cut; samples count for 0.6 of it, arms go limp after 0.8 [ms]; a mouse "
+                  "has no motors: 100")
       ->check(CLI::Range(2.0, 100.0))
       ->capture_default_str();
   command.add_option("--calibration", options.which.calibrations, "Files of the arms' bases (pincer devices calibrate --save)")
