@@ -13,12 +13,16 @@ until [[ -s $work/display ]]; do sleep 0.1; done
 DISPLAY=:$(< "$work/display")
 export DISPLAY
 until xdotool getdisplaygeometry > /dev/null 2>&1; do sleep 0.1; done
+# waitForWindow PROCESS OUTPUT   fails with the output if the process ends without one.
+waitForWindow() {
+  until xdotool search --name '^pincer' > /dev/null 2>&1; do
+    kill -0 "$1" || { cat "$2"; exit 1; }
+    sleep 0.2
+  done
+}
 "$pincer" sim pickup --view --devices mouse --screenshot "$work/end.png" > "$work/out" 2>&1 &
 viewer=$!
-until xdotool search --name '^pincer' > /dev/null 2>&1; do
-  kill -0 $viewer || { cat "$work/out"; exit 1; }
-  sleep 0.2
-done
+waitForWindow $viewer "$work/out"
 sleep 1
 xdotool mousemove 640 560
 sleep 1
@@ -37,10 +41,7 @@ lifted=$(sed -nE 's/^Lifted by up to ([0-9]+)\..*/\1/p' "$work/out")
 # A session with the mouse, left with Esc in its first trial, is done again to the bit from what the hand did.
 "$pincer" run sphere-pickup --devices mouse --view --friction 0.9 --condition cld+force --out "$work/session" > "$work/session.out" 2>&1 &
 session=$!
-until xdotool search --name '^pincer' > /dev/null 2>&1; do
-  kill -0 $session || { cat "$work/session.out"; exit 1; }
-  sleep 0.2
-done
+waitForWindow $session "$work/session.out"
 sleep 3
 xdotool mousemove 640 400 mousedown 1
 sleep 3
