@@ -6,7 +6,8 @@
 //
 //   F      factor of the inverse mass that contacts see: F F^T = M^-1 - M^-1 G^T A^-1 G M^-1. A group is one mover of the contact problem
 //          (engine/solve), with as many freedoms as F has columns: at most kMoverFreedoms, or the builder refuses
-//   group  joints that share moving bodies: a tree, a chain, a loop (a lone one that holds a body to the world: held_body.h).   b = h/2 (dG/dt) v, so that the constraint holds at the tick's end
+//   group  joints that share moving bodies: a tree, a chain, a loop (a lone one that holds a body to the world: held_body.h)
+//   b      h/2 (dG/dt) v, so that the constraint holds at the tick's end
 //   R      0, but for the damping d of the free axis: 2 / (h d) with b = (its rate at the start), the trapezoidal rule, exact to 2nd order;
 //          where h d exceeds the inertia 1 / (h d), b = 0, implicit and never ringing. A diagonal 1e-13 of A's lets loops be redundant
 // After the tick, poses and then velocities are projected onto the joints, along the inertia: they never drift.
