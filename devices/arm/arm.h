@@ -22,6 +22,8 @@ struct ArmCapabilities {
   double stiffness_limit = 0;                                           // that the arm renders stably [N/m]
   double rate = 1000;                                                   // of samples [Hz]
   std::optional<Vec3> peak_torque;                                      // of the joints [N m], of arms that tell
+  std::optional<double> tip_mass;                                       // the least felt at the tip [kg], of arms that tell
+  double tip_damping = 0;                                               // the least viscous friction at the tip [N s/m], 0: not told
   Vec3 workspace_min_D = Vec3::Zero(), workspace_max_D = Vec3::Zero();  // [m]
 };
 

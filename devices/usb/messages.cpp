@@ -8,7 +8,9 @@ namespace {
 constexpr double kNano = 1e-9, kMicro = 1e-6;                        // [m], [N] or [m/s]
 constexpr double kReach = 2, kForce = 100, kSpeed = 50, kPad = 0.1;  // [m], [N], [m/s], [m]
 constexpr double kGimbalStep = 1.0 / 16384;
-constexpr double kTorqueStep = 1e-4, kTorque = 6.5;  // [N m]
+constexpr double kTorqueStep = 1e-4, kTorque = 6.5;   // [N m]
+constexpr double kMassStep = 1e-4, kMass = 6.5;       // [kg]
+constexpr double kDampingStep = 1e-3, kDamping = 65;  // [N s/m]
 
 enum ArmBit : std::uint8_t { kArmValid = 1, kArmLimp = 2, kArmVelocity = 4, kArmGimbal = 8, kArmSwitches = 16, kArmBits = 31 };
 enum DisplayBit : std::uint8_t { kDisplayValid = 1, kDisplayParked = 2, kDisplayPlace = 4, kDisplayBits = 7 };
@@ -74,7 +76,9 @@ Frame toFrame(const Identity& m) {
       .put(m.rate)
       .putText(m.model, 16)
       .putText(m.serial, 12)
-      .put(static_cast<std::uint8_t>(m.linkage));
+      .put(static_cast<std::uint8_t>(m.linkage))
+      .putScaled<std::uint16_t>(m.tip_mass.value_or(0), kMassStep, kMass)
+      .putScaled<std::uint16_t>(m.tip_damping, kDampingStep, kDamping);
   return frame;
 }
 
@@ -95,6 +99,10 @@ std::optional<Identity> identityIn(const Frame& frame) {
   const auto linkage = in.take<std::uint8_t>();
   in.require(linkage <= static_cast<std::uint8_t>(m.kind == DeviceKind::kArm ? Linkage::kPremium : Linkage::kNotTold));
   m.linkage = static_cast<Linkage>(linkage);
+  const double mass = in.takeScaled<std::uint16_t>(kMassStep, 0, kMass);
+  if (mass > 0) m.tip_mass = mass;
+  m.tip_damping = in.takeScaled<std::uint16_t>(kDampingStep, 0, kDamping);
+  in.require(m.kind == DeviceKind::kArm || (!m.tip_mass && m.tip_damping == 0));
   return whole(in, m);
 }
 

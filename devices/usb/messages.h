@@ -30,6 +30,8 @@ struct Identity {
   std::string model;           // 1 .. 16 printable ASCII characters
   std::string serial;          // 1 .. 12
   Linkage linkage = Linkage::kNotTold;
+  std::optional<double> tip_mass = {};  // of an arm: the least felt at its tip [kg], 0.0001 .. 6.5
+  double tip_damping = 0;               // of an arm: the least viscous friction at its tip [N s/m], 0 .. 65; 0: not told
   bool operator==(const Identity&) const = default;
 };
 
@@ -100,6 +102,7 @@ std::optional<ArmState> armStateIn(const Frame& frame);
 std::optional<DisplayCommand> displayCommandIn(const Frame& frame);
 std::optional<DisplayState> displayStateIn(const Frame& frame);
 std::optional<Status> statusIn(const Frame& frame);
+// Without what `Identity` tells of an arm.
 std::optional<ArmCapabilities> armCapabilitiesIn(const Frame& frame);
 std::optional<TactileCapabilities> displayCapabilitiesIn(const Frame& frame);
 std::optional<CalibrationEntry> calibrationIn(const Frame& frame);

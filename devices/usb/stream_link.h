@@ -17,7 +17,11 @@ struct ArmWire {
   using Capabilities = ArmCapabilities;
   using Command = ArmCommand;
   static std::optional<State> stateIn(const Frame& frame) { return armStateIn(frame); }
-  static std::optional<Capabilities> capabilitiesIn(const Frame& frame) { return armCapabilitiesIn(frame); }
+  static std::optional<Capabilities> capabilitiesIn(const Frame& frame, const Identity& identity) {
+    std::optional<Capabilities> arm = armCapabilitiesIn(frame);
+    if (arm) arm->tip_mass = identity.tip_mass, arm->tip_damping = identity.tip_damping;
+    return arm;
+  }
 };
 
 struct DisplayWire {
@@ -25,7 +29,7 @@ struct DisplayWire {
   using Capabilities = TactileCapabilities;
   using Command = DisplayCommand;
   static std::optional<State> stateIn(const Frame& frame) { return displayStateIn(frame); }
-  static std::optional<Capabilities> capabilitiesIn(const Frame& frame) { return displayCapabilitiesIn(frame); }
+  static std::optional<Capabilities> capabilitiesIn(const Frame& frame, const Identity&) { return displayCapabilitiesIn(frame); }
 };
 
 template <typename Wire>
@@ -71,7 +75,7 @@ class StreamLink : public DeviceLink {
     return true;
   }
   bool takeCapabilities(const Frame& frame) override {
-    const auto capabilities = Wire::capabilitiesIn(frame);
+    const auto capabilities = Wire::capabilitiesIn(frame, deviceIdentity());
     if (!capabilities) return false;
     if (!told_capabilities_) capabilities_ = *capabilities;
     return told_capabilities_ = true;

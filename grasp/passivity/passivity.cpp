@@ -21,8 +21,14 @@ struct Flow {
   double whole() const { return linear + quadratic; }
 };
 
-Flow flowOf(const PassivityOptions& options, const PortState& port, const Vec3& f_W, double h) {
-  const double mobility = 0.5 * h / options.arm_mass;
+ArmPort armOf(const PassivityOptions& options, std::size_t finger) {
+  return finger < options.arms.size() ? options.arms[finger] : ArmPort{};
+}
+
+// Of finger i.
+Flow flowOf(const PassivityOptions& options, const PassivityState& state, std::size_t i, const Vec3& f_W, double h) {
+  const PortState& port = state.ports[i];
+  const double mobility = 0.5 * h / armOf(options, i).mass;
   return {h * f_W.dot(port.v_W + mobility * port.f_held_W), h * mobility * f_W.squaredNorm()};
 }
 
@@ -54,7 +60,7 @@ void scale(double s, double flow, PortState& port, Vec3& f_W) {
 bool boundEach(const PassivityOptions& options, double h, PassivityState& state, std::span<Vec3> f_W) {
   bool acted = false;
   for (std::size_t i = 0; i < f_W.size(); ++i) {
-    const Flow flow = flowOf(options, state.ports[i], f_W[i], h);
+    const Flow flow = flowOf(options, state, i, f_W[i], h);
     const double s = scaleFor(flow, std::max(state.ports[i].balance, 0.0));
     if (s < 1) scale(s, flow.whole(), state.ports[i], f_W[i]);
     acted |= s < 1;
@@ -66,7 +72,7 @@ bool boundSum(const PassivityOptions& options, double h, PassivityState& state, 
   Flow out;
   double allowed = state.balance;
   for (std::size_t i = 0; i < f_W.size(); ++i) {
-    const Flow flow = flowOf(options, state.ports[i], f_W[i], h);
+    const Flow flow = flowOf(options, state, i, f_W[i], h);
     if (flow.whole() > 0) {
       out.linear += flow.linear;
       out.quadratic += flow.quadratic;
@@ -77,7 +83,7 @@ bool boundSum(const PassivityOptions& options, double h, PassivityState& state, 
   const double s = scaleFor(out, std::max(allowed, 0.0));
   if (!(s < 1)) return false;
   for (std::size_t i = 0; i < f_W.size(); ++i) {
-    const double flow = flowOf(options, state.ports[i], f_W[i], h).whole();
+    const double flow = flowOf(options, state, i, f_W[i], h).whole();
     if (flow > 0) scale(s, flow, state.ports[i], f_W[i]);
   }
   return true;
@@ -85,12 +91,10 @@ bool boundSum(const PassivityOptions& options, double h, PassivityState& state, 
 
 // What is missing, shared out by what each finger gave, or would give, by itself.
 bool dampSum(const PassivityOptions& options, double h, PassivityState& state, std::span<Vec3> f_W) {
-  const auto own = [&](std::size_t i) {
-    return std::max(flowOf(options, state.ports[i], f_W[i], h).whole() - state.ports[i].balance, 0.0);
-  };
+  const auto own = [&](std::size_t i) { return std::max(flowOf(options, state, i, f_W[i], h).whole() - state.ports[i].balance, 0.0); };
   double missing = -state.balance, given = 0;
   for (std::size_t i = 0; i < f_W.size(); ++i) {
-    missing += flowOf(options, state.ports[i], f_W[i], h).whole();
+    missing += flowOf(options, state, i, f_W[i], h).whole();
     given += own(i);
   }
   if (!(missing > 0 && given > 0)) return false;
@@ -103,7 +107,7 @@ bool dampEach(const PassivityOptions& options, double h, PassivityState& state, 
   bool acted = false;
   for (std::size_t i = 0; i < f_W.size(); ++i) {
     PortState& port = state.ports[i];
-    acted |= damp(options, h, flowOf(options, port, f_W[i], h).whole() - port.balance, port, f_W[i]);
+    acted |= damp(options, h, flowOf(options, state, i, f_W[i], h).whole() - port.balance, port, f_W[i]);
   }
   return acted;
 }
@@ -113,9 +117,11 @@ bool dampEach(const PassivityOptions& options, double h, PassivityState& state, 
 void check(const PassivityOptions& options) {
   checkPassivityRange("most_damping", options.most_damping, 0, 1000, "In N s/m; arms of 50 g bear about 30 at 1 kHz.");
   checkPassivityRange("still_speed", options.still_speed, 1e-9, 1, "In m/s; 1e-4 is the usual one.");
-  checkPassivityRange("arm_mass", options.arm_mass, 1e-4, 100, "In kilograms, at the tip; a Phantom Premium has 0.03 to 0.15.");
-  checkPassivityRange("arm_damping", options.arm_damping, 0, 1000, "In N s/m; 0 if nobody measured it.");
   checkPassivityRange("reserve", options.reserve, 0, 1e3, "In joules; 0 unless fingers are to lower what begins high up.");
+  for (const ArmPort& arm : options.arms) {
+    checkPassivityRange("mass of an arm", arm.mass, 1e-4, 100, "In kilograms, at the tip; a Phantom Premium has 0.03 to 0.15.");
+    checkPassivityRange("damping of an arm", arm.damping, 0, 1000, "In N s/m; 0 if nobody measured it.");
+  }
 }
 
 double PassivityState::energy() const {
@@ -133,7 +139,7 @@ void observePorts(const PassivityOptions& options, std::span<const Vec3> p_WF, d
     const Vec3 way = port.seen ? Vec3(p_WF[i] - port.p_W) : Vec3::Zero();
     const double in = -port.f_held_W.dot(way);
     port.energy += in;
-    const double credit = in + options.arm_damping * way.squaredNorm() / h;
+    const double credit = in + armOf(options, i).damping * way.squaredNorm() / h;
     port.balance = std::min(port.balance + credit, most);
     state.balance += credit;
     port.p_W = p_WF[i];

@@ -30,6 +30,7 @@
 #include <vector>
 
 #include "contact/math.h"
+#include "grasp/coupling/hold_bounds.h"
 
 namespace pincer::grasp {
 
@@ -39,9 +40,8 @@ struct PassivityOptions {
   bool bound = true;          // withhold what the damping can't dissipate
   double most_damping = 30;   // alpha_max [N s/m], 0 .. 1000
   double still_speed = 1e-4;  // [m/s], > 0
-  double arm_mass = 0.05;     // m, per finger [kg], > 0
-  double arm_damping = 0;     // b, per finger [N s/m], >= 0
   double reserve = 0;         // R: what fingers may take out of the world beyond what they brought [J], >= 0
+  std::vector<ArmPort> arms;  // m and b of each finger's arm; a finger beyond them has an ArmPort's defaults
 };
 
 // Throws InputError for a value out of its range.

@@ -22,11 +22,18 @@ struct DevicesListArguments {
   double timeout = 1;
 };
 
+// What passivity builds on, of arms that tell.
+std::string tipOf(const devices::ArmCapabilities& can) {
+  std::string text = can.tip_mass ? fmt::format(", {:.3g} g at the tip", 1e3 * *can.tip_mass) : "";
+  if (can.tip_damping > 0) text += fmt::format(", {:.3g} N s/m", can.tip_damping);
+  return text;
+}
+
 void listArm(const devices::usb::UsbArm& arm) {
   const auto& can = arm.capabilities();
-  fmt::print("arm      {:<12} {:<16} {:<10} {:.3g} N peak, {:.3g} N continuous, {:.3g} um, {:.3g} N/mm\n", arm.deviceIdentity().serial,
+  fmt::print("arm      {:<12} {:<16} {:<10} {:.3g} N peak, {:.3g} N continuous, {:.3g} um, {:.3g} N/mm{}\n", arm.deviceIdentity().serial,
              arm.deviceIdentity().model, devices::nameOf(arm.linkState()), can.peak_force, can.continuous_force, 1e6 * can.resolution,
-             1e-3 * can.stiffness_limit);
+             1e-3 * can.stiffness_limit, tipOf(can));
 }
 
 void listDisplay(const devices::usb::UsbDisplay& display) {

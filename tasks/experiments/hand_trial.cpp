@@ -165,13 +165,18 @@ void HandTrial::keepPassive() {
   hands_.passive = 1;
 }
 
-void HandTrial::limitForces(int finger, const devices::ArmCapabilities& arm) {
+void HandTrial::fitTo(int finger, const devices::ArmCapabilities& arm) {
   devices::GateLimits& gate = scene_.model.mounts[static_cast<std::size_t>(finger)].gate;
   gate = devices::within(gate, arm);
   HandsRecord::Finger& kept = hands_.fingers[static_cast<std::size_t>(finger)];
   kept.peak_force = arm.peak_force;
   kept.continuous_force = arm.continuous_force;
   if (arm.peak_torque) kept.peak_torque = {arm.peak_torque->x(), arm.peak_torque->y(), arm.peak_torque->z()};
+  std::vector<grasp::ArmPort>& ports = scene_.model.passivity.arms;
+  ports.resize(scene_.model.mounts.size());
+  ports[static_cast<std::size_t>(finger)] = {arm.tip_mass.value_or(grasp::ArmPort{}.mass), arm.tip_damping};
+  kept.tip_mass = arm.tip_mass.value_or(HandsRecord::kNone);
+  kept.tip_damping = arm.tip_damping;
 }
 
 void HandTrial::standArms(const std::array<ArmBase, kHandFingers>& bases) {

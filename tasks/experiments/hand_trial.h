@@ -46,8 +46,8 @@ class HandTrial {
 
   // The tactors stay where they are, whatever the condition says. Before the first step.
   void parkTactors();
-  // The gate keeps to what the finger's arm can do, too. Before the first step.
-  void limitForces(int finger, const devices::ArmCapabilities& arm);
+  // The gate keeps to what the finger's arm can do, and passivity builds on what its tip weighs. Before the first step.
+  void fitTo(int finger, const devices::ArmCapabilities& arm);
   // So old may a sample be [s]. Before the first step.
   void trustSamples(double oldest);
   // The arms stand so far off their places in the scene. Throws InputError unless they face each other. Before the first step.

@@ -16,7 +16,7 @@ LiveHands::LiveHands(HandTrial& trial, HandDevices& devices, double oldest_sampl
   for (int i = 0; i < kHandFingers; ++i) {
     const Pose& X_WD = scene.model.mounts[static_cast<std::size_t>(i)].X_WD;
     devices_.setBase(i, X_WD.p, X_WD.q);
-    trial.limitForces(i, devices_.arm(i).capabilities());
+    trial.fitTo(i, devices_.arm(i).capabilities());
     devices_.arm(i).arm();
   }
 }

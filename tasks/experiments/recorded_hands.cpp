@@ -14,6 +14,8 @@ devices::ArmCapabilities capabilitiesOf(const HandsRecord::Finger& finger) {
   arm.peak_force = finger.peak_force;
   arm.continuous_force = finger.continuous_force;
   if (!std::isnan(finger.peak_torque[0])) arm.peak_torque = vectorOf(finger.peak_torque);
+  if (!std::isnan(finger.tip_mass)) arm.tip_mass = finger.tip_mass;
+  if (!std::isnan(finger.tip_damping)) arm.tip_damping = finger.tip_damping;
   return arm;
 }
 
@@ -24,7 +26,7 @@ RecordedHands::RecordedHands(HandTrial& trial, const HandsRecord& hands, std::ve
   std::array<ArmBase, kHandFingers> bases;
   for (std::size_t i = 0; i < bases.size(); ++i) {
     bases[i] = {vectorOf(hands.fingers[i].base_offset_W), hands.fingers[i].base_turn};
-    trial.limitForces(static_cast<int>(i), capabilitiesOf(hands.fingers[i]));
+    trial.fitTo(static_cast<int>(i), capabilitiesOf(hands.fingers[i]));
   }
   if (!std::isnan(bases[0].turn)) trial.standArms(bases);
   if (!std::isnan(hands.oldest_sample)) trial.trustSamples(hands.oldest_sample);

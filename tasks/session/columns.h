@@ -80,6 +80,8 @@ void forEachColumn(R& r, Visit&& visit) {
     visit(ColumnName{kFingers[i], "peak_force", "", "N"}, finger.peak_force);
     visit(ColumnName{kFingers[i], "continuous_force", "", "N"}, finger.continuous_force);
     columns::axes(visit, kFingers[i], "peak_torque", "Nm", finger.peak_torque);
+    visit(ColumnName{kFingers[i], "tip_mass", "", "kg"}, finger.tip_mass);
+    visit(ColumnName{kFingers[i], "tip_damping", "", "Ns_per_m"}, finger.tip_damping);
   }
   visit(ColumnName{"", "oldest_sample", "", "s"}, r.oldest_sample);
   visit(ColumnName{"", "passive", "", ""}, r.passive);

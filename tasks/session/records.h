@@ -55,6 +55,7 @@ struct HandsRecord {
     double base_turn = kNone;                                // about W's z axis [rad]; NaN: nobody said where the base stands
     double peak_force = 0, continuous_force = 0;             // that the arm can bear [N]; 0: it doesn't tell
     std::array<double, 3> peak_torque{kNone, kNone, kNone};  // of its joints [N m]; NaN: it doesn't tell
+    double tip_mass = kNone, tip_damping = kNone;            // of the arm, as passivity took them [kg, N s/m]; NaN: it doesn't tell
   };
 
   std::int64_t trial = 0;

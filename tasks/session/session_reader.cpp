@@ -30,11 +30,19 @@ std::unique_ptr<Database> openSession(const std::string& path) {
 }
 
 template <class Record>
-std::vector<Record> readAll(const Database& database, const std::string& condition) {
+std::vector<Record> readAll(const Database& database, const std::string& condition, const std::string& select = selectSql<Record>()) {
   std::vector<Record> records;
-  Statement rows(database, fmt::format("{} {} ORDER BY rowid", selectSql<Record>(), condition));
+  Statement rows(database, fmt::format("{} {} ORDER BY rowid", select, condition));
   while (rows.step()) records.push_back(readRow<Record>(rows));
   return records;
+}
+
+// Columns that an older format lacks are read as what the arm didn't tell.
+std::string selectHands(std::int64_t format) {
+  std::string sql = selectSql<HandsRecord>();
+  if (format >= 4) return sql;
+  for (const std::string& column : columnsSinceFormat4()) sql.replace(sql.find('"' + column + '"'), column.size() + 2, "NULL");
+  return sql;
 }
 
 std::string whereTrial(std::optional<std::int64_t> trial) { return trial ? fmt::format("WHERE trial = {}", *trial) : ""; }
@@ -80,7 +88,7 @@ std::vector<ReadingRecord> SessionReader::readings(std::optional<std::int64_t> t
 }
 
 std::vector<HandsRecord> SessionReader::hands() const {
-  return keepsInputs() ? readAll<HandsRecord>(*database_, "") : std::vector<HandsRecord>();
+  return keepsInputs() ? readAll<HandsRecord>(*database_, "", selectHands(format_)) : std::vector<HandsRecord>();
 }
 
 std::vector<InputRecord> SessionReader::inputs(std::int64_t trial) const {

@@ -61,9 +61,12 @@ void removeSession(const std::string& path) noexcept {
   for (const char* suffix : {"", "-wal", "-shm", "-journal"}) std::filesystem::remove(path + suffix, ignored);
 }
 
-// Those that format 3 added.
+// Those that format 3 added, and their columns that format 4 added.
 void makeInputTables(Database& d) {
   d.run(fmt::format("CREATE TABLE IF NOT EXISTS hands ({})", columnList<HandsRecord>(true)));
+  if (d.integer("PRAGMA user_version") == 3) {
+    for (const std::string& column : columnsSinceFormat4()) d.run(fmt::format("ALTER TABLE hands ADD COLUMN \"{}\" REAL", column));
+  }
   d.run(fmt::format("CREATE TABLE IF NOT EXISTS input ({})", columnList<InputChunk>(true)));
   d.run("CREATE INDEX IF NOT EXISTS input_of_trial ON input (trial)");
   d.run(fmt::format("PRAGMA user_version = {}", kFormat));

@@ -15,6 +15,7 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <vector>
 
 #include "tasks/session/columns.h"
 #include "tasks/session/database.h"
@@ -22,8 +23,8 @@
 namespace pincer::tasks {
 
 constexpr std::int64_t kApplicationId = 0x504e4352;  // "PNCR", in SQLite's header
-constexpr std::int64_t kFormat = 3;                  // raised whenever a column changes or a table is added
-constexpr std::int64_t kOldestFormat = 2;            // that is still read: it lacks the tables hands and input
+constexpr std::int64_t kFormat = 4;                  // raised whenever a column changes or a table is added
+constexpr std::int64_t kOldestFormat = 2;            // that is still read: it lacks the tables hands and input; 3 lacks columns of hands
 
 constexpr std::string_view kStateRunning = "running", kStateComplete = "complete", kStateAborted = "aborted: ";
 
@@ -57,6 +58,16 @@ std::string columnList(bool with_types = false) {
     if (with_types) list += fmt::format(" {}", sqlType<Field>());
   });
   return list;
+}
+
+// Columns of `hands` that format 4 added: what an arm's tip weighs.
+inline std::vector<std::string> columnsSinceFormat4() {
+  std::vector<std::string> added;
+  const HandsRecord record{};
+  forEachColumn(record, [&](const ColumnName& name, const auto&) {
+    if (name.quantity.starts_with("tip_")) added.push_back(name.text());
+  });
+  return added;
 }
 
 template <class Record>

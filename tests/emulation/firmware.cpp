@@ -9,6 +9,7 @@ namespace {
 constexpr std::size_t kReplies = 16;   // that the device keeps for a host that doesn't fetch them; the oldest go first
 constexpr double kStatusPeriod = 0.1;  // [s]
 constexpr double kRounding = 1e-9;     // of sums of steps [s]
+constexpr double kTipMass = 0.072;     // of the bare arm where it is lightest, and its display [kg]
 
 devices::SimArmSettings armSettings(const std::string& serial) {
   devices::SimArmSettings settings;
@@ -129,7 +130,7 @@ std::size_t Firmware::take(Packet& packet) {
 }
 
 ArmFirmware::ArmFirmware(const std::string& serial)
-    : Firmware({usb::DeviceKind::kArm, 1, 1000, "pincer emu arm", serial, usb::Linkage::kPremium}), plant_(armSettings(serial)) {
+    : Firmware({usb::DeviceKind::kArm, 1, 1000, "pincer emu arm", serial, usb::Linkage::kPremium, kTipMass}), plant_(armSettings(serial)) {
   calibration() = {{"base_x", 0.0}, {"base_y", 0.0}, {"base_z", 0.0}, {"base_turn", 0.0}};
 }
 

@@ -88,8 +88,7 @@ Cell handsOn(double stiffness, double mass, double rate, bool passive) {
   grasp::PassivityOptions options;
   std::array<HandOnArm, 2> hands;
   options.on = passive;
-  options.arm_mass = hands[0].mass;
-  options.arm_damping = hands[0].friction;
+  for (const HandOnArm& hand : hands) options.arms.push_back({hand.mass, hand.friction});
   std::vector<grasp::FingerInput> inputs(2);
   std::vector<Vec3> p(2), f(2, Vec3::Zero());
   for (int i = 0; i < 2; ++i) hands[static_cast<std::size_t>(i)].p_W = p[static_cast<std::size_t>(i)] = besideCube(i, 0);

@@ -68,6 +68,11 @@ TEST(UsbMessages, NothingThatIsNoNumberGetsOnTheWire) {
 TEST(UsbMessages, IdentityStatusAndCapabilitiesComeBack) {
   const Identity identity{DeviceKind::kDisplay, 7, 500, "pincer CLD", "0042"};
   EXPECT_EQ(identityIn(toFrame(identity)), identity);
+  const auto told = identityIn(toFrame(Identity{DeviceKind::kArm, 1, 1000, "arm", "A1", Linkage::kPremium, 0.072, 0.05}));
+  ASSERT_TRUE(told && told->tip_mass);
+  EXPECT_NEAR(*told->tip_mass, 0.072, 1e-12);
+  EXPECT_NEAR(told->tip_damping, 0.05, 1e-12);
+  EXPECT_FALSE(identityIn(toFrame(Identity{DeviceKind::kArm, 1, 1000, "arm", "A1"}))->tip_mass) << "absent, never zero";
   const auto status = statusIn(toFrame(Status{DeviceState::kFaulted, kEmergencyStop | kSupplyFault, 3, 4}));
   ASSERT_TRUE(status);
   EXPECT_EQ(describeFaults(status->faults), "supply, emergency stop");
@@ -142,6 +147,9 @@ TEST(UsbMessages, RefuseEveryFieldOutOfRange) {
   EXPECT_FALSE(displayStateIn(poked(tactor, 0, {1}))) << "a place that isn't there";
   const Frame identity = toFrame(Identity{DeviceKind::kArm, 1, 1000, "model", "serial"});
   EXPECT_FALSE(identityIn(poked(identity, 0, {3}))) << "an unknown kind";
+  EXPECT_FALSE(identityIn(poked(identity, 35, {0xff, 0xff}))) << "a tip of 6.6 kg";
+  EXPECT_FALSE(identityIn(poked(identity, 37, {0xff, 0xff}))) << "a friction of 65.5 N s/m";
+  EXPECT_FALSE(identityIn(poked(toFrame(Identity{DeviceKind::kDisplay, 1, 500, "model", "serial"}), 35, {1}))) << "a display with a tip";
   EXPECT_FALSE(identityIn(poked(identity, 4, {0, 0}))) << "a rate of 0";
   EXPECT_FALSE(identityIn(poked(identity, 6, {0}))) << "text behind its end";
   EXPECT_FALSE(identityIn(poked(identity, 7, {0x07}))) << "an unprintable character";

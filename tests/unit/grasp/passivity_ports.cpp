@@ -15,12 +15,12 @@ namespace pincer::grasp {
 namespace {
 
 constexpr double kTick = 1e-3;
+constexpr std::size_t kMostFingers = 3;
 
 PassivityOptions controlling() {
   PassivityOptions options;
   options.on = true;
-  options.arm_mass = 0.1;
-  options.arm_damping = 0.5;
+  options.arms.assign(kMostFingers, {0.1, 0.5});
   return options;
 }
 
@@ -109,7 +109,7 @@ TEST(Passivity, DampsWithAtMostThirtyAndNeverTurnsAForceRound) {
   tests::RandomNumbers random(7);
   PassivityOptions options = controlling();
   options.bound = false;
-  options.arm_damping = 0;
+  options.arms.assign(kMostFingers, {0.1, 0});
   PassivityState state(3);
   std::vector<Vec3> p(3, Vec3::Zero()), f(3);
   for (int i = 0; i < 2000; ++i) {
@@ -132,7 +132,7 @@ TEST(Passivity, DampsWithAtMostThirtyAndNeverTurnsAForceRound) {
 TEST(Passivity, FingerAtRestIsLeftAloneAndItsDebtIsCarriedOver) {
   PassivityOptions options = controlling();
   options.bound = false;
-  options.arm_damping = 0;
+  options.arms.assign(kMostFingers, {0.1, 0});
   PassivityState state(1);
   std::vector<Vec3> p = {Vec3::Zero()}, f = {Vec3(2, 0, 0)};
   observePorts(options, p, 0, kTick, state);
@@ -303,12 +303,13 @@ TEST(EnergyLedger, FrictionTakesForceTimesWay) {
 TEST(Passivity, AllocatesNothing) {
   if (!tests::allocationsAreCounted()) GTEST_SKIP() << "a sanitizer owns the allocator";
   PassivityState state(2);
+  const PassivityOptions options = controlling();
   std::vector<Vec3> p(2, Vec3::Zero()), f(2, Vec3(1, 0, 0));
   const auto before = tests::allocationCount();
   for (int i = 0; i < 100; ++i) {
     p[0].x() += 1e-4;
-    observePorts(controlling(), p, 0, kTick, state);
-    controlPorts(controlling(), kTick, state, f);
+    observePorts(options, p, 0, kTick, state);
+    controlPorts(options, kTick, state, f);
     holdPorts(f, state);
   }
   EXPECT_EQ(tests::allocationCount(), before);

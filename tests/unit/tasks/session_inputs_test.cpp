@@ -135,11 +135,48 @@ TEST(SessionInputs, ASessionOfTheFormatBeforeIsReadAndGoesOn) {
   EXPECT_EQ(SessionReader(dir / "a.db").inputs(1).size(), 1u);
 }
 
+// Of format 3: without what the tips weigh.
+TEST(SessionInputs, SessionsOfFormat3AreReadAndResumed) {
+  const TemporaryDirectory dir;
+  HandsRecord hands;
+  hands.fingers[1].peak_force = 8;
+  hands.fingers[1].tip_mass = 0.07;
+  TrialRecord trial;
+  {
+    auto writer = SessionWriter::create(dir / "a.db", {});
+    writer.addHands(hands);
+    writer.finishTrial(trial);
+    writer.abort("interrupted");
+  }
+  {
+    Database old(dir / "a.db", Database::Mode::kWrite);
+    for (const char* column : {"f0_tip_mass_kg", "f0_tip_damping_Ns_per_m", "f1_tip_mass_kg", "f1_tip_damping_Ns_per_m"}) {
+      old.run(fmt::format("ALTER TABLE hands DROP COLUMN \"{}\"", column));
+    }
+    old.run("PRAGMA user_version = 3");
+  }
+  const auto expectHands = [&](std::size_t count) {
+    const std::vector<HandsRecord> read = SessionReader(dir / "a.db").hands();
+    ASSERT_EQ(read.size(), count);
+    EXPECT_EQ(read[0].fingers[1].peak_force, 8);
+    EXPECT_TRUE(std::isnan(read[0].fingers[1].tip_mass));
+    EXPECT_TRUE(std::isnan(read[0].fingers[0].tip_damping));
+    EXPECT_EQ(read.back().fingers[1].tip_mass == 0.07, count > 1) << "told again";
+  };
+  expectHands(1);
+  auto writer = SessionWriter::resume(dir / "a.db");
+  hands.trial = trial.trial = 1;
+  writer.addHands(hands);
+  writer.finishTrial(trial);
+  writer.close();
+  expectHands(2);
+}
+
 TEST(SessionInputs, AFormatThatIsYetToComeIsRefused) {
   const TemporaryDirectory dir;
   SessionWriter::create(dir / "a.db", {}).close();
   Database(dir / "a.db", Database::Mode::kWrite).run("PRAGMA user_version = 99");
-  EXPECT_NE(errorOf([&] { SessionReader(dir / "a.db"); }).find("has session format 99, this pincer reads formats 2 to 3"),
+  EXPECT_NE(errorOf([&] { SessionReader(dir / "a.db"); }).find("has session format 99, this pincer reads formats 2 to 4"),
             std::string::npos);
 }
 

@@ -183,13 +183,27 @@ TEST(ManipulationStudy, GoesOnWhereItWasStopped) {
   EXPECT_EQ(rest.trials[1].duration, whole.trials[3].duration);
 }
 
+// Passivity took an arm of 50 g without friction for whichever arm held the finger.
+TEST(SpherePickupTrial, PassivityBuildsOnWhatTheArmTellsOfItsTip) {
+  PickupRun run(specWith(0.9));
+  devices::ArmCapabilities heavy;
+  heavy.tip_mass = 0.2;
+  heavy.tip_damping = 0.5;
+  run.cycle.trial().fitTo(1, heavy);
+  const grasp::PassivityOptions& options = run.cycle.trial().scene().model.passivity;
+  ASSERT_EQ(options.arms.size(), 2u);
+  EXPECT_EQ(options.arms[0].mass, grasp::ArmPort{}.mass) << "that arm doesn't tell";
+  EXPECT_EQ(options.arms[1].mass, 0.2);
+  EXPECT_EQ(options.arms[1].damping, 0.5);
+}
+
 // The joints' torques were no limit of any session's gate.
 TEST(SpherePickupTrial, TheGateKeepsToTheTorquesOfTheArms) {
   PickupRun run(specWith(0.9));
   EXPECT_EQ(run.cycle.trial().scene().model.mounts[0].gate.peak_torque, run.cycle.hands().arm(0).peakTorque());
   devices::ArmCapabilities weak;
   weak.peak_torque = Vec3(0.2, 0.2, 0.1);
-  for (int i = 0; i < kHandFingers; ++i) run.cycle.trial().limitForces(i, weak);
+  for (int i = 0; i < kHandFingers; ++i) run.cycle.trial().fitTo(i, weak);
   double most = 0;
   for (int tick = 0; tick < 9000; ++tick) {
     run.cycle.tick(1e-3 * tick);
