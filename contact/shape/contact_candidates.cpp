@@ -69,7 +69,8 @@ void ContactCandidates::add(const PairPoint& point) {
   *place = point;
 }
 
-void ContactCandidates::keepBest(const Pose& X_WF, PairPoints& out) const {
+void ContactCandidates::keepBest(const Pose& X_WF, PairPoints& out) {
+  if (refused_.phi > -kInfinity && !overlap()) add(refused_);
   constexpr std::int8_t kNone = -1, kTaken = -2;
   out.count = 0;
   std::array<std::int8_t, kMost> group_of;

@@ -1,5 +1,6 @@
 // contact_candidates: points where two bodies may touch, collected from many places, of which a few are kept (rule: mesh_pairs.h).
 #pragma once
+#include <algorithm>
 #include <array>
 
 #include "contact/shape/pair_query.h"
@@ -12,12 +13,22 @@ class ContactCandidates {
 
   // Of equal features the one with the smaller gap or depth stays: the nearest surface is the one that a point may touch; when all places are taken the shallowest makes room.
   void add(const PairPoint& point);
+  // A point of one body that is in the other, whose own way out `phi` < 0 is refused because another is much shorter. Where nothing else overlaps,
+  // the shallowest of these counts: the shorter ways are closed to what surrounds the point.
+  void addRefused(const PairPoint& point) {
+    if (point.phi > refused_.phi) refused_ = point;
+  }
   // Up to kMaxPairPoints of them, appended to the empty `out`, sorted by feature; `X_WF` is the pose of the frame that they were given in.
-  void keepBest(const Pose& X_WF, PairPoints& out) const;
+  void keepBest(const Pose& X_WF, PairPoints& out);
 
  private:
+  bool overlap() const {
+    return std::any_of(points_.begin(), points_.begin() + count_, [](const PairPoint& p) { return p.phi < 0; });
+  }
+
   std::array<PairPoint, kMost> points_;
   int count_ = 0;
+  PairPoint refused_{Vec3::Zero(), Vec3::UnitZ(), -kInfinity, 0};
 };
 
 }  // namespace pincer::contact

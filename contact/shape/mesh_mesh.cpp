@@ -33,7 +33,7 @@ class MeshOnMesh {
     });
     visitNear(b_, a_from_b, [&](std::int32_t, const FlatTriangle& triangle) { lookAtCorners(triangle, b_, a_from_b, kMeshCornerOfB); });
   }
-  const ContactCandidates& candidates() const { return candidates_; }
+  ContactCandidates& candidates() { return candidates_; }
 
  private:
   // Triangles of `mesh` whose box, as the other sees it, meets the other's surface.
@@ -51,9 +51,10 @@ class MeshOnMesh {
     });
   }
 
-  // `p`, `n` in the frame of a.
-  void add(const Vec3& p, const Vec3& n, double phi, std::uint32_t feature) {
-    if (phi < scale_.margin && phi > scale_.deepest()) candidates_.add({p, n, phi, feature});
+  // In the frame of a.
+  void offer(const PairPoint& point, bool is_way_out) {
+    if (!(point.phi < scale_.margin && point.phi > scale_.deepest())) return;
+    is_way_out ? candidates_.add(point) : candidates_.addRefused(point);
   }
 
   void lookAtCorners(const FlatTriangle& triangle, const MeshFeatures& own, const SeenMesh& other, std::uint32_t kind) {
@@ -75,7 +76,7 @@ class MeshOnMesh {
       other.features.visitBox(q - reach, q + reach, kMostTriangles, [&](std::int32_t t) {
         const FlatTriangle face = other.features.triangle(t);
         const double height = face.n.dot(q - face.p[0]);
-        if (!(std::abs(height) < std::abs(phi)) || height > scale_.slack() || !scale_.isWayOut(height, s.distance)) return;
+        if (!(std::abs(height) < std::abs(phi)) || height > scale_.slack()) return;
         if (face.isUnder(q, scale_.slack()) && counts(face.n)) phi = height, n = face.n;
       });
     }
@@ -86,7 +87,10 @@ class MeshOnMesh {
     }
     const bool of_a = kind == kMeshCornerOfA;
     const Vec3 p_mid = of_a ? Vec3(p - 0.5 * phi * (other.R.transpose() * n)) : Vec3(q - 0.5 * phi * n);
-    add(p_mid, of_a ? Vec3(other.R.transpose() * n) : Vec3(-n), phi, meshFeatureOf(kind, static_cast<std::uint32_t>(vertex)));
+    const PairPoint point{p_mid, of_a ? Vec3(other.R.transpose() * n) : Vec3(-n), phi,
+                          meshFeatureOf(kind, static_cast<std::uint32_t>(vertex))};
+    const bool is_way_out = scale_.isWayOut(phi, s.distance);
+    if (is_way_out || s.distance < 0) offer(point, is_way_out);
   }
 
   // Directions, unit and across the edge, into the two triangles that an owned edge joins.
@@ -142,16 +146,13 @@ class MeshOnMesh {
     const Vec3 on_a = a0 + s * e, on_b = b0 + t * f;
     const double phi = n.dot(on_a - on_b);
     if (!(phi < scale_.margin && phi > scale_.deepest())) return;
-    if (phi < -scale_.slack()) {
-      if (!isBehind(b_, R_.transpose() * (on_a - p_), phi, sides_b.leastSlope(R_.transpose() * n))) return;
-      if (!isBehind(a_, on_b, phi, sides.leastSlope(-n))) return;
-    }
-    add(0.5 * (on_a + on_b), n, phi, meshFeatureOf(kMeshEdges, name_a * 0x9e3779b1u ^ name_b * 0x85ebca6bu));
-  }
-
-  bool isBehind(const MeshFeatures& mesh, const Vec3& q, double phi, double slope) const {
-    const MeshFeatures::Nearest s = mesh.nearest(q, -1.1 * phi);
-    return s.found && scale_.isBehindFaces(s.distance, phi, slope);
+    const PairPoint point{0.5 * (on_a + on_b), n, phi, meshFeatureOf(kMeshEdges, name_a * 0x9e3779b1u ^ name_b * 0x85ebca6bu)};
+    if (!(phi < -slack)) return offer(point, true);
+    const MeshFeatures::Nearest in_b = b_.nearest(R_.transpose() * (on_a - p_), -1.1 * phi), in_a = a_.nearest(on_b, -1.1 * phi);
+    const bool is_way_out = in_a.found && in_b.found && scale_.isBehindFaces(in_a.distance, phi, sides.leastSlope(-n)) &&
+                            scale_.isBehindFaces(in_b.distance, phi, sides_b.leastSlope(R_.transpose() * n));
+    const bool is_inside = (in_a.found && in_a.distance < 0) || (in_b.found && in_b.distance < 0);
+    if (is_way_out || is_inside) offer(point, is_way_out);
   }
 
   const MeshFeatures& a_;

@@ -29,7 +29,7 @@ class MeshOnSolid {
     }
     features_.visitBox(low, high, kMostTriangles, [&](std::int32_t t) { look(t, low, high); });
   }
-  const ContactCandidates& candidates() const { return candidates_; }
+  ContactCandidates& candidates() { return candidates_; }
 
  private:
   void look(std::int32_t t, const Vec3& low, const Vec3& high) {
@@ -44,8 +44,9 @@ class MeshOnSolid {
     }
   }
 
-  void add(const Vec3& p, const Vec3& n, double phi, std::uint32_t feature) {
-    if (phi < scale_.margin && phi > scale_.deepest()) candidates_.add({p, n, phi, feature});
+  void offer(const PairPoint& point, bool is_way_out) {
+    if (!(point.phi < scale_.margin && point.phi > scale_.deepest())) return;
+    is_way_out ? candidates_.add(point) : candidates_.addRefused(point);
   }
 
   void lookAtFace(const FlatTriangle& triangle) {
@@ -56,25 +57,14 @@ class MeshOnSolid {
       const Vec3 q = solid_.place(corner.p) - rounding_ * triangle.n;
       const double phi = triangle.n.dot(q - triangle.p[0]);
       if (!(phi < scale_.margin) || !triangle.isUnder(q, scale_.slack())) continue;
-      if (phi < -scale_.slack() && !isWayOutOfMesh(q, phi)) continue;
-      add(q - 0.5 * phi * triangle.n, -triangle.n, phi, meshFeatureOf(kMeshCornerOfB, corner.vertex));
+      const PairPoint point{q - 0.5 * phi * triangle.n, -triangle.n, phi, meshFeatureOf(kMeshCornerOfB, corner.vertex)};
+      if (!(phi < -scale_.slack())) {
+        offer(point, true);
+        continue;
+      }
+      const MeshFeatures::Nearest s = features_.nearest(q, -1.1 * phi);
+      if (s.found && s.distance < 0) offer(point, scale_.isWayOut(phi, s.distance));
     }
-  }
-
-  bool isWayOutOfMesh(const Vec3& q, double phi) const {
-    const MeshFeatures::Nearest s = features_.nearest(q, -1.1 * phi);
-    return s.found && s.distance < 0 && scale_.isWayOut(phi, s.distance);
-  }
-
-  // Of a point of one of the mesh's edges, at `phi` < 0 along the normal across it and an edge of the solid.
-  bool isInSolid(const Vec3& p, double phi) const {
-    const double distance = nearest(p).distance;
-    return distance < scale_.slack() - kBesideFace * phi && scale_.isWayOut(phi, distance);
-  }
-  // Of the point of the solid opposite to it: behind the two faces of the mesh's edge, with no other nearer than half of that.
-  bool isBehindFaces(const Vec3& q, double phi, double slope) const {
-    const MeshFeatures::Nearest s = features_.nearest(q, -1.1 * phi);
-    return s.found && scale_.isBehindFaces(s.distance, phi, slope);
   }
 
   NearestPoint nearest(const Vec3& p) const {
@@ -99,20 +89,20 @@ class MeshOnSolid {
     Vec3 n = s.n_B;
     double phi = s.distance;
     if (s.distance < scale_.slack()) {
-      double highest = -kInfinity;
+      phi = -kInfinity;
       onSolid(p, [&](const auto& solid, const Vec3& p_B) {
         visitWalls(solid, p_B, [&](const Vec3& n_B, double height) {
-          if (!(height > highest) || !scale_.isWayOut(height, s.distance)) return;
+          if (!(height > phi)) return;
           const Vec3 out = solid_.outwards(n_B);
-          if (features_.liesAbove(vertex, out, kConeSlack)) highest = height, n = out;
+          if (features_.liesAbove(vertex, out, kConeSlack)) phi = height, n = out;
         });
       });
-      if (highest == -kInfinity) return;
-      phi = highest;
     } else if (!features_.liesAbove(vertex, n, kConeSlack)) {
       return;
     }
-    add(p - 0.5 * phi * n, n, phi, meshFeatureOf(kMeshCornerOfA, static_cast<std::uint32_t>(vertex)));
+    const bool is_way_out = scale_.isWayOut(phi, s.distance);
+    if (is_way_out || s.distance < 0)
+      offer({p - 0.5 * phi * n, n, phi, meshFeatureOf(kMeshCornerOfA, static_cast<std::uint32_t>(vertex))}, is_way_out);
   }
 
   void lookAtEdge(const FlatTriangle& triangle, int i, std::uint32_t name) {
@@ -130,10 +120,19 @@ class MeshOnSolid {
       const double phi = s.gap - rounding_, along = e.dot(s.p - p0);
       if (!(phi < scale_.margin) || along < -scale_.slack() || along > length + scale_.slack()) continue;
       const Vec3 p = p0 + along * e;
-      const double slope = -std::max(s.n.dot(triangle.n), s.n.dot(n_other));
-      if (phi < -scale_.slack() && !(isInSolid(p, phi) && isBehindFaces(p - phi * s.n, phi, slope))) continue;
-      add(p - 0.5 * phi * s.n, s.n, phi, meshFeatureOf(kMeshEdges, name));
+      const PairPoint point{p - 0.5 * phi * s.n, s.n, phi, meshFeatureOf(kMeshEdges, name)};
+      phi < -scale_.slack() ? offerOverlap(point, p, -std::max(s.n.dot(triangle.n), s.n.dot(n_other))) : offer(point, true);
     }
+  }
+
+  // Of an edge's point `p`, and of the solid's opposite to it: in the solid, and behind the two faces of the mesh's edge; `slope` as
+  // MeshScale::isBehindFaces has it.
+  void offerOverlap(const PairPoint& point, const Vec3& p, double slope) {
+    const double phi = point.phi, in_solid = nearest(p).distance;
+    const MeshFeatures::Nearest in_mesh = features_.nearest(p - phi * point.n_W, -1.1 * phi);
+    const bool is_way_out = in_solid < scale_.slack() - kBesideFace * phi && scale_.isWayOut(phi, in_solid) && in_mesh.found &&
+                            scale_.isBehindFaces(in_mesh.distance, phi, slope);
+    if (is_way_out || in_solid < 0 || (in_mesh.found && in_mesh.distance < 0)) offer(point, is_way_out);
   }
 
   const MeshFeatures& features_;

@@ -8,7 +8,8 @@
 //   edge of the mesh on the solid       the direction between those of the edge's two faces in which the gap is greatest (edge_on_solid.h)
 // A direction counts only where the mesh around the corner or edge lies on the far side of the plane across it. All are local, so that the depth of
 // shallow overlap is right also in hollows. What is behind the surface must be in the body, and no other way out much shorter
-// (MeshScale::isWayOut): the far side of a thin plate doesn't count.
+// (MeshScale::isWayOut): the far side of a thin plate doesn't count. Where that leaves nothing, as of a rim across an edge of the mesh with the
+// end of the cylinder close by, the shallowest of the refused is the contact: bodies that overlap are never without one.
 // Contact is with the flat triangles, not with the smooth surface between their corners: they differ by up to e^2 k / 8 (edge length e,
 // curvature k), as on half-spaces (pair_query.h).
 //

@@ -78,6 +78,26 @@ TEST(MeshPairs, MeshOfABoxTouchesSolidsAsTheBox) {
   }
 }
 
+// A rim across an edge of the mesh, with the end of the cylinder or another face nearer than a quarter of the depth: the way out there was
+// refused for a shorter one that was none.
+TEST(MeshPairs, ShallowOverlapIsNeverWithoutAPoint) {
+  RandomNumbers random(14);
+  const Convex stone{tests::voussoir()};
+  for (const Shape& made_from : {Shape(Box{kMeshHalf}), Shape(stone)}) {
+    const Mesh mesh = meshOf(made_from);
+    for (const NamedShape& b : tests::sampleConvexSolids()) {
+      if (std::holds_alternative<Sphere>(b.shape)) continue;
+      const bool has_mesh = std::holds_alternative<Box>(b.shape) || std::holds_alternative<Convex>(b.shape);
+      const Shape other = has_mesh ? Shape(meshOf(b.shape)) : b.shape;
+      for (int i = 0; i < 60; ++i) {
+        const Pose X_BA = around(random, made_from, b.shape, -random.uniform(1e-6, 1e-3));
+        EXPECT_LT(leastGap(collide(mesh, X_BA, b.shape, Pose{}, 0.002)), 0) << b.name << " " << i;
+        EXPECT_LT(leastGap(collide(mesh, X_BA, other, Pose{}, 0.002)), 0) << "mesh of " << b.name << " " << i;
+      }
+    }
+  }
+}
+
 TEST(MeshPairs, MeshesOfSolidsTouchAsTheSolids) {
   RandomNumbers random(5);
   for (const NamedShape& b : tests::sampleConvexSolids()) {
