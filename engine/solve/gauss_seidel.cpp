@@ -49,8 +49,10 @@ GaussSeidel::GaussSeidel(const SweptProblem& problem, SolverScratch& scratch, do
     : problem_(problem),
       r_(r),
       terms_(scratch.local.data()),
-      before_(scratch.step.data()),
+      change_(scratch.step.data()),
       direction_(scratch.response.data()),
+      y_before_(scratch.rhs.data()),
+      y_direction_(scratch.interior.data()),
       weight_(scratch.weight.data()) {
   const int most = mostRows(problem);
   stride_ = 2 * most * most;
@@ -68,19 +70,22 @@ GaussSeidel::GaussSeidel(const SweptProblem& problem, SolverScratch& scratch, do
 
 // y = A^T r
 void GaussSeidel::respond() {
-  std::fill(problem_.y, problem_.y + kMoverFreedoms * problem_.movers, 0.0);
+  const int size = kMoverFreedoms * problem_.movers;
+  std::fill(problem_.y, problem_.y + size, 0.0);
   for (int i = 0; i < problem_.contactCount(); ++i) {
     addImpulse(problem_.sides[static_cast<std::size_t>(i)], problem_.rows(i), r_ + problem_.firstRow(i), problem_.y);
   }
+  std::copy(problem_.y, problem_.y + size, y_before_);
 }
 
 // Solves contact i with all others held; the movers' y follows.
 void GaussSeidel::relax(int i) {
   const ContactSides& sides = problem_.sides[static_cast<std::size_t>(i)];
   const int first = problem_.firstRow(i);
-  double* const r_i = r_ + first;
+  double *const r_i = r_ + first, *const change_i = change_ + first;
   const double* const W = termsOf(i);
   withRows(problem_.rows(i), [&](auto rows) {
+    for (int k = 0; k < rows; ++k) change_i[k] = 0;
     double u[kMaxContactRows], r[kMaxContactRows];
     for (int k = 0; k < rows; ++k) u[k] = problem_.q[first + k];
     addVelocity(sides, rows, problem_.y, u);
@@ -96,40 +101,62 @@ void GaussSeidel::relax(int i) {
       }
       solveOneContact(W, rows, u, rows, problem_.friction(i), r);
     }
-    double change[kMaxContactRows];
+    double way2 = 0;
     for (int k = 0; k < rows; ++k) {
-      change[k] = r[k] - r_i[k];
+      change_i[k] = r[k] - r_i[k];
       r_i[k] = r[k];
+      way2 += change_i[k] * change_i[k];
     }
-    addImpulse(sides, rows, change, problem_.y);
+    way2_ += weight_[i] * way2;
+    largest_change2_ = std::max(largest_change2_, weight_[i] * weight_[i] * way2);
+    addImpulse(sides, rows, change_i, problem_.y);
   });
 }
 
 void GaussSeidel::sweep(bool backwards) {
   const int n = problem_.contactCount();
-  std::copy(r_, r_ + problem_.rowCount(), before_);
+  way2_before_ = way2_;
+  way2_ = largest_change2_ = 0;
   for (int k = 0; k < n; ++k) relax(backwards ? n - 1 - k : k);
 }
 
+// y follows r by linearity: only what the cones take back goes through A.
 void GaussSeidel::accelerate() {
-  double way2 = 0;
-  for (int i = 0; i < problem_.contactCount(); ++i) {
-    for (int row = problem_.firstRow(i); row < problem_.firstRow(i + 1); ++row)
-      way2 += weight_[i] * (r_[row] - before_[row]) * (r_[row] - before_[row]);
+  const double ratio = way2_before_ > 0 && way2_ <= way2_before_ ? way2_ / way2_before_ : 0;  // 0: begin anew
+  const int size = kMoverFreedoms * problem_.movers;
+  if (ratio == 0) {
+    std::copy(change_, change_ + problem_.rowCount(), direction_);
+    for (int j = 0; j < size; ++j) y_direction_[j] = problem_.y[j] - y_before_[j];
+  } else {
+    for (int j = 0; j < size; ++j) {
+      const double further = ratio * y_direction_[j];
+      y_direction_[j] = further + (problem_.y[j] - y_before_[j]);
+      problem_.y[j] += further;
+    }
+    for (int i = 0; i < problem_.contactCount(); ++i) goFurther(i, ratio);
   }
-  const double ratio = way2_ > 0 && way2 <= way2_ ? way2 / way2_ : 0;  // 0: begin anew
-  way2_ = way2;
-  for (int row = 0; row < problem_.rowCount(); ++row) {
-    const double further = ratio > 0 ? ratio * direction_[row] : 0;
-    direction_[row] = further + r_[row] - before_[row];
-    r_[row] += further;
-  }
-  if (ratio == 0) return;
-  for (int i = 0; i < problem_.contactCount(); ++i) {
-    double* const r_i = r_ + problem_.firstRow(i);
-    projectOntoCone(r_i, problem_.rows(i), problem_.friction(i), r_i);
-  }
-  respond();
+  std::copy(problem_.y, problem_.y + size, y_before_);
+}
+
+void GaussSeidel::goFurther(int i, double ratio) {
+  const int first = problem_.firstRow(i);
+  double *const r_i = r_ + first, *const direction = direction_ + first;
+  withRows(problem_.rows(i), [&](auto rows) {
+    for (int k = 0; k < rows; ++k) {
+      const double further = ratio * direction[k];
+      direction[k] = further + change_[first + k];
+      r_i[k] += further;
+    }
+    if (isInCone(r_i, rows, problem_.friction(i))) return;
+    double back[kMaxContactRows];
+    projectOntoCone(r_i, rows, problem_.friction(i), back);
+    for (int k = 0; k < rows; ++k) {
+      const double inside = back[k];
+      back[k] -= r_i[k];
+      r_i[k] = inside;
+    }
+    addImpulse(problem_.sides[static_cast<std::size_t>(i)], rows, back, problem_.y);
+  });
 }
 
 void sweepGaussSeidel(const ScaledProblem& problem, int sweeps, SolverScratch& scratch, Iterate& it) {

@@ -5,6 +5,8 @@
 // Sources: M. Jean, Comput. Methods Appl. Mech. Engrg. 177 (1999) 235-257 (non-smooth contact dynamics). accelerate(): M. Silcowitz, S. Niebe,
 // K. Erleben, The Visual Computer 26 (2010) 893-901, with the length of a step measured in energy.
 #pragma once
+#include <cmath>
+
 #include "engine/solve/scaled_problem.h"
 
 namespace pincer::engine {
@@ -27,7 +29,7 @@ struct SweptProblem {
   double friction(int i) const { return mu[static_cast<std::size_t>(i)]; }
 };
 
-// Sweeps over the impulses `r`, each at a cost linear in the contacts. Uses scratch.local, step and response.
+// Sweeps over the impulses `r`, each at a cost linear in the contacts. Uses scratch.local, step, response, rhs and interior.
 class GaussSeidel {
  public:
   GaussSeidel(const SweptProblem& problem, SolverScratch& scratch, double* r);
@@ -37,18 +39,24 @@ class GaussSeidel {
   // After each sweep but the last: goes on along the way that the sweeps took, as the method of conjugate gradients would.
   void accelerate();
 
+  // How far the last sweep changed a contact's own velocity, at most: w_i |change of r_i| [m/s].
+  double largestChange() const { return std::sqrt(largest_change2_); }
+
  private:
   double* termsOf(int i) const { return terms_ + stride_ * i; }
   void relax(int i);
   void respond();
+  void goFurther(int i, double ratio);
 
   const SweptProblem problem_;
   double* const r_;
   double* const terms_;  // W_ii and its inverse, rows x rows each, per contact
   int stride_;
-  double *const before_, *const direction_;
+  double *const change_, *const direction_;      // of r by the last sweep; by all of them, conjugate
+  double *const y_before_, *const y_direction_;  // y before the last sweep; A^T direction
   const double* const weight_;
-  double way2_ = 0;  // of the last sweep, squared
+  double way2_ = 0, way2_before_ = 0;  // of the last sweep and the one before, squared [J]
+  double largest_change2_ = 0;         // [(m/s)^2]
 };
 
 // `sweeps` passes over all contacts, in order. `it` is evaluated on return.

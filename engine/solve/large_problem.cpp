@@ -8,16 +8,23 @@
 namespace pincer::engine {
 namespace {
 
-constexpr int kSweptVisits = 12000;  // of contacts in a tick, some 0.8 ms: 40 sweeps of the heap of 100 balls, 4 of one of 1000
+constexpr int kSweptVisits = 12000;                 // of contacts in a tick: 40 sweeps of the heap of 100 balls, 4 of one of 1000;
+constexpr int kMovingVisits = 48000;                // while a sweep still changes velocities by more than
+constexpr double kMovingSpeed = 1e-3;               // [m/s]: 1 um per tick, of which the next one undoes a fifth
 constexpr int kFewestSweeps = 4, kMostSweeps = 40;  // sweeps
 constexpr int kRestingSweeps = 2;                   // sweeps of what was near enough before them: so a heap comes to rest
-constexpr int kBetweenLooks = 4;                    // a look at the residual costs half a sweep
+constexpr int kBetweenLooks = 4;                    // a look at the residual costs half a sweep,
+constexpr double kWorthALook = 4;                   // and a sweep that changed more than so many times what is enough needs none
+
+int sweepsOf(int visits, int contacts) { return std::clamp(visits / contacts, kFewestSweeps, kMostSweeps); }
 
 }  // namespace
 
 SolveResult solveLargeProblem(const ContactProblem& problem, double enough, double start, SolverScratch& scratch, double* r, double* u) {
   const int n = problem.contactCount();
-  const int most = start <= enough ? kRestingSweeps : std::clamp(kSweptVisits / n, kFewestSweeps, kMostSweeps);
+  const bool rests = start <= enough;
+  const int few = rests ? kRestingSweeps : sweepsOf(kSweptVisits, n), most = rests ? kRestingSweeps : sweepsOf(kMovingVisits, n);
+  const double near_speed = kWorthALook * enough * referenceSpeed(problem);
   GaussSeidel method({problem.first_row, problem.mu, problem.sides, problem.q.data(), scratch.y.data(), problem.movers}, scratch, r);
   double residual = start;
   int sweeps = 0;
@@ -25,7 +32,9 @@ SolveResult solveLargeProblem(const ContactProblem& problem, double enough, doub
     const bool is_spent = !spend(kPerContactSwept * n, scratch);
     method.sweep(sweeps++ % 2 == 1);
     if (sweeps == most || (is_spent && sweeps >= kFewestSweeps)) break;  // contacts that are new have no impulse yet: every tick gets a few
-    if (sweeps % kBetweenLooks == 0) {
+    const double change = method.largestChange();
+    if (sweeps >= few && change <= kMovingSpeed) break;
+    if (sweeps % kBetweenLooks == 0 && change <= near_speed) {
       residual = weighedResidual(problem, r, scratch, u);
       if (residual <= enough) break;
     }

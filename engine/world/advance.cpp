@@ -1,6 +1,9 @@
 // From impulses to momenta, from momenta to poses, and what each contact remembers of it.
+#include <algorithm>
+
 #include "engine/world/contact_rows.h"
 #include "engine/world/held_body.h"
+#include "engine/world/impact.h"
 #include "engine/world/joints.h"
 #include "engine/world/rest.h"
 #include "engine/world/step.h"
@@ -30,6 +33,34 @@ void rest(MoverScratch& mover) {
   mover.touched = mover.closing = mover.quiet = false;
 }
 
+constexpr double kLargestMismatch = 1e-6;  // between the ways of two bodies that touch [m]
+constexpr int kMostSpreads = 40;           // along the contacts, to and fro
+
+// How far apart the mean of its velocities and the one at the end take a free body along n_W in this part of the tick [m].
+double mismatchOf(const WorldModel& model, const WorldScratch& scratch, const Side& side, const Vec3& n_W) {
+  if (side.kind != SideKind::kBody || !model.bodies[side.index].dynamic || model.bodies[side.index].joint_group >= 0) return 0;
+  const Vec3 jump_W = endVelocity(model, scratch, side.index) - scratch.bodies[side.index].start.v_W;
+  return 0.5 * scratch.h * std::abs(n_W.dot(jump_W));
+}
+
+bool spreadClosing(const WorldModel& model, const Contact& c, WorldScratch& scratch) {
+  if (!c.active() || c.mover_a->closing == c.mover_b->closing) return false;
+  const Side& side = c.mover_a->closing ? c.b : c.a;
+  if (!(mismatchOf(model, scratch, side, c.n_W()) > kLargestMismatch)) return false;
+  return scratch.bodies[side.index].closing = true;
+}
+
+// What lands goes by its velocity at the end, and so must what it stops in turn, or they would end in each other by half of the way that was stopped.
+void spreadClosing(const WorldModel& model, WorldScratch& scratch) {
+  std::vector<Contact>& contacts = scratch.contacts;
+  bool spreads = std::any_of(contacts.begin(), contacts.end(), [](const Contact& c) { return c.active() && c.closing; });
+  for (int n = 0; spreads && n < kMostSpreads; ++n) {
+    spreads = false;
+    for (std::size_t k = 0; k < contacts.size(); ++k)
+      spreads = spreadClosing(model, contacts[n % 2 == 0 ? k : contacts.size() - 1 - k], scratch) || spreads;
+  }
+}
+
 void advanceDriven(const BodyScratch& scratch, BodyState& s) { s = {scratch.X_WB_end, scratch.free.v_W, scratch.free.w_W}; }
 
 }  // namespace
@@ -50,6 +81,7 @@ void gatherImpulses(const WorldModel& model, WorldScratch& scratch) {
     applyImpulse(scratch, c.a, c.arm_a_W, c.impulse_W, moment_W, c);
     applyImpulse(scratch, c.b, c.arm_b_W, -c.impulse_W, -moment_W, c);
   }
+  if (scratch.h > 0) spreadClosing(model, scratch);
   if (!model.joints.empty()) gatherJointImpulses(model, scratch);
 }
 

@@ -18,16 +18,18 @@ bool boundsTouch(const BodyModel& a, const BodyModel& b, const BodyScratch& sa, 
   return !isOver(a, b, sa, sb, margin) && !isOver(b, a, sb, sa, margin);
 }
 
+bool isSphere(const BodyModel& body) { return std::holds_alternative<contact::Sphere>(body.shape); }
+
 // Of the solver's budget: multiplications of a query. Solids' facets are laid over each other, spheres need little.
 void chargeQuery(const BodyModel& a, const BodyModel& b, WorldScratch& scratch) {
   constexpr std::int64_t kOfSphere = 200, kOfSolids = 5000;
   if (scratch.operations_left >= kNoLimit) return;
-  const bool is_sphere = std::holds_alternative<contact::Sphere>(a.shape) || std::holds_alternative<contact::Sphere>(b.shape);
-  scratch.operations_left -= is_sphere ? kOfSphere : kOfSolids;
+  scratch.operations_left -= isSphere(a) || isSphere(b) ? kOfSphere : kOfSolids;
 }
 
-// Of the first contact that the pair had in the last tick; zero if it had none.
-Vec3 lastNormal(const WorldState& state, const BodyPair& pair) {
+// Of the first contact that the pair had in the last tick; zero if it had none, or for spheres, which need none.
+Vec3 lastNormal(const WorldModel& model, const WorldState& state, const BodyPair& pair) {
+  if (isSphere(model.bodies[pair.a]) || isSphere(model.bodies[pair.b])) return Vec3::Zero();
   const std::uint64_t first = contactId(0, pair.a, pair.b, 0);
   const auto end = state.contacts.begin() + state.contact_count;
   const auto less = [](const ContactMemory& m, std::uint64_t id) { return m.id < id; };
@@ -46,7 +48,7 @@ void collidePair(const WorldModel& model, const WorldState& state, const BodyPai
   noteFastPair(model, pair.a, pair.b, scratch);
   chargeQuery(a, b, scratch);
   contact::PairPoints found;
-  contact::collideShapes(a.shape, sa.X_WB_mid, b.shape, sb.X_WB_mid, margin, scratch.patches, found, lastNormal(state, pair));
+  contact::collideShapes(a.shape, sa.X_WB_mid, b.shape, sb.X_WB_mid, margin, scratch.patches, found, lastNormal(model, state, pair));
   if (found.count == 0) return;
   const Material combined = material ? *material : materialOf(model, pair.a, pair.b);
   for (int i = 0; i < found.count; ++i) {

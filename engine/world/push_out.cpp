@@ -17,7 +17,12 @@ bool isFree(const WorldModel& model, const Side& side) {
 
 double deepGap(const WorldModel& model) { return -kDeepSpeed * model.options.h / kNormalCorrection; }
 
-bool isDeep(const WorldModel& model, const Contact& c) { return isPushedOut(model, c) && c.phi < deepGap(model); }
+// At the start of this part of the tick: in its predicted middle what lands seems to overlap, and doesn't.
+double gapOf(const WorldScratch& scratch, const Contact& c) { return c.phi - 0.5 * scratch.h * c.v_start_C[kNormalRow]; }
+
+bool isDeep(const WorldModel& model, const WorldScratch& scratch, const Contact& c) {
+  return isPushedOut(model, c) && gapOf(scratch, c) < deepGap(model);
+}
 
 // The contact's normal row on one of its bodies, and that body's mobility.
 struct PushSide {
@@ -49,11 +54,12 @@ void markBodies(const Contact& c, WorldScratch& scratch) {
   }
 }
 
-double wantedWay(const WorldModel& model, const Contact& c) {
-  if (!isDeep(model, c)) return -std::max(c.phi - deepGap(model), 0.0);
+double wantedWay(const WorldModel& model, const WorldScratch& scratch, const Contact& c) {
+  const double phi = gapOf(scratch, c);
+  if (!isDeep(model, scratch, c)) return -std::max(phi - deepGap(model), 0.0);
   const double thickness = std::min(model.bodies[c.a.index].inner_radius, model.bodies[c.b.index].inner_radius);
-  const double largest = kLargestCorrection * model.options.h * std::max(1.0, -c.phi / thickness);
-  return std::min(-kNormalCorrection * c.phi, largest);
+  const double largest = kLargestCorrection * model.options.h * std::max(1.0, -phi / thickness);
+  return std::min(-kNormalCorrection * phi, largest);
 }
 
 // lambda is kept in c.bias_C, which nothing needs any more. Whether it changed.
@@ -61,7 +67,7 @@ bool relax(const WorldModel& model, WorldScratch& scratch, Contact& c) {
   const PushSide a(model, scratch, c.a, c.arm_a_W, c.n_W()), b(model, scratch, c.b, c.arm_b_W, -c.n_W());
   const double mobility = a.mobility() + b.mobility();
   if (!(mobility > 0)) return false;
-  const double want = wantedWay(model, c);
+  const double want = wantedWay(model, scratch, c);
   double& lambda = c.bias_C[kNormalRow];
   const double before = lambda;
   lambda = std::max(0.0, lambda + (want - a.way() - b.way()) / mobility);
@@ -94,7 +100,8 @@ bool isPushedOut(const WorldModel& model, const Contact& c) {
 }
 
 void pushOut(const WorldModel& model, WorldState& state, WorldScratch& scratch) {
-  if (scratch.h == 0 || std::none_of(scratch.contacts.begin(), scratch.contacts.end(), [&](const Contact& c) { return isDeep(model, c); }))
+  if (scratch.h == 0 ||
+      std::none_of(scratch.contacts.begin(), scratch.contacts.end(), [&](const Contact& c) { return isDeep(model, scratch, c); }))
     return;
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
     scratch.bodies[i].push = {Vec3::Zero(), Vec3::Zero()};
@@ -104,7 +111,7 @@ void pushOut(const WorldModel& model, WorldState& state, WorldScratch& scratch) 
   std::fill(scratch.struck.begin(), scratch.struck.end(), false);
   for (Contact& c : scratch.contacts) {
     c.bias_C[kNormalRow] = 0;
-    if (isDeep(model, c)) markBodies(c, scratch);
+    if (isDeep(model, scratch, c)) markBodies(c, scratch);
   }
   // What stands comes last: between it and something heavier a light body must not end deeper in it than it was.
   for (int sweep = 0; sweep < kPushSweeps; ++sweep) {
