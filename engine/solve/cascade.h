@@ -5,8 +5,8 @@
 // Few contacts go to small_problem.h, heaps of hundreds to large_problem.h.
 //
 // A body that has come to rest under impulses that are off by less than the tolerance drifts until they aren't, then is put right, in a cycle
-// without end. So after an answer that took iterations the next ones are `strict`: a warm start must be exact to round-off, for as many ticks as
-// that takes to reach (engine/world). What rests then needs no iteration any more.
+// without end. So after an answer that took iterations the next ones are `strict`: a warm start must be exact to round-off, until it is clear that
+// none comes (engine/world). What rests then needs no iteration any more.
 //
 // Never throws, allocates or prints; deterministic.
 #pragma once

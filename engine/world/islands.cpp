@@ -213,10 +213,12 @@ void gather(const WorldModel& model, const WorldScratch& scratch, int k, int row
   first_row[island.contacts] = island.rows = rows_before;
 }
 
-// Until when warm starts have to be exact to round-off: from an answer that took iterations until one that is, or until it is clear that none comes.
+// For how long warm starts have to be exact to round-off: from an answer that took iterations on, until it is clear that none comes that is. One
+// that fits isn't the end of it: the impulses of a body that still slows down by 1e-13 m/s in a tick, kept, would turn it round and move it off.
 int nextSettling(const Island& island, double tolerance) {
   if (!(island.result.start <= tolerance)) return kSettlingTicks;
-  return island.result.method == SolveMethod::kWarmStart ? 0 : island.settling - 1;
+  if (island.result.method == SolveMethod::kWarmStart) return island.settling > 0 ? kSettlingTicks : 0;
+  return island.settling - 1;
 }
 
 void scatter(const IslandScratch& s, const Island& island, double tolerance, WorldScratch& scratch) {

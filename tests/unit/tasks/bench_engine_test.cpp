@@ -200,8 +200,8 @@ TEST(BenchScenes, AreMadeOfWholeSteps) {
 }
 
 // Two pads on sliders hold a rod by two contacts each: what the four ask of the rod contradicts itself around the loop, and it crept by 3.4e-5 um in
-// these 3.5 s until all four were fitted together. Now it is still settling by 1e-6 um; what is promised, 1e-6 um after a minute, takes
-// `bench engine --long` to see.
+// these 3.5 s until all four were fitted together. Then it went to and fro by 1e-6 um for ever: the impulses of a tick in which it was still slowing
+// down by 1e-13 m/s fitted the next one well enough, and kept, turned it round. Now the bound that is promised for a minute holds in these seconds.
 TEST(BenchScenes, ACapsuleBetweenPadsDoesntCreep) {
   for (const BenchScene& scene : benchPinchScenes(false)) {
     if (!scene.name.starts_with("more/capsule")) continue;
@@ -213,7 +213,7 @@ TEST(BenchScenes, ACapsuleBetweenPadsDoesntCreep) {
     }
     const BenchVerdict verdict = judge.verdict(*engine);
     EXPECT_EQ(verdict.failure, "");
-    EXPECT_LT(verdict.error * 3.5, 3e-6) << scene.name;  // [um]
+    EXPECT_LT(verdict.error * 3.5, 1e-9) << scene.name;  // [um]: the round-off of 3500 ticks
   }
 }
 
