@@ -9,9 +9,11 @@ namespace pincer::engine {
 namespace {
 
 constexpr double kContactsEpsilon = 1e-11;  // far above round-off, far below the W^ of one contact (1)
-constexpr double kMoversEpsilon = 1e-8;     // the square root of round-off
-constexpr double kProximalEpsilon = 1e-3;   // small enough that a few rounds do, large enough for the equations to be tame
-constexpr double kRoundDecrease = 1e-8;     // of |Phi|^2 in a round
+constexpr double kMoversEpsilon = 1e-6;     // redundant contacts share their load by the round-off of their gaps over this
+constexpr double kCorrected = 1e-8;         // of Newton's equations: what epsilon may leave of them
+constexpr int kMostCorrections = 3;
+constexpr double kProximalEpsilon = 1e-3;  // small enough that a few rounds do, large enough for the equations to be tame
+constexpr double kRoundDecrease = 1e-8;    // of |Phi|^2 in a round
 constexpr int kStepsPerRound = 8;
 constexpr int kPatience = 5;                  // steps without a residual half as large as the best before, after which it won't come
 constexpr int kTrials = 6;                    // step lengths 1, 1/2, .. 1/32
@@ -59,6 +61,12 @@ double merit(const ScaledProblem& problem, const Centre& centre, const Iterate& 
   return sum;
 }
 
+double largestOf(const double* x, int m) {
+  double largest = 0;
+  for (int k = 0; k < m; ++k) largest = std::max(largest, std::abs(x[k]));
+  return largest;
+}
+
 // Newton's equations at one iterate.
 class NewtonStep {
  public:
@@ -79,11 +87,15 @@ class NewtonStep {
     double* const b = scratch_.interior.data();
     double* const correction = b + m;
     std::copy(dr_, dr_ + m, b);
+    const double enough = kCorrected * largestOf(b, m);
     equations_.solve(dr_);
-    subtractResponse(b);
-    std::copy(b, b + m, correction);
-    equations_.solve(correction);
-    for (int row = 0; row < m; ++row) dr_[row] += correction[row];
+    subtractResponse(dr_, b);
+    for (int n = 0; n < kMostCorrections && largestOf(b, m) > enough; ++n) {
+      std::copy(b, b + m, correction);
+      equations_.solve(correction);
+      for (int row = 0; row < m; ++row) dr_[row] += correction[row];
+      subtractResponse(correction, b);
+    }
     return true;
   }
 
@@ -120,20 +132,20 @@ class NewtonStep {
     equations_.setGeneral(i, E, D);
   }
 
-  // b -= (I - D) dr + D W^ dr: what the step, taken with epsilon, leaves.
-  void subtractResponse(double* b) const {
-    double* const W_dr = scratch_.response.data();
-    multiply(problem_, dr_, W_dr);
+  // b -= (I - D) x + D W^ x: what a step x, taken with epsilon, leaves.
+  void subtractResponse(const double* x, double* b) const {
+    double* const W_x = scratch_.response.data();
+    multiply(problem_, x, W_x);
     for (int i = 0; i < problem_.contactCount(); ++i) {
       const int first = problem_.firstRow(i), rows = problem_.rows(i);
       const ContactTerms& t = scratch_.terms[static_cast<std::size_t>(i)];
       for (int k = 0; k < rows; ++k) {
-        if (t.coupling == Coupling::kNone) b[first + k] -= dr_[first + k];
-        if (t.coupling == Coupling::kIdentity) b[first + k] -= W_dr[first + k];
+        if (t.coupling == Coupling::kNone) b[first + k] -= x[first + k];
+        if (t.coupling == Coupling::kIdentity) b[first + k] -= W_x[first + k];
         if (t.coupling != Coupling::kGeneral) continue;
-        b[first + k] += epsilon_ * dr_[first + k];
+        b[first + k] += epsilon_ * x[first + k];
         for (int l = 0; l < rows; ++l) {
-          b[first + k] -= t.E[kMaxContactRows * k + l] * dr_[first + l] + t.P[kMaxContactRows * k + l] * W_dr[first + l];
+          b[first + k] -= t.E[kMaxContactRows * k + l] * x[first + l] + t.P[kMaxContactRows * k + l] * W_x[first + l];
         }
       }
     }

@@ -4,8 +4,8 @@
 //   ((I - D) + D W^ + epsilon I) dr = -Phi,   D = dP/dy,   r <- P_K(r + t dr)
 //
 // epsilon is a proximal term: it leaves the solution alone and picks the smallest step among the many of redundant contacts (a box on four
-// corners). It is larger where the equations are solved mover by mover, whose round-off is that of 1 / epsilon; a correction with the same
-// factors (the proximal-point method's second step) makes up for that. A contact that is open and carries nothing drops out.
+// corners). It is larger where the equations are solved mover by mover, whose round-off is that of 1 / epsilon; corrections with the same
+// factors (the proximal-point method's further steps), one and rarely two, make up for that. A contact that is open and carries nothing drops out.
 // Sources: P. Alart, A. Curnier, Comput. Methods Appl. Mech. Engrg. 92 (1991) 353-375; line search and comparison of variants: V. Acary,
 // M. Bremond, O. Huber, in Advanced Topics in Nonsmooth Dynamics (2018) 375-457. Departure: each iterate is put back into the cones, so
 // that any of them may be returned.
