@@ -191,7 +191,7 @@ class Tick {
     for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
       const BodyScratch& body = scratch_.bodies[i];
       if (!body.touched || !model_.bodies[i].dynamic || model_.bodies[i].rotation.kind == FreeRotation::Kind::kSpherical) continue;
-      const Vec3 w_end_W = body.free.w_W + body.inverse_inertia_W * body.angular_impulse_W;
+      const Vec3 w_end_W = body.free.w_W + angularVelocity(model_.bodies[i].rotation, body.X_WI_mid.q, body.angular_impulse_W);
       if (h * h * std::max(body.start.w_W.squaredNorm(), w_end_W.squaredNorm()) > kFarTurn * kFarTurn) return true;
     }
     return false;

@@ -38,6 +38,28 @@ TEST(GraspStep, ActionEqualsReactionToTheLastBitEveryTick) {
   EXPECT_GT(scratch.fingers[0].normal_force, 0.5);
 }
 
+// What turns far under its contacts is followed in parts, whatever happened in its world before: how fast it would turn was taken from the inverse
+// inertia of its last impact, none for a body that never had one, so that a restored snapshot took other parts than its original.
+TEST(GraspStep, NeedleStruckAtItsTipIsFollowedInParts) {
+  engine::WorldOptions options;
+  options.gravity_W.setZero();
+  engine::WorldBuilder builder{options};
+  const double half_length = 0.01, half_width = 1e-3, tip = 8e-3;
+  builder.addBody({"needle", contact::Box{Vec3(half_width, half_length, half_width)}, true, 1e-3, {}});
+  FingerModel finger = tests::softFinger("finger", 1000, 1);
+  finger.radius = tip;
+  const GraspModel model = buildGrasp(builder, {finger});
+  const Vec3 p_WF(-half_width - tip, 0.8 * half_length, 0);
+  GraspState state = makeState(model, {tests::startAt(Vec3::Zero())}, {p_WF});
+  GraspScratch scratch(model);
+  std::vector<FingerInput> inputs(1);
+  inputs[0].p_WF = p_WF;
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(step(model, state, scratch, inputs).parts, 1);
+  inputs[0].p_WF.x() += 0.04;  // the tip follows at some 20 m/s, and the needle would turn by more than 1 rad in the tick
+  EXPECT_GT(step(model, state, scratch, inputs).parts, 1);
+  EXPECT_GT(engine::bodyAngularVelocity(model.world, state.world, 0).norm() * options.h, 0.5);
+}
+
 // Where neither side can move there is nothing to solve; the islands once read outside their arrays there.
 TEST(GraspStep, ALockedFingerMayPressOnWhatNeverMoves) {
   engine::WorldBuilder builder(engine::WorldOptions{});
