@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "engine/solve/cone.h"
+#include "engine/solve/inverse3.h"
 #include "engine/solve/linear.h"
 #include "engine/solve/local_contact.h"
 #include "engine/solve/mobility.h"
@@ -11,24 +12,16 @@
 namespace pincer::engine {
 namespace {
 
-// Of three rows, by the adjugate; W is symmetric.
-void invertOwn3(const double* W, double* inverse) {
-  const double xx = W[4] * W[8] - W[5] * W[5], xy = W[5] * W[2] - W[1] * W[8], xz = W[1] * W[5] - W[4] * W[2];
-  const double scale = 1 / (W[0] * xx + W[1] * xy + W[2] * xz);
-  inverse[0] = scale * xx;
-  inverse[1] = inverse[3] = scale * xy;
-  inverse[2] = inverse[6] = scale * xz;
-  inverse[4] = scale * (W[0] * W[8] - W[2] * W[2]);
-  inverse[5] = inverse[7] = scale * (W[1] * W[2] - W[0] * W[5]);
-  inverse[8] = scale * (W[0] * W[4] - W[1] * W[1]);
-}
-
 // inverse = W^-1, rows x rows. Not a number where there is none: such a stop is in no cone.
 void invertOwn(int rows, const double* W, double* inverse) {
-  if (rows == kTorsionRow) return invertOwn3(W, inverse);
+  const auto fail = [&] { std::fill(inverse, inverse + rows * rows, std::numeric_limits<double>::quiet_NaN()); };
+  if (rows == kTorsionRow) {
+    if (!invert3<kTorsionRow>(W, inverse)) fail();
+    return;
+  }
   double factors[kMaxContactRows * kMaxContactRows];
   std::copy(W, W + rows * rows, factors);
-  if (!factoriseLdlt(factors, rows)) return std::fill(inverse, inverse + rows * rows, std::numeric_limits<double>::quiet_NaN());
+  if (!factoriseLdlt(factors, rows)) return fail();
   for (int l = 0; l < rows; ++l) {
     double* const column = inverse + rows * l;
     std::fill(column, column + rows, 0.0);
