@@ -86,7 +86,7 @@ std::vector<Measurement> engineMeasurements(const EngineBenchOptions& options) {
     measurements.push_back({shared->name, run});
   }
   measurements.push_back(stepLatencyMeasurement(contestants));
-  measurements.push_back(solveLatencyMeasurement());
+  measurements.push_back(solveLatencyMeasurement(options.race.rounds));
   return measurements;
 }
 
