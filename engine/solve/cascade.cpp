@@ -242,7 +242,8 @@ SolveResult solveContacts(const ContactProblem& problem, const SolverOptions& op
   weighContacts(problem, scratch);
   const double start = weighedResidual(problem, r.data(), scratch, u.data());
   const bool is_close = start <= options.tolerance;
-  if (is_close && !(problem.strict && start > kStrictness * options.tolerance)) return {SolveMethod::kWarmStart, 0, start, start, true};
+  if (is_close && !(problem.strict && start > exactResidual(options.tolerance, referenceSpeed(problem))))
+    return {SolveMethod::kWarmStart, 0, start, start, true};
   const EquationForm form = chooseForm(problem, scratch);
   if (form == EquationForm::kTooLarge) {
     const double enough = std::max(contentResidual(options, referenceSpeed(problem)), kLargeSpeed / referenceSpeed(problem));

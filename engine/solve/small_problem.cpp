@@ -116,7 +116,7 @@ class SmallProblem {
     const double start = evaluate();
     const bool is_close = start <= options.tolerance;
     result = {SolveMethod::kWarmStart, 0, start, start, true};
-    if (is_close && !(strict && start > kStrictness * options.tolerance)) {
+    if (is_close && !(strict && start > exactResidual(options.tolerance, speed_))) {
       std::copy(u_, u_ + m, u_out);
       return true;
     }
