@@ -7,11 +7,14 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr double kFeltPush = 0.3;    // while following, a weaker push means that the finger has left the surface [N]
-constexpr double kSinkSpeed = 0.05;  // then the aim goes in [m/s]
-constexpr double kRoundOff = 1e-12;  // keeps a variance of 0 positive [m^2]
-constexpr double kLeast = 1e-12;     // a likelihood: no reading rules a solid out for ever
-constexpr double kGiveWay = 20;      // else the aim follows the finger, at this rate [1/s]
+constexpr double kFeltPush = 0.3;       // while following, a weaker push means that the finger has left the surface [N]
+constexpr double kSinkSpeed = 0.05;     // then the aim goes in [m/s]
+constexpr double kRoundOff = 1e-12;     // keeps a variance of 0 positive [m^2]
+constexpr double kLeast = 1e-12;        // a likelihood: no reading rules a solid out for ever
+constexpr double kGiveWay = 20;         // else the aim goes to where the finger would feel the wanted push, at this rate [1/s]
+constexpr double kLeastReach = 0.02;    // nearer the middle the angle goes no faster [m]
+constexpr double kLeastProgress = 0.1;  // of the finger's speed: however steep the surface, the pass goes on
+constexpr double kLeastInPlane = 0.1;   // a push further than this from the pass's plane (as a cosine) doesn't say where the surface goes
 
 double angleBetweenUnits(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
@@ -116,20 +119,34 @@ void ShapeExplorer::enter(Phase phase) {
 
 void ShapeExplorer::follow(const FingerPercept& finger, double dt) {
   const Vec3 p_W = cues_.p_WD + cues_.q_WD * finger.arm.p_DF;
-  const double held_up = (p_W - cues_.middle_W).dot(ray());
-  const double push = finger.f_D.norm();
+  const Vec3 f_W = cues_.q_WD * finger.f_D;
+  const double push = f_W.norm();
   if (push < kFeltPush) {
-    reach_ = std::max(0.0, reach_ - kSinkSpeed * dt);
+    moveAim(body_.speed * dt * along() - kSinkSpeed * dt * ray(), 0);
   } else {
-    reach_ += kGiveWay * dt * (held_up - limits_.press / body_.hands[0].stiffness - reach_);
+    keepTo(p_W - cues_.middle_W, f_W / push, dt);
   }
-  angle_ += body_.speed * dt / std::max(0.02, held_up);
   if (push > limits_.common.force_floor && now_ - read_at_ >= limits_.common.reading_time) {
     read_at_ = now_;
     read(finger, p_W);
   }
   if (angle_ < pass().angle) return;
   enter(Phase::kLeave);
+}
+
+// Along the surface, and to the depth at which it pushes as hard as is wanted. `p_W` from the middle, `n_W` where the push goes, unit.
+void ShapeExplorer::keepTo(const Vec3& p_W, const Vec3& n_W, double dt) {
+  const Vec3 across = ray().cross(along()).cross(n_W);
+  const Vec3 onwards = across.norm() > kLeastInPlane ? Vec3(across.normalized()) : along();
+  const double deeper = limits_.press / body_.hands[0].stiffness - n_W.dot(p_W - reach_ * ray());
+  moveAim(body_.speed * dt * onwards - kGiveWay * dt * deeper * n_W, kLeastProgress * body_.speed * dt);
+}
+
+// By a step in the pass's plane, at least by so much along the pass [m].
+void ShapeExplorer::moveAim(const Vec3& step_W, double least) {
+  const double outwards = step_W.dot(ray());
+  angle_ += std::max(least, step_W.dot(along())) / std::max(kLeastReach, reach_);
+  reach_ = std::max(0.0, reach_ + outwards);
 }
 
 void ShapeExplorer::read(const FingerPercept& finger, const Vec3& p_W) {

@@ -2,8 +2,9 @@
 //
 //   listen - approach - follow a great circle - leave - [turn to the next circle: approach] - answer
 //
-// follow   the hand's aim goes round the solid's middle at the finger's speed, always a little below where the finger has been held up, so that
-//          the finger keeps to the surface; it turns its pad towards the middle. Passes: round the middle, over the top, over the top across.
+// follow   the hand's aim a goes across the push that is felt, direction n, in the plane of the pass, at the finger's speed, and along n to the
+//          depth at which a finger at p is pushed as hard as is wanted:   n . (p - a) = press / k,  k the hand's stiffness; where nothing is
+//          felt it sinks. The pad is turned towards the middle. Passes: round the middle, over the top, over the top across.
 // read     every reading time, while something is felt: the place of the fingertip and the direction of the surface,
 //
 //   place      p + m + sigma_p n                 m constant in a trial: placement_sd
@@ -80,6 +81,8 @@ class ShapeExplorer {
   double likelihoodOf(const Vec3& n_W, double sd_n, const KnownSolid& solid, const Vec3& q_W, const Vec3& outward_W, double off,
                       const Mat3& covariance) const;
   void follow(const FingerPercept& finger, double dt);
+  void keepTo(const Vec3& p_W, const Vec3& n_W, double dt);
+  void moveAim(const Vec3& step_W, double least);
   void read(const FingerPercept& finger, const Vec3& p_W);
   std::optional<Vec3> directionOfTactor(const FingerPercept& finger, const Quat& q_WF);
   Vec3 ray() const;    // from the middle to the finger, now
