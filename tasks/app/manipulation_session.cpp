@@ -14,13 +14,13 @@ namespace {
 
 class StudySessionSink final : public RecordSink {
  public:
-  // Keeps every `stride`-th tick.
+  // Keeps every `stride`-th tick; 0: none.
   // `inputs`: and the inputs of all, of hands that nothing else can bring back.
   StudySessionSink(SessionWriter& writer, std::int64_t stride, bool inputs) : writer_(writer), stride_(stride), inputs_(inputs) {}
   bool wantsInputs() const override { return inputs_; }
   void hands(const HandsRecord& hands) override { writer_.addHands(hands); }
   void input(const InputRecord& input) override { writer_.pushInput(input); }  // a lost one is a gap in the ticks, which a replay names
-  bool wantsSample(std::int64_t tick) const override { return tick % stride_ == 0; }
+  bool wantsSample(std::int64_t tick) const override { return stride_ > 0 && tick % stride_ == 0; }
   void sample(const SampleRecord& sample) override { writer_.pushSample(sample); }  // a lost one is counted by the store
   void event(const EventRecord& event) override { writer_.addEvent(event); }
   void reading(const ReadingRecord& reading) override { writer_.addReading(reading); }
@@ -44,22 +44,10 @@ std::string devicesJson(const ManipulationSessionOptions& o) {
   return json.key("sample_rate").value(o.sample_rate).key("real_time").value(o.servo.real_time).endObject().text();
 }
 
-SessionInfo sessionInfo(const ManipulationSessionOptions& o) {
-  SessionInfo info;
-  info.task = taskName(o.study);
-  info.seed = o.study.seed;
-  info.version = PINCER_VERSION;
-  info.build = "compiler " __VERSION__;
-  info.protocol_json = studyFile(o.study);
-  info.devices_json = devicesJson(o);
-  info.participants_json = describe(o.study.people);
-  info.participants_hash = hashOf(o.study.people);
-  return info;
-}
-
 ManipulationSessionResult runInto(SessionWriter& writer, const ManipulationSessionOptions& options, StudyHooks hooks,
                                   const std::atomic<bool>& interrupted) {
-  StudySessionSink sink(writer, std::lround(options.servo.rate) / options.sample_rate, static_cast<bool>(options.host.hands));
+  const std::int64_t stride = options.sample_rate > 0 ? std::lround(options.servo.rate) / options.sample_rate : 0;
+  StudySessionSink sink(writer, stride, static_cast<bool>(options.host.hands));
   ManipulationSessionResult result;
   hooks.host = options.host;
   hooks.served = [&](const ServoReport& trial) { result.servo.add(trial); };
@@ -77,20 +65,33 @@ SessionOptions storeOptions(const ServoOptions& servo) {
 
 }  // namespace
 
+SessionInfo manipulationSessionInfo(const ManipulationSessionOptions& o) {
+  SessionInfo info;
+  info.task = taskName(o.study);
+  info.seed = o.study.seed;
+  info.version = PINCER_VERSION;
+  info.build = "compiler " __VERSION__;
+  info.protocol_json = studyFile(o.study);
+  info.devices_json = devicesJson(o);
+  info.participants_json = describe(o.study.people);
+  info.participants_hash = hashOf(o.study.people);
+  return info;
+}
+
 void validate(const ManipulationSessionOptions& options) {
   validate(options.study);
   const int rate = options.sample_rate;
-  if (rate >= 1 && rate <= 1000 && std::fmod(options.servo.rate, rate) == 0) return;
+  if (rate == 0 || (rate >= 1 && rate <= 1000 && std::fmod(options.servo.rate, rate) == 0)) return;
   throw InputError(
-      fmt::format("run: sample_rate = {} is out of range: an integer in [1, 1000] Hz that divides the {:g} ticks of a "
-                  "second. Take for example 1000, 500, 200 or 100.",
+      fmt::format("run: sample_rate = {} is out of range: 0 for none, or an integer in [1, 1000] Hz that divides the {:g} "
+                  "ticks of a second. Take for example 1000, 500, 200 or 100.",
                   rate, options.servo.rate));
 }
 
 ManipulationSessionResult runManipulationSession(const ManipulationSessionOptions& options, const std::string& path,
                                                  const std::atomic<bool>& interrupted, const TrialProgressLine& progress) {
   validate(options);
-  SessionWriter writer = SessionWriter::create(path, sessionInfo(options), storeOptions(options.servo));
+  SessionWriter writer = SessionWriter::create(path, manipulationSessionInfo(options), storeOptions(options.servo));
   return runInto(writer, options, {{}, progress, {}, {}}, interrupted);
 }
 

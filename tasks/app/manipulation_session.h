@@ -5,6 +5,7 @@
 #include <string>
 
 #include "tasks/experiments/manipulation_study.h"
+#include "tasks/session/records.h"
 
 namespace pincer::tasks {
 
@@ -13,11 +14,15 @@ struct ManipulationSessionOptions {
   ServoOptions servo;
   std::string devices = "simulated";  // who brings arms and displays, as the session says it
   TrialHost host = {};                // who watches, and whose hands they are
-  int sample_rate = 200;  // of the ticks that are kept [Hz], 1 .. 1000; divides the servo's rate. A trial's row always counts every tick.
+  int sample_rate =
+      200;  // of the ticks that are kept [Hz], 0 (none) .. 1000; divides the servo's rate. A trial's row always counts every tick.
 };
 
 // Throws InputError naming the first value out of range, its range and the remedy.
 void validate(const ManipulationSessionOptions& options);
+
+// What such a session says of its study, people, program and devices.
+SessionInfo manipulationSessionInfo(const ManipulationSessionOptions& options);
 
 struct ManipulationSessionResult {
   std::size_t trials = 0;    // finished, those of a resumed session's earlier runs included

@@ -10,6 +10,7 @@
 #include "tasks/app/run_options.h"
 #include "tasks/app/run_tasks.h"
 #include "tasks/app/study_runs.h"
+#include "tasks/app/variant_runs.h"
 #include "tasks/findings/findings_report.h"
 #include "tasks/session/atomic_file.h"
 
@@ -19,7 +20,8 @@ namespace {
 constexpr const char* kFindingsExample = R"(
 Do the published findings follow from what people can feel? Simulated experiments of the published designs, each judged as the original was: of the
 five studies with one finger, and of both manipulation tasks beside controls that change one thing. The participants' parameters are the same
-whatever comes out; their hashes stand in the report. The studies' sessions are kept in --out; the same command goes on with them.
+whatever comes out; their hashes stand in the report. Each experiment is a session in --out; what was interrupted or killed goes on with the
+same command.
 
 Examples:
   pincer run findings --experiments 20 --out out/findings
@@ -32,10 +34,10 @@ struct FindingsArguments {
   RunOptions run;
 };
 
-FindingsResult runManipulationFindings(const FindingsOptions& options) {
+FindingsResult runManipulationFindings(const FindingsOptions& options, const std::string& directory) {
   std::unique_ptr<Progress> line;
-  return runFindings(options, interruptFlag(), [&](std::int64_t done, std::int64_t total) {
-    if (!line) line = std::make_unique<Progress>("participants", total);
+  return runVariants(options, directory, interruptFlag(), [&](std::int64_t done, std::int64_t total) {
+    if (!line) line = std::make_unique<Progress>("experiments", total);
     line->update(done);
   });
 }
@@ -59,14 +61,16 @@ PublishedFindings runStudyFindings(StudyRuns studies, const FindingsOptions& opt
 int runFindingsCommand(const FindingsArguments& arguments) {
   const std::string directory = outputDirectory(arguments.run, "findings");
   const PublishedFindings studies = runStudyFindings(arguments.studies, arguments.options, directory + "/sessions");
-  const FindingsResult result = runManipulationFindings(arguments.options);
+  const FindingsResult result = runManipulationFindings(arguments.options, directory + "/sessions");
   const bool interrupted = interruptFlag();
   if (result.variants.empty() && studies.figures.empty()) {
     if (!interrupted) throw InputError(fmt::format("findings: no variant's or study's name holds one of \"{}\".", arguments.options.only));
-    fmt::print(stderr, "pincer: interrupted before an experiment was whole; the studies' sessions go on with the same command.\n");
+    fmt::print(stderr, "pincer: interrupted before an experiment was whole. The same command with --out {} goes on.\n", directory);
     return kExitInterrupted;
   }
-  if (interrupted) fmt::print(stderr, "pincer: interrupted; these are the experiments that were whole.\n");
+  if (interrupted)
+    fmt::print(stderr, "pincer: interrupted; these are the experiments that were whole. The same command with --out {} goes on.\n",
+               directory);
   if (!result.variants.empty()) fmt::print("{}", findingsText(result));
   if (!studies.figures.empty()) fmt::print("{}", publishedText(studies));
   if (arguments.run.report) {

@@ -8,7 +8,6 @@
 // alignment error unchanged, alignment 7 s slower.
 // Time-outs: person_means.h. Training is left out: these participants don't learn.
 #pragma once
-#include <atomic>
 #include <functional>
 #include <string>
 #include <vector>
@@ -35,6 +34,12 @@ struct FindingsOptions {
   std::string only;  // variants whose name holds one of these, separated by commas; empty: all
 };
 
+// Throws InputError naming the first value out of range.
+void validate(const FindingsOptions& options);
+
+// The design of one experiment, counted from 0: its own people, each variant's the same.
+ManipulationStudy experimentOf(const FindingsOptions& options, const FindingsVariant& variant, int experiment);
+
 // `only`: parts of names, separated by commas; empty: all.
 bool isWanted(const std::string& name, const std::string& only);
 
@@ -52,20 +57,18 @@ struct VariantResult {
   std::vector<FindingResult> findings;  // one per measure
 };
 
+// What the sessions of a variant's experiments say; those that aren't whole are left out. No findings where none is. Throws InputError for one that
+// can't be read.
+VariantResult judgeVariant(const FindingsVariant& variant, const std::vector<std::string>& sessions);
+
 struct FindingsResult {
   FindingsOptions options;
-  ManipulationStudy study;  // of the primary analysis
-  std::vector<VariantResult> variants;
-  double simulated = 0, wall = 0;  // [s]
-  double processor = 0;            // time of all threads [s]
+  ManipulationStudy study;              // of the primary analysis
+  std::vector<VariantResult> variants;  // of which at least one experiment is whole
+  double simulated = 0, wall = 0;       // of what ran now [s]
+  double processor = 0;                 // time of all threads [s]
   bool interrupted = false;
 };
-
-// Runs all: first the primary analysis, then one experiment of each control after the other. Where it is interrupted the experiments that are
-// whole are reported; variants that have none are left out. `progress(done, total)` after every participant, from any thread, one at a time. Where no variant is wanted
-// nothing runs. Throws InputError.
-FindingsResult runFindings(const FindingsOptions& options, const std::atomic<bool>& interrupted,
-                           const std::function<void(std::int64_t, std::int64_t)>& progress);
 
 // "follows", "does not follow", "in the same direction only", "too few experiments", or "-" where nothing was published.
 std::string verdictOn(const FindingMeasure& measure, const FindingResult& result);

@@ -44,6 +44,7 @@ const std::vector<std::string> kHeads = {"measure", "published",  "force only", 
                                          "d_z",     "p_t < 0.05", "p_W < 0.05", "direction",   "verdict"};
 
 std::string runCost(const FindingsResult& r) {
+  if (r.simulated == 0) return "Every experiment was there already.";
   return fmt::format("{:.0f} s of trials in {:.0f} s on {} threads: {:.0f} times real time per processor.", r.simulated, r.wall,
                      r.options.threads, r.simulated / r.processor);
 }
