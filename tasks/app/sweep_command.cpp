@@ -9,6 +9,8 @@
 #include "tasks/app/commands.h"
 #include "tasks/app/interrupt.h"
 #include "tasks/app/progress.h"
+#include "tasks/report/study_summary.h"
+#include "tasks/sweep/one_finger_sweep.h"
 #include "tasks/sweep/scene_sweep.h"
 #include "tasks/sweep/study_sweep.h"
 
@@ -25,7 +27,8 @@ prints what came of it. PATH names the number as messages do; in a scene a body,
 Examples:
   pincer sweep s4_pinch --vary sphere.material.mu_s=0.1:0.5:9 --vary duration=1 --measure sphere.p_z
   pincer sweep pickup --vary sphere.mass=0.05:0.2:4 --vary sphere.material.mu_s=0.6,0.9 --measure sphere.p_z:max --out out/pickup
-  pincer sweep sphere-pickup --vary people.tactor_sd=0.0005:0.01:5:log --participants 4)";
+  pincer sweep sphere-pickup --vary people.tactor_sd=0.0005:0.01:5:log --participants 4
+  pincer sweep delay-discrimination --vary conditions[1].travel_share=0.4:0.8:5 --out out/front-end)";
 
 struct SweepArguments {
   std::string what, out;
@@ -45,10 +48,11 @@ SweepTable sweepAny(const SweepArguments& arguments) {
     if (!line) line = std::make_unique<Progress>("runs", total);
     line->update(done);
   };
-  if (isSweptStudy(arguments.what)) {
+  if (isSweptStudy(arguments.what) || isStudy(arguments.what)) {
     StudySweep sweep = arguments.study;
     sweep.variations = variations;
-    return sweepStudy(arguments.what, sweep, options, interruptFlag());
+    const auto run = isStudy(arguments.what) ? sweepOneFinger : sweepStudy;
+    return run(arguments.what, sweep, options, interruptFlag());
   }
   SceneSweep sweep = arguments.scene;
   sweep.variations = variations;
@@ -76,8 +80,9 @@ void addSweepCommand(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<SweepArguments>();
   CLI::App* command = app.add_subcommand("sweep", "A scene or study for many values of one or two of its numbers");
   command
-      ->add_option("what", arguments->what,
-                   "Scene file (JSON), name of a built-in scene, or sphere-pickup, cylinder-alignment, manipulation")
+      ->add_option(
+          "what", arguments->what,
+          "Scene file (JSON), name of a built-in scene, sphere-pickup, cylinder-alignment, manipulation, or a study with one finger")
       ->required();
   command->add_option("--vary", arguments->vary, "PATH=FROM:TO:N, PATH=FROM:TO:N:log or PATH=A,B,C; once or twice")
       ->required()

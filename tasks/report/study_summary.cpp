@@ -162,19 +162,26 @@ bool isUnsettled(const StudyCondition& c) { return c.averaged > 0 && c.right.n >
 
 bool isStudy(const std::string& task) { return kindOf(task) != nullptr; }
 
-StudySummary summariseStudy(const SessionReader& session, const std::vector<ResponseRecord>& responses) {
-  StudySummary s{session.path(), session.info(), session.state(), session.startedUtc(), session.warning(), "", 0, 0, {}, {}};
-  const StudyKind* kind = kindOf(s.info.task);
-  if (!kind) throw InputError(fmt::format("{}: a session of {}, which isn't a psychophysical study.", s.path, s.info.task));
+StudySummary summariseStudy(const SessionInfo& info, const std::string& name, const std::vector<ResponseRecord>& responses) {
+  StudySummary s{name, info, "", "", "", info.participants_hash, 0, 0, {}, {}};
+  const StudyKind* kind = kindOf(info.task);
+  if (!kind) throw InputError(fmt::format("{}: a session of {}, which isn't a psychophysical study.", name, info.task));
   s.headline = {kind->name, kind->unit, kind->scale};
-  const JsonValue protocol = parseJson(s.info.protocol_json, s.path + ": protocol");
-  s.fingerprint = s.info.participants_hash;
+  const JsonValue protocol = parseJson(info.protocol_json, name + ": protocol");
   std::set<std::int64_t> people;
   for (const ResponseRecord& r : responses) people.insert(r.participant);
   s.participants = static_cast<std::int64_t>(people.size());
   s.trials = static_cast<std::int64_t>(responses.size());
   s.conditions = conditionsOf(protocol, responses);
-  for (StudyCondition& condition : s.conditions) summarise(s.info.task, responses, condition);
+  for (StudyCondition& condition : s.conditions) summarise(info.task, responses, condition);
+  return s;
+}
+
+StudySummary summariseStudy(const SessionReader& session, const std::vector<ResponseRecord>& responses) {
+  StudySummary s = summariseStudy(session.info(), session.path(), responses);
+  s.state = session.state();
+  s.started_utc = session.startedUtc();
+  s.warning = session.warning();
   return s;
 }
 

@@ -56,6 +56,8 @@ struct StudySummary {
 // Whether the session is of a task that this summary is for.
 bool isStudy(const std::string& task);
 
+// Throws InputError for a session of something else, and a protocol that can't be read; `name` stands for the session there.
+StudySummary summariseStudy(const SessionInfo& info, const std::string& name, const std::vector<ResponseRecord>& responses);
 StudySummary summariseStudy(const SessionReader& session, const std::vector<ResponseRecord>& responses);
 
 std::vector<std::string> studyTableHeads(const StudySummary& summary);

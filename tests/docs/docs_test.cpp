@@ -56,7 +56,7 @@ const std::vector<Shorter> kShorter = {
     {std::regex("^(pincer (bench|verify|stress)( .*)?)$"), "$1 --list"},
     {std::regex("^(pincer run sphere-pickup --object .*)$"), "$1 --repetitions 1 --friction 0.9 --condition cld+force"},
     {std::regex("^(pincer run findings.*)$"), "$1 --help"},
-    {std::regex("^(pincer sweep (sphere|cylinder|manipulation).*)$"), "$1 --help"},
+    {std::regex("^(pincer sweep (sphere|cylinder|manipulation|delay).*)$"), "$1 --help"},
     {std::regex("^(pincer run (smoothness|shape|repeated|backlash|delay)-.*)$"), "$1 --print-study"},
     {std::regex("^(pincer run .*)--participants [0-9]+(.*)$"), "$1--participants 1$2"},
     {std::regex("^(pincer run (manipulation|[a-z]+-(discrimination|identification|localisation|alignment)|sphere-pickup)( "

@@ -4,7 +4,9 @@
 #include <filesystem>
 
 #include "tasks/app/app.h"
+#include "tasks/experiments/localisation.h"
 #include "tasks/scene/json_change.h"
+#include "tasks/sweep/one_finger_sweep.h"
 #include "tasks/sweep/scene_sweep.h"
 #include "tasks/sweep/study_sweep.h"
 #include "tests/support/error_of.h"
@@ -138,6 +140,35 @@ TEST(StudySweep, TellsThatNobodyPicksUpASphereWithinASecond) {
   EXPECT_GT(table.results[1][static_cast<std::size_t>(column)], 0);
   sweep.variations = {parseVariation("people.tactor_sdd=1,2")};
   EXPECT_TRUE(contains(errorOf([&] { sweepStudy("sphere-pickup", sweep, {}, kNever); }), "Did you mean"));
+}
+
+struct Answers final : StudySink {
+  void sample(const SampleRecord&) override {}
+  void event(const EventRecord&) override {}
+  void response(const ResponseRecord& r) override { sum += std::abs(r.answer_value - r.level), ++count; }
+  double sum = 0;
+  int count = 0;
+};
+
+TEST(OneFingerSweep, EachPointIsTheStudyWithItsNumber) {
+  StudySweep sweep;
+  sweep.participants = 1;
+  sweep.variations = {parseVariation("repetitions=1,2")};
+  const SweepTable table = sweepOneFinger("repeated-localisation", sweep, {}, kNever);
+  ASSERT_EQ(table.measures.size(), 1u);
+  ASSERT_EQ(table.results.size(), 2u);
+  for (const int repetitions : {1, 2}) {
+    LocalisationStudy study;
+    study.participants = 1;
+    study.repetitions = repetitions;
+    LocalisationExperiment experiment(study, {}, 1000);
+    Answers answers;
+    runStudy(experiment, study.seed, {}, answers, kNever);
+    EXPECT_EQ(answers.count, 5 * repetitions);
+    EXPECT_NEAR(table.results[static_cast<std::size_t>(repetitions - 1)][0], 1e3 * answers.sum / answers.count, 1e-9);  // [mm]
+  }
+  sweep.variations = {parseVariation("repetition=1")};
+  EXPECT_TRUE(contains(errorOf([&] { sweepOneFinger("repeated-localisation", sweep, {}, kNever); }), "Did you mean"));
 }
 
 TEST(SweepCommand, WritesTableAndPicture) {
