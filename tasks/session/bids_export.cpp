@@ -38,14 +38,15 @@ std::string tsvField(const Field& field) {
   }
 }
 
-std::string trialsTsv(const std::vector<TrialRecord>& trials) {
+template <class Record>
+std::string rowsOf(const std::vector<Record>& rows) {
   std::string text;
-  const TrialRecord names{};
+  const Record names{};
   forEachColumn(names, [&](const ColumnName& name, const auto&) { text += (text.empty() ? "" : "\t") + name.text(); });
   text += '\n';
-  for (const TrialRecord& trial : trials) {
+  for (const Record& row : rows) {
     bool first = true;
-    forEachColumn(trial, [&](const ColumnName&, const auto& field) {
+    forEachColumn(row, [&](const ColumnName&, const auto& field) {
       text += (first ? "" : "\t") + tsvField(field);
       first = false;
     });
@@ -54,9 +55,10 @@ std::string trialsTsv(const std::vector<TrialRecord>& trials) {
   return text;
 }
 
-std::string trialsSidecar(const std::string& task) {
+template <class Record>
+std::string sidecarOf(const std::string& task) {
   std::string json = fmt::format("{{\n  \"TaskName\": \"{}\"", bidsLabel(task));
-  const TrialRecord names{};
+  const Record names{};
   forEachColumn(names, [&](const ColumnName& name, const auto&) {
     json += fmt::format(",\n  \"{}\": {{\"Description\": \"{}\"", name.text(), name.quantity);
     json += name.unit.empty() ? std::string("}") : fmt::format(", \"Units\": \"{}\"}}", name.unit);
@@ -64,37 +66,70 @@ std::string trialsSidecar(const std::string& task) {
   return json + "\n}\n";
 }
 
+// The files of one data set.
+class DataSet {
+ public:
+  explicit DataSet(std::string directory) : directory_(std::move(directory)) { makeDirectory(directory_); }
+
+  void write(const std::string& path, const std::string& content) {
+    writeAtomically(directory_ + "/" + path, content);
+    paths.push_back(directory_ + "/" + path);
+  }
+
+  // A table per participant and task, with its sidecar. `taskOf` a row.
+  template <class Record, class TaskOf>
+  void writeTables(const std::vector<Record>& rows, const TaskOf& taskOf) {
+    std::map<std::pair<std::int64_t, std::string>, std::vector<Record>> tables;
+    for (const Record& row : rows) tables[{row.participant, taskOf(row)}].push_back(row);
+    for (const auto& [key, own] : tables) {
+      first_conditions_.try_emplace(key.first, own.front().condition);
+      const std::string folder = subjectOf(key.first) + "/beh";
+      const std::string stem = fmt::format("{}/{}_task-{}_beh", folder, subjectOf(key.first), bidsLabel(key.second));
+      makeDirectory(directory_ + "/" + folder);
+      write(stem + ".tsv", rowsOf(own));
+      write(stem + ".json", sidecarOf<Record>(key.second));
+    }
+  }
+
+  void writeParticipants() {
+    std::string people = "participant_id\tfirst_condition\n";
+    for (const auto& [person, condition] : first_conditions_) people += fmt::format("{}\t{}\n", subjectOf(person), condition);
+    write("participants.tsv", people);
+    write("participants.json", "{\n  \"first_condition\": {\"Description\": \"condition that the participant did first\"}\n}\n");
+  }
+
+  std::vector<std::string> paths;
+
+ private:
+  std::string directory_;
+  std::map<std::int64_t, std::string> first_conditions_;
+};
+
+std::string descriptionOf(const SessionInfo& info) {
+  return fmt::format(
+      "{{\n  \"Name\": \"{}, seed {}\",\n  \"BIDSVersion\": \"1.9.0\",\n  \"DatasetType\": \"raw\",\n"
+      "  \"GeneratedBy\": [{{\"Name\": \"pincer\", \"Version\": \"{}\"}}]\n}}\n",
+      info.task, info.seed, info.version);
+}
+
+std::string readmeOf(const SessionReader& session) {
+  const SessionInfo& info = session.info();
+  return fmt::format(
+      "# {}\n\nA session of pincer {}, seed {}, begun {}. One row per trial, in the order of doing.\n\nDevices:\n\n```json\n{}\n```\n\n"
+      "Protocol:\n\n```json\n{}\n```\n\nParticipants (of simulated ones every parameter):\n\n```json\n{}\n```\n",
+      info.task, info.version, info.seed, session.startedUtc(), info.devices_json, info.protocol_json, info.participants_json);
+}
+
 }  // namespace
 
 std::vector<std::string> exportBids(const SessionReader& session, const std::string& directory) {
-  std::map<std::pair<std::int64_t, std::string>, std::vector<TrialRecord>> files;
-  for (const TrialRecord& trial : session.trials()) files[{trial.participant, trial.task}].push_back(trial);
-  std::vector<std::string> paths;
-  const auto write = [&](const std::string& path, const std::string& content) {
-    writeAtomically(path, content);
-    paths.push_back(path);
-  };
-  makeDirectory(directory);
-  write(directory + "/dataset_description.json",
-        fmt::format("{{\n  \"Name\": \"{}, seed {}\",\n  \"BIDSVersion\": \"1.9.0\",\n  \"DatasetType\": \"raw\",\n"
-                    "  \"GeneratedBy\": [{{\"Name\": \"pincer\", \"Version\": \"{}\"}}]\n}}\n",
-                    session.info().task, session.info().seed, session.info().version));
-  std::string people = "participant_id\tfirst_condition\n";
-  std::int64_t last = -1;
-  for (const auto& [key, trials] : files) {
-    if (key.first != last) people += fmt::format("{}\t{}\n", subjectOf(key.first), trials.front().condition);
-    last = key.first;
-  }
-  write(directory + "/participants.tsv", people);
-  write(directory + "/participants.json", "{\n  \"first_condition\": {\"Description\": \"condition that the participant did first\"}\n}\n");
-  for (const auto& [key, trials] : files) {
-    const std::string folder = directory + "/" + subjectOf(key.first) + "/beh";
-    const std::string stem = fmt::format("{}/{}_task-{}_beh", folder, subjectOf(key.first), bidsLabel(key.second));
-    makeDirectory(folder);
-    write(stem + ".tsv", trialsTsv(trials));
-    write(stem + ".json", trialsSidecar(key.second));
-  }
-  return paths;
+  DataSet set(directory);
+  set.write("dataset_description.json", descriptionOf(session.info()));
+  set.write("README.md", readmeOf(session));
+  set.writeTables(session.trials(), [](const TrialRecord& trial) { return trial.task; });
+  set.writeTables(session.responses(), [&](const ResponseRecord&) { return session.info().task; });
+  set.writeParticipants();
+  return set.paths;
 }
 
 }  // namespace pincer::tasks

@@ -1,7 +1,7 @@
 // bids_export: a session as a behavioural data set in the Brain Imaging Data Structure (BIDS 1.9, https://bids-specification.readthedocs.io,
 // "Behavioral experiments with no neural recordings").
 //
-//   dataset_description.json, participants.tsv + .json, sub-<NN>/beh/sub-<NN>_task-<task>_beh.tsv + .json
+//   dataset_description.json, README.md, participants.tsv + .json, sub-<NN>/beh/sub-<NN>_task-<task>_beh.tsv + .json
 //
 // One row per trial, in the order of doing; a column's unit is in its name and in the sidecar; what is absent is "n/a".
 #pragma once

@@ -13,6 +13,7 @@
 #include "tasks/experiments/manipulation_file.h"
 #include "tasks/session/bids_export.h"
 #include "tasks/session/database.h"
+#include "tests/support/run_app.h"
 #include "tests/support/temporary_directory.h"
 
 namespace pincer::tasks {
@@ -139,10 +140,31 @@ TEST(BidsExport, LaysOutOneTableWithASidecarPerPersonAndTask) {
   const tests::TemporaryDirectory directory;
   runManipulationSession(quickSession(1), directory / "s.db", kGoOn, {});
   const auto paths = exportBids(SessionReader(directory / "s.db"), directory / "bids");
-  EXPECT_EQ(paths.size(), 5u);
+  EXPECT_EQ(paths.size(), 6u);
   EXPECT_TRUE(std::filesystem::exists(directory / "bids/sub-01/beh/sub-01_task-spherepickup_beh.tsv"));
   EXPECT_TRUE(std::filesystem::exists(directory / "bids/sub-01/beh/sub-01_task-spherepickup_beh.json"));
   EXPECT_TRUE(std::filesystem::exists(directory / "bids/dataset_description.json"));
+  EXPECT_TRUE(std::filesystem::exists(directory / "bids/README.md"));
+}
+
+// The studies with one finger gave a data set without participants.
+TEST(BidsExport, HoldsTheAnswersOfAStudyWithOneFinger) {
+  const tests::TemporaryDirectory directory;
+  SessionInfo info;
+  info.task = "shape-identification";
+  SessionWriter writer = SessionWriter::create(directory / "s.db", info);
+  for (const int person : {0, 1}) {
+    ResponseRecord r;
+    r.trial = r.participant = person;
+    r.condition = person ? "shaded" : "facets";
+    r.answer = "cone";
+    writer.finishResponse(r);
+  }
+  writer.close();
+  exportBids(SessionReader(directory / "s.db"), directory / "bids");
+  const std::string table = tests::readFile(directory / "bids/sub-02/beh/sub-02_task-shapeidentification_beh.tsv");
+  EXPECT_NE(table.find("\tcone\t"), std::string::npos) << table;
+  EXPECT_EQ(tests::readFile(directory / "bids/participants.tsv"), "participant_id\tfirst_condition\nsub-01\tfacets\nsub-02\tshaded\n");
 }
 
 }  // namespace
