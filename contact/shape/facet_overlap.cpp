@@ -99,13 +99,14 @@ struct Shared {
   }
 };
 
-// How far `x` is to the left of the edge that begins at corner j of `f` [m].
-double leftOf(const FlatFacet& f, int j, const Vec2& x) {
-  const Vec2& from = f.corner(j).x;
-  const Vec2 edge = f.corner((j + 1) % f.count).x - from;
-  const double length = edge.norm();
-  return length > 0 ? cross(edge, x - from) / length : 0;
-}
+// The line along the edge that begins at corner j of `f`.
+struct EdgeLine {
+  Vec2 from, edge;
+  double length;
+
+  EdgeLine(const FlatFacet& f, int j) : from(f.corner(j).x), edge(f.corner(j + 1 < f.count ? j + 1 : 0).x - from), length(edge.norm()) {}
+  double leftOf(const Vec2& x) const { return length > 0 ? cross(edge, x - from) / length : 0; }  // how far `x` is to its left [m]
+};
 
 // A polygon being clipped: each edge belongs to the facet that is clipped, or lies on an edge of the clipping one.
 struct ClipCorner {
@@ -132,12 +133,22 @@ std::uint32_t nameOfCut(const ClipCorner& c, const FlatFacet& clipper, int j, bo
   return clipper.corner((c.clip + 1) % clipper.count == j ? j : c.clip).feature;
 }
 
-void clipBy(const FlatFacet& clipper, int j, bool clipper_is_a, double tolerance, const ClipPolygon& in, ClipPolygon& out) {
+// False where nothing of `in` is beyond the edge: then `out` isn't written.
+bool clipBy(const FlatFacet& clipper, int j, bool clipper_is_a, double tolerance, const ClipPolygon& in, ClipPolygon& out) {
+  const EdgeLine line(clipper, j);
+  std::array<double, kMostShared> left;
+  bool all_in = true;
+  for (int i = 0; i < in.count; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    left[at] = line.leftOf(in.corners[at].x);
+    all_in = all_in && left[at] >= -tolerance;
+  }
+  if (all_in) return false;
   out.count = 0;
   for (int i = 0; i < in.count; ++i) {
-    const ClipCorner& c = in.corners[static_cast<std::size_t>(i)];
-    const ClipCorner& next = in.corners[static_cast<std::size_t>((i + 1) % in.count)];
-    const double here = leftOf(clipper, j, c.x), there = leftOf(clipper, j, next.x);
+    const auto at = static_cast<std::size_t>(i), after = static_cast<std::size_t>(i + 1 < in.count ? i + 1 : 0);
+    const ClipCorner &c = in.corners[at], &next = in.corners[after];
+    const double here = left[at], there = left[after];
     const bool is_in = here >= -tolerance, next_in = there >= -tolerance;
     if (is_in) out.add(c);
     if (is_in == next_in) continue;
@@ -147,6 +158,7 @@ void clipBy(const FlatFacet& clipper, int j, bool clipper_is_a, double tolerance
     if (is_in) cut.clip = j;
     out.add(cut);
   }
+  return true;
 }
 
 // Of polygon and polygon, or of segment and polygon (a segment is clipped as a polygon there and back).
@@ -155,12 +167,13 @@ void clipFacet(const FlatFacet& facet, const FlatFacet& clipper, bool clipper_is
   ClipPolygon *from = &polygons[0], *to = &polygons[1];
   for (int i = 0; i < facet.count; ++i) from->add({facet.corner(i).x, facet.corner(i).feature, facet.corner(i).edge, -1});
   for (int j = 0; j < clipper.count && from->count > 0; ++j) {
-    clipBy(clipper, j, clipper_is_a, tolerance, *from, *to);
-    std::swap(from, to);
+    if (clipBy(clipper, j, clipper_is_a, tolerance, *from, *to)) std::swap(from, to);
   }
   for (int i = 0; i < from->count; ++i) {
     const ClipCorner& c = from->corners[static_cast<std::size_t>(i)];
-    const auto isSame = [&](const Corner& other) { return (other.x - c.x).norm() <= tolerance || other.feature == c.feature; };
+    const auto isSame = [&](const Corner& other) {
+      return other.feature == c.feature || (other.x - c.x).squaredNorm() <= tolerance * tolerance;
+    };
     if (std::none_of(out.corners.begin(), out.corners.begin() + out.count, isSame)) out.add(c.x, c.feature);
   }
 }
@@ -220,16 +233,16 @@ class KnownGaps {
 class Surfaces {
  public:
   Surfaces(const PosedSolid& a, const PosedSolid& b, const FlatFacet& fa, const FlatFacet& fb, const View& view)
-      : a_(a), b_(b), fa_(fa), fb_(fb), view_(view) {}
-  double top(const Vec2& x) const { return height(a_, fa_, -1, x); }
-  double bottom(const Vec2& x) const { return height(b_, fb_, 1, x); }
-  double gap(const Vec2& x) const { return top(x) - bottom(x); }
+      : a_(a), b_(b), fa_(fa), fb_(fb), view_(view), rounding_a_(roundingOf(a.shape)), rounding_b_(roundingOf(b.shape)) {}
+  double top(const Vec2& x) const { return height(a_, fa_, -1, rounding_a_, x); }
+  double bottom(const Vec2& x) const { return height(b_, fb_, 1, rounding_b_, x); }
+  double roundings() const { return rounding_a_ + rounding_b_; }
   Vec3 place(const Vec2& x, double z) const { return x.x() * view_.R.col(0) + x.y() * view_.R.col(1) + z * view_.R.col(2); }
 
  private:
-  double height(const PosedSolid& solid, const FlatFacet& f, double sign, const Vec2& x) const {
+  double height(const PosedSolid& solid, const FlatFacet& f, double sign, double rounding, const Vec2& x) const {
     const double z = f.height(x);
-    if (!(f.line_radius > 0)) return z + sign * roundingOf(solid.shape);
+    if (!(f.line_radius > 0)) return z + sign * rounding;
     return z + sign * reachOf(solid.shape, solid.inwards(place(x, z) - solid.p), solid.inwards(sign * view_.R.col(2)));
   }
 
@@ -238,6 +251,23 @@ class Surfaces {
   const FlatFacet& fa_;
   const FlatFacet& fb_;
   const View& view_;
+  double rounding_a_, rounding_b_;
+};
+
+// The two surfaces' heights over each shared place.
+struct Heights {
+  std::array<double, kMostShared> top, bottom;
+  double least_gap;
+
+  void measure(const Shared& shared, const Surfaces& surfaces) {
+    least_gap = kInfinity;
+    for (int i = 0; i < shared.count; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      top[at] = surfaces.top(shared.corners[at].x);
+      bottom[at] = surfaces.bottom(shared.corners[at].x);
+      least_gap = std::min(least_gap, top[at] - bottom[at]);
+    }
+  }
 };
 
 // Where what faces the end of a cylinder comes near the rim between two of its corners, one more is added.
@@ -258,12 +288,6 @@ void reachOut(const PosedSolid& cylinder, const PosedSolid& other, const Facet& 
   addRimCorner(nearest, end);
 }
 
-double leastGap(const Shared& shared, const Surfaces& surfaces) {
-  double least = kInfinity;
-  for (int i = 0; i < shared.count; ++i) least = std::min(least, surfaces.gap(shared.corners[static_cast<std::size_t>(i)].x));
-  return least;
-}
-
 }  // namespace
 
 bool overlapFacets(const PosedSolid& a, const PosedSolid& b, const Separation& along, double size, double margin, PairPoints& out) {
@@ -278,28 +302,31 @@ bool overlapFacets(const PosedSolid& a, const PosedSolid& b, const Separation& a
   flatten(a, facet_a, -1, view, kCornerOfA, size, fa);
   flatten(b, facet_b, 1, view, kCornerOfB, size, fb);
   const Surfaces surfaces(a, b, fa, fb, view);
-  const double least = along.gap - roundingOf(a.shape) - roundingOf(b.shape);
+  const double least = along.gap - surfaces.roundings();
   Shared shared;
+  Heights heights;
   bool found = false, exactly = false;
   for (double slack = kSame; slack < 2e-4 && !found; slack *= 10) {  // the direction may be right to round-off only
     shared.count = 0;
     share(fa, fb, slack * size, shared);
-    found = leastGap(shared, surfaces) < least + slack * size;
+    heights.measure(shared, surfaces);
+    found = heights.least_gap < least + slack * size;
     exactly = exactly || (found && slack == kSame);
   }
   if (!found) {
     shared.count = 0;
     shared.add(view.across(0.5 * (a.support(-n) + b.support(n))), featureOf(kSupports, 0, 0));
+    heights.measure(shared, surfaces);
   }
 
   std::array<Vec3, kMostShared> points;
   std::array<double, kMostShared> gaps;
   std::array<std::uint32_t, kMostShared> features;
-  const double beside = found ? leastGap(shared, surfaces) - least : 0;  // an effect of the slack
+  const double beside = found ? heights.least_gap - least : 0;  // an effect of the slack
   for (int i = 0; i < shared.count; ++i) {
     const auto at = static_cast<std::size_t>(i);
     const Corner& c = shared.corners[at];
-    const double top = surfaces.top(c.x), bottom = surfaces.bottom(c.x);
+    const double top = heights.top[at], bottom = heights.bottom[at];
     gaps[at] = found ? std::max(top - bottom - std::max(beside, 0.0), least) : least;
     points[at] = surfaces.place(c.x, 0.5 * (top + bottom));
     features[at] = c.feature;

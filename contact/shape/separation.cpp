@@ -32,10 +32,23 @@ class Search {
     const double gap = gapAlong(a_, b_, n);
     if (gap > best_.gap) best_ = {n, gap};
   }
+  // Whether the normal of a face that is near `n` is the best of all: what lies on a face is known from four points.
+  bool isOnFaceNear(const Vec3& n) {
+    constexpr double kNear = 0.02;  // [rad]
+    const Kinks kinks = kinksNear(n, kNear, 0);
+    for (int i = 0; i < kinks.normal_count; ++i) offer(kinks.normals[static_cast<std::size_t>(i)]);
+    if (kinks.normal_count == 0) return false;
+    lookAround();
+    if (isProved() && isOnlyOne()) return true;
+    seen_ = {};
+    return false;
+  }
   void tryNearestPoints(const Vec3& start, double reach) {
     const CoreAccuracy accuracy{kRelative, round_ ? kAbsolute * size_ : 0, reach};
     const CoreDistance d = distanceOfCores(a_, b_, Vec3::Zero(), start, size_, accuracy);
-    if (d.apart) offer(d.v.normalized());
+    if (!d.apart) return;
+    seen_ = {d.around, d.v.norm()};
+    offer(d.v.normalized());
   }
   // The greatest gap around `n`, if it is greater than what is known.
   void climb(const Vec3& n) {
@@ -79,8 +92,7 @@ class Search {
   }
   // What the nearest points leave to be done.
   void finish() {
-    snapToFaces();
-    if (round_) polish();
+    if (!isProvedOnFace() && round_) polish();
   }
 
  private:
@@ -108,10 +120,37 @@ class Search {
       offer(n);
       if (!(best_.gap > before + (round_ ? kRoughly : kGapRounding) * size_)) break;
     }
-    snapToFaces();
-    if (isProved()) return;
+    if (isProvedOnFace()) return;
     if (best_.gap > 0) tryNearestPoints(best_.n, kInfinity);
     finish();
+  }
+  bool isProvedOnFace() {
+    snapToFaces();
+    if (!isProved()) lookAround();
+    return isProved();
+  }
+  // The disc that four points of A - B span in the plane across the best direction, furthest along four directions in that plane.
+  void lookAround() {
+    constexpr double kTurn = 1e-11;                                // towards each [rad]
+    constexpr double kFlat = 1e-10;                                // of the size: how far the points may be out of the plane
+    constexpr double kCosine = 0.92, kSine = 0.39191835884530846;  // off the axes of the frame, along which edges often lie
+    const Mat3 F = frameFromNormal(best_.n);
+    std::array<Vec2, 4> corners;
+    Vec2 towards(kCosine, kSine);
+    for (Vec2& corner : corners) {
+      const Vec3 d = best_.n - kTurn * (towards.x() * F.col(0) + towards.y() * F.col(1));
+      const Vec3 p = a_.support(-d) - b_.support(d);
+      if (best_.n.dot(p) > best_.gap + kFlat * size_) return;
+      corner = {F.col(0).dot(p), F.col(1).dot(p)};
+      towards = {-towards.y(), towards.x()};
+    }
+    double radius = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      const Vec2 side = corners[(i + 1) % corners.size()] - corners[i];
+      const double length = side.norm();
+      if (length > kFlat * size_) radius = std::min(radius, cross(corners[i], side) / length);
+    }
+    if (std::isfinite(radius) && radius > seen_.radius) seen_ = {radius, best_.gap};
   }
   // Whether the disc shows that nothing around the best is better by more than round-off.
   bool isProved() const { return seen_.radius > kWider * std::max(-best_.gap, 0.0) && best_.gap > seen_.gap - 4 * kGapRounding * size_; }
@@ -246,6 +285,7 @@ double gapAlong(const PosedSolid& a, const PosedSolid& b, const Vec3& n) { retur
 Separation separate(const PosedSolid& a, const PosedSolid& b, double size, double reach, const Vec3& last) {
   Search search(a, b, size);
   const bool warm = last != Vec3::Zero();
+  if (warm && search.isOnFaceNear(last)) return search.best();
   if (warm) search.offer(last);
   if (search.best().gap >= reach) return search.best();
   if (!warm || search.isApart()) {

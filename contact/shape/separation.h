@@ -20,7 +20,8 @@
 // The search begins from the nearest points, or from the direction of the last tick. Of solids that overlap the step also leaves three points of
 // A - B in a plane n1 . x = gap: with r how far the foot of the origin is within that triangle, every direction within 90 degrees of n1 that is
 // better must be turned by more than 2 atan(r / -gap). So r > 4 |gap|, and depth enough on the far side, prove that n1 is the best there is; that is so
-// wherever facets or crossing edges overlap by more than the solids are deep in each other. Where it isn't proved (beside edges and corners, deep
+// wherever facets or crossing edges overlap by more than the solids are deep in each other. On faces four points of A - B, furthest along as many
+// directions in the plane across the normal, show the same without a step: with the last direction near a face's normal nothing else is asked. Where it isn't proved (beside edges and corners, deep
 // in each other), the best of several local maxima is taken: those above the axes of both and the line of their origins, the cross products of axes, the
 // nearest points of the solids inset by 5 % of the least half width, and Bullet's EPA.
 // Error: round-off; at round rims 1e-9 of the size. Of very deep overlap it may be one of several ways out that isn't the shortest.
