@@ -15,7 +15,7 @@ bool SurfaceTouch::followAlone(SurfaceContacts& found) {
     if (slot >= 0) return false;
     slot = i;
   }
-  if (slot < 0 || s_.variant != SurfaceVariant::smooth || !isUsed(slot) || !(wayFromLook() < tracker_.look.vouched)) return false;
+  if (slot < 0 || s_.variant != SurfaceVariant::smooth || !isUsed(slot) || !isNothingDue()) return false;
   SurfaceSlot& kept = tracker_.slots[at(slot)];
   if (kept.fades || kept.ease > 0 || !knowsMotion(kept)) return false;
   const ShellContact contact = solveShellBeside(s_.net, cache_, C_, footOf(slot), {kept.du, kept.dv}, C_ - tracker_.p_BC_last);
@@ -26,6 +26,7 @@ bool SurfaceTouch::followAlone(SurfaceContacts& found) {
   found.points[0] = {S, contact.n, contact.h - r_, static_cast<std::uint32_t>(slot)};
   found.count = 1;
   found.cost.iterations = found.cost.longest_walk = contact.cost.steps;
+  found.cost.crossings = contact.cost.crossings;
   keepCentre(contact);
   return true;
 }
@@ -223,6 +224,7 @@ void SurfaceTouch::write(SurfaceContacts& found) {
 }
 
 void SurfaceTouch::keepCentre(const ShellContact& main) {
+  if (!tracker_.look.is_alone) keepParts();
   if (main.h > 0) {
     tracker_.p_BC = C_;
     tracker_.has_centre = true;
@@ -230,7 +232,16 @@ void SurfaceTouch::keepCentre(const ShellContact& main) {
     tracker_.p_BC = placeOf(main) + r_ * main.n;
   }
   tracker_.p_BC_last = C_;
+  tracker_.gone = gone_;
+  tracker_.reach = reach_;
   tracker_.status = status_;
+}
+
+// What the list tells goes on from here.
+void SurfaceTouch::keepParts() {
+  LookParts& parts = lookParts();
+  parts.p_BC = C_;
+  parts.gone = gone_;
 }
 
 SurfaceContacts touchSurface(const TouchedSurface& surface, const Vec3& p_BC, double r, double margin, SurfaceTracker& tracker,

@@ -32,13 +32,14 @@ bool isMinimumAtVertex(const SurfaceNet& net, const CellCorner& at, const Vec3& 
 double wayToMinimumAtVertex(const SurfaceNet& net, const CellCorner& at, const Vec3& p, double most) {
   const Vec3& from = net.vertex(at.triangle, at.corner);
   const Vec3 R = p - from;
-  double way = 0;
+  double way2 = 0;
   net.visitCorners(at, [&](const CellCorner& c) {
     const Vec3 edge = net.vertex(c.triangle, (c.corner + 1) % 3) - from;
-    if (const double passed = R.dot(edge); passed > 0) way = std::max(way, passed / edge.norm());
-    return way < most;
+    const double passed = R.dot(edge), length2 = edge.squaredNorm();
+    if (passed > 0 && passed * passed > way2 * length2) way2 = passed * passed / length2;
+    return way2 < most * most;
   });
-  return way;
+  return std::sqrt(way2);
 }
 
 }  // namespace
@@ -71,17 +72,18 @@ FlatPoint closestOnFacet(const SurfaceNet& net, std::int32_t triangle, const Vec
 }
 
 double wayToFlatMinimum(const SurfaceNet& net, std::int32_t t, const Vec3& p) {
-  const Vec3 n = facetNormal(net, t);
+  const std::array<Vec3, 4> corners = {net.vertex(t, 0), net.vertex(t, 1), net.vertex(t, 2), net.vertex(t, 0)};
+  const Vec3 n = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+  const double n_length = n.norm();
   double inside = 0, least = kInfinity;
-  for (int i = 0; i < 3; ++i) {
-    const Vec3 &from = net.vertex(t, i), &to = net.vertex(t, (i + 1) % 3);
-    const Vec3 edge = to - from, R = p - from, out = edge.cross(n);
-    const double length = edge.norm(), across = R.dot(out) / out.norm(), passed = R.dot(edge) / length;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec3 edge = corners[i + 1] - corners[i], R = p - corners[i], side = R.cross(edge);
+    const double length = edge.norm(), across = side.dot(n) / (length * n_length), passed = R.dot(edge) / length;
     inside = std::max(inside, across);
     double over_edge = std::max({-across, -passed, passed - length, 0.0});
-    if (const Neighbour other = net.neighbour(t, i); other.triangle >= 0 && over_edge < least) {
-      const Vec3 beyond = edge.cross(facetNormal(net, other.triangle));
-      over_edge = std::max(over_edge, R.dot(beyond) / beyond.norm());
+    if (const Neighbour other = net.neighbour(t, static_cast<int>(i)); other.triangle >= 0 && over_edge < least) {
+      const Vec3 m = (net.vertex(other.triangle, (other.edge + 2) % 3) - corners[i]).cross(edge);  // its normal
+      over_edge = std::max(over_edge, side.dot(m) / (length * m.norm()));
     }
     least = std::min(least, over_edge);
   }

@@ -10,7 +10,6 @@ namespace pincer::contact {
 namespace {
 
 constexpr double kBesideKnown = 0.966;  // cosine of 15 degrees: a normal that far from a patch's still belongs to it
-constexpr double kFits = 0.8;           // of the radius of the hollow: a finger no larger touches its inside at one place
 constexpr double kAround = 1.0 / 16;    // of r: what lies nearer to a contact than this differs by no more than kApart in its normal
 
 // Whether the place is on an edge or a vertex that this triangle has too.
@@ -35,16 +34,32 @@ double closestNormal(const SurfaceNet& net, std::int32_t triangle, const Vec3& n
 }  // namespace
 
 void SurfaceTouch::addFurther() {
-  const bool is_new = !isLookGood();
-  if (is_new && lookAlone()) return;
-  if (is_new) lookAround();
-  NearParts& near = nearParts();
-  const double way = wayFromLook();
-  for (const NearPart& part : near.parts) {
-    if (part.approach > way || seen_.isFull()) break;
-    if (part.skipped <= way) examine(part.place);
+  if (isVouched()) return;
+  if (!isLookGood() && !takeAhead()) {
+    if (lookAlone()) return;
+    lookAround();
+  } else if (isLookEnding()) {
+    if (!(tracker_.ahead.horizon > 0) && lookAlone()) return;
+    lookAhead();
   }
-  if (is_new) vouch(near);
+  NearParts& near = nearParts();
+  if (!(near.due > gone_)) examineDue(near);
+}
+
+// Those that are due, nearest first, until so many have been tried as a query may try; the next one goes on from there.
+void SurfaceTouch::examineDue(NearParts& near) {
+  const std::size_t size = near.parts.size(), first = std::min(at(tracker_.tried), size);
+  tracker_.tried = 0;
+  near.due = kInfinity;
+  for (std::size_t k = 0; k < size; ++k) {
+    const std::size_t i = first + k < size ? first + k : first + k - size;
+    NearPart& part = near.parts[i];
+    if (part.due <= gone_ && !seen_.isFull()) {
+      examine(part);
+      if (seen_.isFull()) tracker_.tried = static_cast<std::int32_t>(i + 1);
+    }
+    near.due = std::min(near.due, part.due);
+  }
 }
 
 // Whether what the last look found is still all that there can be: near enough, and what it left out still belongs to the same contacts.
@@ -87,19 +102,75 @@ bool SurfaceTouch::lookAlone() {
   if (!(way > 0)) return false;
   tracker_.look = {C_, reach_, way, way, true, {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()}};
   tracker_.look.n[at(f.slot)] = f.contact.n;
+  tracker_.ahead = {};
   return true;
 }
 
-// The last look found all that there are here too.
+// The last look found that there is no other contact here.
 bool SurfaceTouch::isVouched() const { return lost_.empty() && wayFromLook() < tracker_.look.vouched && isLookGood(); }
 
-void SurfaceTouch::lookAround() {
-  SurfaceLook& look = tracker_.look;
-  look = {C_, reach_, 0, 0, false, {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()}};
+// Whether addFurther() would do nothing, if the look is good.
+bool SurfaceTouch::isNothingDue() {
+  const SurfaceLook& look = tracker_.look;
+  if (look.is_alone) return wayFromLook() < look.vouched;
+  const LookParts& parts = lookParts();
+  const auto isWhole = [&](const NearParts& near, const SurfaceLook& of) { return areOf(near, s_.net.fingerprint(), of) && near.is_whole; };
+  return isWhole(parts.now, look) && parts.now.due > gone_ && (!isLookEnding() || isWhole(parts.ahead, tracker_.ahead));
+}
+
+// Time to work on the next one.
+bool SurfaceTouch::isLookEnding() const {
+  constexpr double kEnding = 0.5;  // of the horizon
+  return !tracker_.look.is_alone && wayFromLook() > kEnding * tracker_.look.horizon;
+}
+
+SurfaceLook SurfaceTouch::lookFrom(const Vec3& p_BC) const {
+  SurfaceLook look{p_BC, reach_, kLookHorizon * reach_, 0, false, {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()}};
   for (const FollowedContact& f : list_) {
     if (!f.fades && turnsSlowly(f.contact)) look.n[at(f.slot)] = f.contact.n;
   }
-  look.horizon = nearParts().look.horizon;
+  return look;
+}
+
+void SurfaceTouch::lookAround() {
+  tracker_.look = lookFrom(C_);
+  tracker_.ahead = {};
+  tracker_.tried = 0;
+  LookParts& parts = lookParts();
+  std::swap(parts.now, parts.ahead);
+  tracker_.look.horizon = nearParts().look.horizon;
+  takeDues(parts.ahead, parts.now);
+}
+
+// Begins the next look from where the centre will be when this one ends, or carries it on.
+void SurfaceTouch::lookAhead() {
+  constexpr int kVisits = 64;  // per query: some 3 us
+  if (!(tracker_.ahead.horizon > 0)) tracker_.ahead = lookFrom(placeAhead());
+  NearParts& ahead = lookParts().ahead;
+  if (!areOf(ahead, s_.net.fingerprint(), tracker_.ahead)) beginNearParts(s_.net, tracker_.ahead, ahead);
+  continueNearParts(s_.net, s_.search, goneAt(tracker_.ahead), kVisits, ahead);
+}
+
+// Straight on from the last look, as far as it holds.
+Vec3 SurfaceTouch::placeAhead() const {
+  const SurfaceLook& look = tracker_.look;
+  const Vec3 way = C_ - look.p_BC;
+  const double length = way.norm();
+  return length > 0 ? Vec3(look.p_BC + look.horizon / length * way) : C_;
+}
+
+// Whether the look ahead can take over, and does.
+bool SurfaceTouch::takeAhead() {
+  if (!(tracker_.ahead.horizon > 0)) return false;
+  tracker_.look = tracker_.ahead;
+  tracker_.ahead = {};
+  tracker_.tried = 0;
+  if (!isLookGood()) return false;
+  LookParts& parts = lookParts();
+  std::swap(parts.now, parts.ahead);
+  tracker_.look.horizon = nearParts().look.horizon;
+  takeDues(parts.ahead, parts.now);
+  return isLookGood();
 }
 
 // Whether the contact's normal turns by less than kHalfApart over a look's horizon, as far as its patch tells; on edges it turns fast.
@@ -114,37 +185,43 @@ bool SurfaceTouch::turnsSlowly(const ShellContact& contact) const {
   return true;
 }
 
+// What is due when is forgotten where the tracker comes from elsewhere than from the last query with this cache: set back, or copied.
+LookParts& SurfaceTouch::lookParts() {
+  LookParts& parts = cache_.partsOf(tracker_);
+  if (parts.gone != tracker_.gone || parts.p_BC != tracker_.p_BC_last) {
+    forgetDues(goneAt(parts.now.look), parts.now);
+    forgetDues(goneAt(parts.ahead.look), parts.ahead);
+    parts.gone = tracker_.gone;
+    parts.p_BC = tracker_.p_BC_last;
+  }
+  return parts;
+}
+
 NearParts& SurfaceTouch::nearParts() {
-  NearParts& near = cache_.partsAround(s_.net.fingerprint(), tracker_.look);
-  if (!areOf(near, s_.net.fingerprint(), tracker_.look)) findNearParts(s_.net, s_.search, tracker_.look, near);
+  NearParts& near = lookParts().now;
+  if (!areOf(near, s_.net.fingerprint(), tracker_.look)) beginNearParts(s_.net, tracker_.look, near);
+  continueNearParts(s_.net, s_.search, goneAt(tracker_.look), kWholeWalk, near);
   return near;
 }
 
-void SurfaceTouch::examine(std::int32_t place) {
-  const PatchBounds part = s_.search.part(place);
-  if (!part.mayHold(C_, reach_, Facing::front)) return;
-  const std::int32_t triangle = s_.search.triangleAt(place);
-  if (isFollowed(triangle, part) || wasSeen(triangle, part)) return;
-  if (const auto foot = s_.search.minimumOn(s_.net, place, C_, reach_)) tryPlace(*foot);
+// How far the centre has to move at least until the part may matter [m].
+double SurfaceTouch::wayTo(const NearPart& part) const {
+  constexpr double kRounding = 1e-12;  // of the mesh's size
+  const double approach = s_.search.part(part.place).approach(C_, reach_) - kRounding * s_.net.length();
+  return approach > 0 ? approach : std::max<double>(0, s_.search.wayToMinimumOn(s_.net, part.place, C_, reach_));
 }
 
-// Until the centre has come as near to any patch as that it matters, no look at the list is needed. What belongs to a followed contact
-// matters again when the contact may have moved off it.
-void SurfaceTouch::vouch(NearParts& near) {
-  constexpr double kSoon = 0.5;  // of the horizon: later parts aren't worth the closer look
-  double way = lost_.empty() ? near.look.horizon : 0;
-  for (NearPart& part : near.parts) {
-    const PatchBounds bounds = s_.search.part(part.place);
-    if (isFollowed(s_.search.triangleAt(part.place), bounds)) {
-      const bool stays = bounds.hollow * reach_ < kFits;
-      if (!stays) way = std::min(way, std::max<double>(part.approach, kAround * r_));
-    } else {
-      if (part.approach < kSoon * near.look.horizon)
-        part.skipped = std::max(part.approach, s_.search.wayToMinimumOn(s_.net, part.place, C_, reach_));
-      way = std::min<double>(way, part.skipped);
-    }
-  }
-  tracker_.look.vouched = std::max(0.0, way);
+void SurfaceTouch::examine(NearPart& near) {
+  const PatchBounds part = s_.search.part(near.place);
+  const std::int32_t triangle = s_.search.triangleAt(near.place);
+  const bool held_one = near.due == tracker_.gone;
+  near.due = gone_;
+  if (held_one && isFollowed(triangle, part)) return;
+  const double way = wayTo(near);
+  near.due = gone_ + way;
+  if (way > 0 || !part.mayHold(C_, reach_, Facing::front)) return;
+  if (isFollowed(triangle, part) || wasSeen(triangle, part)) return;
+  if (const auto foot = s_.search.minimumOn(s_.net, near.place, C_, reach_)) tryPlace(*foot);
 }
 
 // Whether a contact stands for this patch: beside it, with a normal that the patch's could be. (Not any of its cone's: along a groove that

@@ -6,7 +6,9 @@
 namespace pincer::contact {
 
 PatchCache::PatchCache(int cells) : places_(std::bit_ceil(static_cast<std::size_t>(std::max(cells, 1)))) {
-  for (NearParts& near : parts_) near.parts.reserve(kMostParts);
+  for (LookParts& looks : parts_) {
+    for (NearParts* near : {&looks.now, &looks.ahead}) near->parts.reserve(kMostParts);
+  }
 }
 
 }  // namespace pincer::contact

@@ -4,7 +4,6 @@
 // mesh and look, so no result depends on what a cache holds; several meshes may share one. Belongs to a scratch: one thread at a time.
 #pragma once
 #include <array>
-#include <bit>
 #include <cstdint>
 #include <vector>
 
@@ -27,15 +26,14 @@ class PatchCache {
     return places_[(static_cast<std::uint64_t>(triangle) ^ net) & (places_.size() - 1)];
   }
 
-  // The place for what is near the look of a finger of this mesh.
-  NearParts& partsAround(std::uint64_t net, const SurfaceLook& look) {
-    const std::uint64_t mixed = (std::bit_cast<std::uint64_t>(look.p_BC.sum()) ^ net) * 0x9e3779b97f4a7c15ull;
-    return parts_[mixed >> 61];
+  // The place for what is near a finger: the same for as long as its tracker stays where it is, and another than its neighbours'.
+  LookParts& partsOf(const SurfaceTracker& tracker) {
+    return parts_[reinterpret_cast<std::uintptr_t>(&tracker) / sizeof(SurfaceTracker) % parts_.size()];
   }
 
  private:
   std::vector<Place> places_;
-  std::array<NearParts, 8> parts_;
+  std::array<LookParts, 31> parts_;  // a prime, so that fingers on one of many bodies have different ones
 };
 
 }  // namespace pincer::contact

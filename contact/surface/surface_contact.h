@@ -59,7 +59,7 @@ struct SurfaceLook {
   Vec3 p_BC = Vec3::Zero();  // where the centre was
   double reach = 0;          // further contacts were wanted no further than this from it [m]
   double horizon = 0;        // the centre's way for which what it found is all that may be met [m]; 0: look again
-  double vouched = 0;        // the centre's way for which none of it is met but what is known [m]
+  double vouched = 0;        // the centre's way for which nothing is met but the contact that is known [m]; 0: ask the list
   bool is_alone = false;     // nothing may be met but the one contact that was followed (lone_contact.h)
   // The normals of the contacts that were followed, by slot, zero without one: while they have hardly turned, what faces along them is theirs.
   std::array<Vec3, kMaxSurfaceContacts> n = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
@@ -73,6 +73,10 @@ struct SurfaceTracker {
   Vec3 p_BC_last = Vec3::Zero();  // where it was
   bool has_centre = false;        // whether it has been outside
   SurfaceLook look;
+  SurfaceLook ahead;         // that takes over where `look` will end, and is worked out meanwhile (near_parts.h); horizon 0: none
+  std::int32_t tried = 0;    // parts of the look's list whose turn to be tried has passed; the next query goes on behind them
+  double gone = 0;           // the length of the centre's way so far, and of what the reach has grown by [m]
+  double reach = 0;          // of the last query: r + margin [m]
   std::uint32_t status = 0;  // bits of QueryStatus of the last query
 };
 

@@ -202,8 +202,10 @@ std::optional<Foot> SurfaceSearch::minimumOn(const SurfaceNet& net, std::int32_t
 float SurfaceSearch::wayToMinimumOn(const SurfaceNet& net, std::int32_t place, const Vec3& p, double reach) const {
   constexpr double kRounding = 1e-12;  // of the mesh's size, of the differences between points that are compared
   const std::int32_t triangle = triangleAt(place);
-  const double too_far = std::sqrt(closestOnFacet(net, triangle, p).distance2) - part(place).bulge - reach;
-  return below(std::max(too_far, wayToFlatMinimum(net, triangle, p)) - kRounding * net.length());
+  const double rounding = kRounding * net.length();
+  double way = wayToFlatMinimum(net, triangle, p);
+  if (!(way > rounding)) way = std::sqrt(closestOnFacet(net, triangle, p).distance2) - part(place).bulge - reach;
+  return below(way - rounding);
 }
 
 bool SurfaceSearch::isHidden(const SurfaceNet& net, const Vec3& a, const Vec3& b) const {

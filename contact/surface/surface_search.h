@@ -54,7 +54,14 @@ class SurfaceSearch {
   // [m], which may shrink meanwhile, each with how far it has to move for that at least. Branches of the tree and patches whose cones are
   // `passed` are left out. Allocates nothing.
   template <class Visit>
-  void visitParts(const Vec3& p, double reach, const double& horizon, const ConesAlong& passed, Visit&& visit) const;
+  void visitParts(const Vec3& p, double reach, const double& horizon, const ConesAlong& passed, Visit&& visit) const {
+    TreeWalk walk;
+    walkParts(p, reach, horizon, passed, walk, kWholeWalk, visit);
+  }
+  // The same, as far as at most `most` visits of the tree's nodes and leaves carry `walk` on.
+  template <class Visit>
+  void walkParts(const Vec3& p, double reach, const double& horizon, const ConesAlong& passed, TreeWalk& walk, int most,
+                 Visit&& visit) const;
   PatchBounds part(std::int32_t place) const { return group(place / kLanes).at(place % kLanes); }
   std::int32_t triangleAt(std::int32_t place) const { return tree_.order()[static_cast<std::size_t>(place)]; }
 
@@ -130,10 +137,11 @@ inline LaneMask SurfaceSearch::PatchGroup::mayHold(const LanesPoint& p, Lanes bo
 }
 
 template <class Visit>
-void SurfaceSearch::visitParts(const Vec3& p, double reach, const double& horizon, const ConesAlong& passed, Visit&& visit) const {
+void SurfaceSearch::walkParts(const Vec3& p, double reach, const double& horizon, const ConesAlong& passed, TreeWalk& walk, int most,
+                              Visit&& visit) const {
   const LanesPoint x(p);
   const double rounded = tree_.rounding(p);
-  tree_.visitNear(p, reach, horizon, passed, [&](std::int32_t leaf) {
+  tree_.visitNear(p, reach, horizon, passed, walk, most, [&](std::int32_t leaf) {
     const PatchGroup& patches = group(leaf);
     const Lanes way = LanesPoint::toLanes(horizon + rounded);
     const LaneMask is_near = patches.mayHold(x, LanesPoint::toLanes(reach), way, Facing::front) & ~passed.hold(patches.cones);

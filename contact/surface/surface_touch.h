@@ -11,7 +11,7 @@
 
 namespace pincer::contact {
 
-constexpr int kMaxTries = 16;       // places from which a further contact is looked for, per query
+constexpr int kMaxTries = 16;       // places from which a further contact is looked for, per query; the others' turn comes in the next
 constexpr double kOnePlace = 1e-3;  // of r: contacts nearer than this are one
 constexpr double kLeap = 0.5;       // of r per query, 4 m/s of a finger of 8 mm at 1 kHz: the centre was put there, not led
 
@@ -39,6 +39,7 @@ class SurfaceTouch {
         r_(r),
         reach_(r + margin),
         moved_((C - tracker.p_BC_last).norm()),
+        gone_(tracker.gone + moved_ + std::max(0.0, reach_ - tracker.reach)),
         eases_(surface.variant == SurfaceVariant::smooth && !(moved_ > kLeap * r)),
         tracker_(tracker),
         cache_(cache) {}
@@ -50,7 +51,7 @@ class SurfaceTouch {
     if (list_.empty() && !lost_.empty()) findLost();
     if (!(nearestHeight() < reach_) && lost_.empty()) takeNearest();
     if (eases_) fadeLost();
-    if (nearestHeight() < reach_ && !isVouched()) addFurther();
+    if (nearestHeight() < reach_) addFurther();
     write(found);
     return found;
   }
@@ -74,21 +75,32 @@ class SurfaceTouch {
   bool stands(const Foot& foot, const Vec3& S, const Vec3& n, std::int32_t triangle, const PatchBounds& part) const;
   bool isFollowed(std::int32_t triangle, const PatchBounds& part) const;
   bool wasSeen(std::int32_t triangle, const PatchBounds& part) const;
-  double wayFromLook() const { return (C_ - tracker_.look.p_BC).norm() + std::max(0.0, reach_ - tracker_.look.reach); }
+  double wayFrom(const SurfaceLook& look) const { return (C_ - look.p_BC).norm() + std::max(0.0, reach_ - look.reach); }
+  double wayFromLook() const { return wayFrom(tracker_.look); }
   bool isLookGood() const;
   bool isLookGoodFor(int slot, const Vec3& n) const;
   bool isVouched() const;
+  bool isNothingDue();
+  bool isLookEnding() const;
   static bool staysOn(const SurfaceLook& look, int slot, const Vec3& n);
   bool isAlone() const;
   bool lookAlone();
   void lookAround();
+  void lookAhead();
+  LookParts& lookParts();
+  bool takeAhead();
+  SurfaceLook lookFrom(const Vec3& p_BC) const;
+  Vec3 placeAhead() const;
   bool turnsSlowly(const ShellContact& contact) const;
   NearParts& nearParts();
-  void examine(std::int32_t place);
-  void vouch(NearParts& near);
+  double goneAt(const SurfaceLook& look) const { return gone_ - wayFrom(look); }
+  double wayTo(const NearPart& part) const;
+  void examineDue(NearParts& near);
+  void examine(NearPart& part);
   void keepDeepestFurther(const ShellContact& candidate);
   void write(SurfaceContacts& found);
   void keepCentre(const ShellContact& main);
+  void keepParts();
 
   bool touches() const { return nearestHeight() < r_; }
   double nearestHeight() const {
@@ -144,6 +156,7 @@ class SurfaceTouch {
   const Vec3 C_;
   const double r_, reach_;
   const double moved_;  // the centre since the last query [m]
+  const double gone_;   // SurfaceTracker::gone here
   const bool eases_;  // the other variants show what they do at edges: jump; after a leap of the centre there is nothing to be steady with
   SurfaceTracker& tracker_;
   PatchCache& cache_;

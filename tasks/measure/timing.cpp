@@ -64,6 +64,22 @@ CallCost costOfCalls(const std::function<void(std::int64_t i)>& work, const Timi
   return {quantileOf(batches, 0.5), quantileOf(singles, 0.999), quantileOf(singles, 1)};
 }
 
+double tailOfWalk(const std::function<void()>& begin, const std::function<void(std::int64_t i)>& work, std::int64_t calls, double q,
+                  int walks) {
+  const double reading = costOfReadingTheClock();
+  std::vector<double> least(static_cast<std::size_t>(calls), std::numeric_limits<double>::infinity());
+  for (int k = 0; k < walks; ++k) {
+    begin();
+    for (std::int64_t i = 0; i < calls; ++i) {
+      const double start = steadySeconds();
+      work(i);
+      double& cost = least[static_cast<std::size_t>(i)];
+      cost = std::min(cost, 1e9 * (steadySeconds() - start - reading));
+    }
+  }
+  return quantileOf(std::move(least), q);
+}
+
 double ratioOfCosts(const std::function<void()>& a, const std::function<void()>& b, int rounds) {
   a();
   b();

@@ -33,6 +33,11 @@ struct TimingBudget {
 // `work(i)` does one call, i = 0, 1, 2, ... without end: paths are walked, not repeated in place.
 CallCost costOfCalls(const std::function<void(std::int64_t i)>& work, const TimingBudget& budget = {});
 
+// The q-th smallest cost of a walk's calls [ns], each the least of several walks: a call does the same in all of them, what interrupts it
+// doesn't. `begin` puts the walk back to its start, `work(i)` does its i-th call.
+double tailOfWalk(const std::function<void()>& begin, const std::function<void(std::int64_t i)>& work, std::int64_t calls, double q = 0.999,
+                  int walks = 7);
+
 // Cost of `a` over cost of `b`, each a batch of work [-].
 double ratioOfCosts(const std::function<void()>& a, const std::function<void()>& b, int rounds = 11);
 
