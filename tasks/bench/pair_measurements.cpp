@@ -46,7 +46,8 @@ std::vector<PairBody> pairBodies() {
           {"capsule", capsule, capsule, lying, capsule.radius},
           {"cylinder", cylinder, cylinder, Quat::Identity(), cylinder.half_length},
           {"hull", hull, hull, Quat::Identity(), 0.016},
-          {"mesh", mesh, box, Quat::Identity(), box.half.z(), true}};
+          {"mesh", mesh, box, Quat::Identity(), box.half.z(), true},
+          {"half-space", contact::HalfSpace{}, contact::HalfSpace{}, Quat::Identity(), 0}};
 }
 
 // Draws that every standard library makes alike.
@@ -79,11 +80,23 @@ double leastGap(const PairPoints& p) {
   return least;
 }
 
+// Of half-spaces the normal is known.
+bool isHalfSpace(const Shape& shape) { return std::holds_alternative<contact::HalfSpace>(shape); }
+ConvexGap bestGap(const Shape& a, const Pose& X_WA, const Shape& b) {
+  if (!isHalfSpace(b)) return convexGap(a, X_WA, b, Pose{});
+  const PlainSolid solid = plainSolid(a, X_WA);
+  return {Vec3::UnitZ(), solid.furthest(-Vec3::UnitZ()).z() - solid.rounding};
+}
+double gapAlong(const Shape& a, const Pose& X_WA, const Shape& b, const Vec3& n) {
+  if (!isHalfSpace(b)) return convexGapAlong(a, X_WA, b, Pose{}, n);
+  return angleBetween(n, Vec3::UnitZ()) > 1e-12 ? -kInfinity : bestGap(a, X_WA, b).gap;
+}
+
 // a around b, `gap` from it, b at the origin.
 Pose placed(Draws& draws, const Shape& a, const Shape& b, double gap) {
   Pose X_WA{draws.rotation(), 0.1 * draws.direction()};
   for (int i = 0; i < 6; ++i) {
-    const ConvexGap g = convexGap(a, X_WA, b, Pose{});
+    const ConvexGap g = bestGap(a, X_WA, b);
     X_WA.p += (gap - g.gap) * g.n;
   }
   return X_WA;
@@ -107,12 +120,12 @@ PlacedErrors errorsOver(const PairBody& a, const PairBody& b, double from, doubl
       ++e.missed;
       continue;
     }
-    const ConvexGap best = convexGap(a.solid, X_WA, b.solid, Pose{});
+    const ConvexGap best = bestGap(a.solid, X_WA, b.solid);
     if (a.is_mesh || b.is_mesh) {
       if (from >= 0) e.gap = std::max(e.gap, std::abs(leastGap(p) - best.gap));
       continue;
     }
-    const double mine = convexGapAlong(a.solid, X_WA, b.solid, Pose{}, p.points[0].n_W);
+    const double mine = gapAlong(a.solid, X_WA, b.solid, p.points[0].n_W);
     e.direction = std::max(e.direction, (best.gap - mine) / kPairSize);
     e.gap = std::max(e.gap, std::abs(leastGap(p) - mine));
   }
@@ -204,6 +217,7 @@ std::vector<Measurement> pairMeasurements() {
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     for (std::size_t j = i; j < bodies.size(); ++j) {
       const PairBody a = bodies[i], b = bodies[j];
+      if (isHalfSpace(a.shape)) continue;
       measurements.push_back(
           {fmt::format("pair/{}-{}", a.name, b.name), [a, b](MeasureContext& context) { return measurePair(a, b, context); }});
     }
