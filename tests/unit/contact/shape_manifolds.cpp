@@ -23,7 +23,7 @@ using tests::about;
 using tests::direction;
 using tests::RandomNumbers;
 
-constexpr double kSize = 0.03;  // of the bodies [m]
+constexpr double kStandingSize = 0.03;  // of the bodies [m]
 
 struct Standing {
   const char* name;
@@ -48,21 +48,21 @@ std::vector<Standing> standingBodies() {
 }
 
 template <class Judge>
-void forAllPairs(Judge judge) {
+void forAllStanding(Judge judge) {
   const std::vector<Standing> bodies = standingBodies();
   for (const Standing& a : bodies) {
     for (const Standing& b : bodies) judge(a, b);
   }
 }
 
-PairPoints ask(const Shape& a, const Pose& X_BA, const Shape& b, const Vec3& last = Vec3::Zero()) {
+PairPoints askPair(const Shape& a, const Pose& X_BA, const Shape& b, const Vec3& last = Vec3::Zero()) {
   PatchCache cache(16);
   PairPoints out;
   collideShapes(a, X_BA, b, Pose{}, 1e-3, cache, out, last);
   return out;
 }
 
-bool isIn(const Shape& solid, const Vec3& p) {
+bool isWithin(const Shape& solid, const Vec3& p) {
   return std::visit(
       [&](const auto& s) {
         if constexpr (std::is_same_v<std::decay_t<decltype(s)>, Mesh>)
@@ -83,7 +83,7 @@ struct SharedFace {
     const Pose X_AB = X_BA.inverse();
     for (double x = -kReach; x < kReach; x += kStep) {
       for (double y = -kReach; y < kReach; y += kStep) {
-        if (!isIn(b.solid, {x, y, b.high - kHair}) || !isIn(a.solid, X_AB * Vec3(x, y, X_BA.p.z() - a.low + kHair))) continue;
+        if (!isWithin(b.solid, {x, y, b.high - kHair}) || !isWithin(a.solid, X_AB * Vec3(x, y, X_BA.p.z() - a.low + kHair))) continue;
         area += kStep * kStep;
         centre += kStep * kStep * Vec2(x, y);
       }
@@ -112,19 +112,19 @@ struct Outline {
   }
 };
 
-bool isMesh(const Shape& shape) { return std::holds_alternative<Mesh>(shape); }
+bool isMeshShape(const Shape& shape) { return std::holds_alternative<Mesh>(shape); }
 
 // Four points can't span a disc, nor a polygon of twelve sides: a square spans 2/pi of its circle. Not promised of a solid on a mesh, which may
 // be left with two points.
 TEST(Manifolds, SpanWhatTheTwoShare) {
   RandomNumbers random(3);
-  forAllPairs([&](const Standing& a, const Standing& b) {
-    if (isMesh(a.shape) != isMesh(b.shape)) return;
+  forAllStanding([&](const Standing& a, const Standing& b) {
+    if (isMeshShape(a.shape) != isMeshShape(b.shape)) return;
     for (int i = 0; i < 6; ++i) {
       const Vec3 beside(random.uniform(-0.01, 0.01), random.uniform(-0.01, 0.01), b.high + a.low - 1e-6);
       const Pose X_BA{about(Vec3::UnitZ(), random.uniform(-3, 3)), beside};
       const SharedFace shared(a, X_BA, b);
-      const PairPoints p = ask(a.shape, X_BA, b.shape);
+      const PairPoints p = askPair(a.shape, X_BA, b.shape);
       ASSERT_GE(p.count, 4) << a.name << " on " << b.name;
       const Outline outline(p, shared.centre);
       EXPECT_TRUE(outline.holds) << a.name << " on " << b.name << " " << i;
@@ -137,12 +137,12 @@ TEST(Manifolds, SpanWhatTheTwoShare) {
 // 20 mm/s and 0.2 rad/s at 1 kHz.
 TEST(Manifolds, KeepTheirNamesWhileTheBodySlidesAndTurns) {
   constexpr int kTicks = 500;
-  forAllPairs([&](const Standing& a, const Standing& b) {
+  forAllStanding([&](const Standing& a, const Standing& b) {
     PairPoints before;
     int points = 0, kept = 0;
     for (int i = 0; i < kTicks; ++i) {
       const Pose X_BA{about(Vec3::UnitZ(), 0.3 + 2e-4 * i), {2e-5 * i - 0.005, 0.001, b.high + a.low - 1e-6}};
-      const PairPoints now = ask(a.shape, X_BA, b.shape);
+      const PairPoints now = askPair(a.shape, X_BA, b.shape);
       const std::set<std::uint32_t> names = tests::featuresOf(before);
       for (int k = 0; i > 0 && k < now.count; ++k, ++points) kept += names.contains(now.points[static_cast<std::size_t>(k)].feature);
       before = now;
@@ -154,20 +154,21 @@ TEST(Manifolds, KeepTheirNamesWhileTheBodySlidesAndTurns) {
 // Four points on a face prove it the best direction; tilts from round-off to a degree ask where that ends. The oracle knows all directions.
 TEST(Manifolds, OnAFaceTheLastNormalIsAsGoodAsAllDirections) {
   RandomNumbers random(4);
-  forAllPairs([&](const Standing& a, const Standing& b) {
-    if (isMesh(a.shape) || isMesh(b.shape)) return;
+  forAllStanding([&](const Standing& a, const Standing& b) {
+    if (isMeshShape(a.shape) || isMeshShape(b.shape)) return;
     for (int i = 0; i < 12; ++i) {
       const Vec3 axis = direction(random);
       const Quat turn = about(Vec3::UnitZ(), random.uniform(-3, 3));
       const Quat tilt = about(Vec3(axis.x(), axis.y(), 0).normalized(), std::pow(10, random.uniform(-13, -2)));
       const double gap = i % 2 == 0 ? -1e-6 : 1e-6;
       const Pose X_BA{tilt * turn, {random.uniform(-0.02, 0.02), random.uniform(-0.02, 0.02), b.high + a.low + gap}};
-      const PairPoints p = ask(a.shape, X_BA, b.shape, Vec3::UnitZ());
+      const PairPoints p = askPair(a.shape, X_BA, b.shape, Vec3::UnitZ());
       if (p.count == 0) continue;
       const double mine = tasks::convexGapAlong(a.shape, X_BA, b.shape, Pose{}, p.points[0].n_W);
       const double best = tasks::convexGap(a.shape, X_BA, b.shape, Pose{}).gap;
       const bool boxes = std::holds_alternative<Box>(a.shape) && std::holds_alternative<Box>(b.shape);
-      EXPECT_GE(mine, best - (boxes ? 1e-6 : 1e-9) * kSize) << a.name << " on " << b.name << " " << i;  // as in shape_pairs_judged.cpp
+      EXPECT_GE(mine, best - (boxes ? 1e-6 : 1e-9) * kStandingSize)
+          << a.name << " on " << b.name << " " << i;  // as in shape_pairs_judged.cpp
     }
   });
 }
