@@ -8,6 +8,8 @@ namespace {
 
 using engine::SideKind;
 
+constexpr double kEndless = std::numeric_limits<double>::infinity();  // radius of a half-space
+
 // One finger, in the middle of the tick, in front of all bodies.
 class FingerLook {
  public:
@@ -26,7 +28,8 @@ class FingerLook {
     const engine::BodyScratch& mid = scratch_.world.bodies[body];
     const Vec3& p_WC = point_.p_mid_W;
     const Vec3 p_BC = mid.R_WB_mid.transpose() * (p_WC - mid.X_WB_mid.p);
-    const double bound = contact::lowerBoundOfGap(b.shape, p_BC, f_.radius);
+    const double bound = b.bounding_radius < kEndless ? (p_WC - mid.X_WI_mid.p).norm() - b.bounding_radius - f_.radius
+                                                      : contact::lowerBoundOfGap(b.shape, p_BC, f_.radius);
     const double margin = marginTo(mid);
     const std::size_t pair = static_cast<std::size_t>(finger_) * model_.world.bodies.size() + static_cast<std::size_t>(body);
     if (bound > std::max(f_.reach, margin)) {
@@ -61,7 +64,7 @@ class FingerLook {
       Vec3& nearest_n_W = scratch_.nearest_n_W[finger_];
       if constexpr (std::is_same_v<Found, contact::FingerContacts>) {
         nearest_n_W = mid.R_WB_mid * main.n_B;
-        scratch_.nearest_p_F[finger_] = scratch_.q_mid_WF[finger_].conjugate() * (to_tip_W + main.phi * nearest_n_W);
+        scratch_.nearest_d_W[finger_] = to_tip_W + main.phi * nearest_n_W;
       } else {
         nearest_n_W = -to_tip_W;  // where the facet is, whatever its shading says
       }

@@ -38,6 +38,7 @@ void setInputs(const GraspModel& model, const GraspState& state, std::span<const
 Vec3 sumContacts(const GraspScratch& scratch, int finger, double h, FingerReport& report) {
   Vec3 p_sum = Vec3::Zero(), n_sum = Vec3::Zero(), impulse_W = Vec3::Zero(), tangential_W = Vec3::Zero();
   double normal = 0, torsion = 0, largest = 0;  // impulses
+  int pushing = 0;
   for (const engine::Contact& c : scratch.world.contacts) {
     if (c.a.kind != engine::SideKind::kPoint || c.a.index != finger || !c.active()) continue;
     const double r_n = c.r[engine::kNormalRow];
@@ -49,8 +50,12 @@ Vec3 sumContacts(const GraspScratch& scratch, int finger, double h, FingerReport
     report.sliding = report.sliding || c.sliding;
     p_sum += r_n * c.p_W;
     n_sum += r_n * n_W;
-    if (r_n > largest) report.body = c.b.index;
-    largest = std::max(largest, r_n);
+    ++pushing;
+    if (!(r_n > largest)) continue;
+    largest = r_n;
+    report.body = c.b.index;
+    report.p_WC = c.p_W;
+    report.n_W = n_W;
   }
   report.touching = normal > 0;
   if (!report.touching) return Vec3::Zero();
@@ -58,8 +63,10 @@ Vec3 sumContacts(const GraspScratch& scratch, int finger, double h, FingerReport
   report.normal_force = normal / h;
   report.tangential_force = tangential_W.norm() / h;
   report.torsion = torsion / h;
-  report.p_WC = p_sum / normal;
-  if (n_sum.squaredNorm() > 0) report.n_W = n_sum.normalized();
+  if (pushing > 1) {
+    report.p_WC = p_sum / normal;
+    if (n_sum.squaredNorm() > 0) report.n_W = n_sum.normalized();
+  }
   const Vec3 to_mean = report.p_WC - scratch.world.points[finger].p_mid_W;
   return to_mean.squaredNorm() > 0 ? to_mean : Vec3(-report.n_W);
 }
@@ -72,30 +79,27 @@ void averageOverTick(const engine::PointScratch& point, double tick, FingerRepor
   report.tangential_force = (report.f_contact_W - report.n_W * report.f_contact_W.dot(report.n_W)).norm();
 }
 
-// Where on the pad it is touched, or would be.
-void reportPlace(const GraspModel& model, int finger, const Vec3& touch_W, GraspScratch& scratch) {
+// What of the pad is touched, or would be. All geometry is that of the middle of the tick.
+void reportTouch(const GraspModel& model, int finger, const Vec3& touch_W, GraspScratch& scratch) {
   FingerReport& report = scratch.fingers[finger];
-  const FingerModel& f = model.fingers[finger];
-  const Quat q_FW = scratch.q_mid_WF[finger].conjugate();  // all geometry is that of the middle of the tick
-  const Vec3& n_W = scratch.nearest_n_W[finger];
-  const Vec3& nearest_p_F = scratch.nearest_p_F[finger];
-  if (report.touching && f.shape)
-    report.place_L = placeOnPad(f, q_FW * (report.p_WC - scratch.world.points[finger].p_mid_W), q_FW * -report.n_W);
-  if (report.touching && !f.shape) report.place_L = placeOnPad(f, q_FW * touch_W);
-  if (report.touching || n_W.isZero(0)) return;
-  report.nearest_place_L = f.shape ? placeOnPad(f, nearest_p_F, q_FW * -n_W) : placeOnPad(f, q_FW * -n_W);
+  const bool has_shape = model.fingers[finger].shape.has_value();
+  const Quat& q_WF = scratch.q_mid_WF[finger];
+  const Vec3 n_W = -scratch.nearest_n_W[finger];
+  if (report.touching) {
+    report.touch = {true, q_WF, has_shape ? Vec3(report.p_WC - scratch.world.points[finger].p_mid_W) : touch_W, -report.n_W};
+  } else if (!n_W.isZero(0)) {
+    report.nearest = {true, q_WF, has_shape ? scratch.nearest_d_W[finger] : n_W, n_W};
+  }
 }
 
 // What the next tick needs to know of this one.
-void rememberFinger(const GraspModel& model, const FingerInput& input, FingerReport& report, const FingerModel& finger,
-                    FingerState& memory) {
-  if (report.touching && memory.touching) report.place_rate_L = (report.place_L - memory.place_L) / model.world.options.h;
+void rememberFinger(const FingerInput& input, FingerReport& report, const FingerModel& finger, FingerState& memory) {
+  report.last_touch = memory.touch;
   if (finger.pad.isSoft()) report.patch_radius = patchRadius(finger.pad, finger.radius, report.normal_force);
   memory.seen = true;
   memory.q_WF = input.q_WF;
-  memory.touching = report.touching;
   memory.normal_force = report.normal_force;
-  memory.place_L = report.place_L;
+  memory.touch = report.touch;
   if (report.touching) memory.n_W = report.n_W;
 }
 
@@ -104,7 +108,7 @@ void reportFinger(const GraspModel& model, const GraspState& state, int finger, 
   FingerReport& report = scratch.fingers[finger];
   const engine::PointScratch& point = scratch.world.points[finger];
   const Vec3 touch_W = sumContacts(scratch, finger, h, report);
-  reportPlace(model, finger, touch_W, scratch);
+  reportTouch(model, finger, touch_W, scratch);
   const double tick = model.world.options.h;
   if (h < tick) averageOverTick(point, tick, report);
   report.f_user_W = report.f_contact_W + scratch.inputs[finger].f_W;
@@ -144,7 +148,7 @@ GraspScratch::GraspScratch(const GraspModel& model)
       baselines(model.fingers.size()),
       orientations(model.fingers.size()),
       q_mid_WF(model.fingers.size(), Quat::Identity()),
-      nearest_p_F(model.fingers.size()) {}
+      nearest_d_W(model.fingers.size()) {}
 
 GraspState makeState(const GraspModel& model, const std::vector<engine::BodyStart>& starts, const std::vector<Vec3>& fingers) {
   GraspState state{engine::makeState(model.world, starts, fingers), {}, {}, {}};
@@ -168,29 +172,11 @@ engine::StepReport step(const GraspModel& model, GraspState& state, GraspScratch
     } else {
       scratch.fingers[i] = scratch.baselines[i];
     }
-    rememberFinger(model, inputs[i], scratch.fingers[i], model.fingers[i], state.fingers[i]);
+    rememberFinger(inputs[i], scratch.fingers[i], model.fingers[i], state.fingers[i]);
     scratch.orientations[i] = inputs[i].q_WF;
   }
   engine::mark(scratch.world, engine::Stage::kFingerReport);
   return report;
-}
-
-Vec2 placeOnPad(const FingerModel& finger, const Vec3& d_F) {
-  const Vec3 radial_F = finger.pad_normal_F.cross(finger.distal_F);
-  const Vec2 tangent(d_F.dot(finger.distal_F), d_F.dot(radial_F));
-  const double sine = tangent.norm();
-  if (sine < 1e-300) return Vec2::Zero();
-  if (finger.shape) return placeOnPad(finger, contact::supportOf(*finger.shape, d_F.normalized()), d_F.normalized());
-  return (finger.radius * std::atan2(sine, d_F.dot(finger.pad_normal_F)) / sine) * tangent;
-}
-
-Vec2 placeOnPad(const FingerModel& finger, const Vec3& p_F, const Vec3& normal_F) {
-  if (!finger.shape) return placeOnPad(finger, normal_F);
-  const Vec3 from_centre = p_F - contact::supportOf(*finger.shape, finger.pad_normal_F);
-  const Vec2 tangent(from_centre.dot(finger.distal_F), from_centre.dot(finger.pad_normal_F.cross(finger.distal_F)));
-  const double length = tangent.norm();
-  if (length < 1e-300) return Vec2::Zero();
-  return contact::arcOverSkin(*finger.shape, finger.pad_normal_F, normal_F, p_F) / length * tangent;
 }
 
 }  // namespace pincer::grasp

@@ -7,6 +7,7 @@
 #include "engine/world/step.h"
 #include "grasp/baseline/baseline_state.h"
 #include "grasp/model.h"
+#include "grasp/pad_place.h"
 
 namespace pincer::grasp {
 
@@ -22,10 +23,9 @@ struct FingerInput {
 struct FingerState {
   bool seen = false;             // a tick has been
   Quat q_WF = Quat::Identity();  // orientation at the end of the last tick
-  bool touching = false;         // in the last tick, and there:
-  Vec3 n_W = Vec3::UnitZ();      //   normal of the body
-  double normal_force = 0;       //   [N]
-  Vec2 place_L = Vec2::Zero();   //   place on the pad [m]
+  PadTouch touch;                // of the last tick
+  Vec3 n_W = Vec3::UnitZ();      // normal of the body where it last touched
+  double normal_force = 0;       // of the last tick [N]
   BaselineState baseline;
 };
 
@@ -47,12 +47,11 @@ struct FingerReport {
   double normal_force = 0;       // [N], >= 0
   double tangential_force = 0;   // [N]
   bool sliding = false;
-  double torsion = 0;                   // moment of the contacts on the finger, about n_W [N m]
-  double patch_radius = 0;              // of a soft pad [m]
-  Vec2 place_L = Vec2::Zero();          // contact on the pad: arc length from the pad's centre, towards (distal, radial) [m]
-  Vec2 place_rate_L = Vec2::Zero();     // its velocity over the tick; zero where the finger didn't touch before [m/s]
-  double gap = 0;                       // to the nearest body [m]; larger than `reach`: a lower bound
-  Vec2 nearest_place_L = Vec2::Zero();  // where the nearest point would touch the pad, while nothing does [m]
+  double torsion = 0;          // moment of the contacts on the finger, about n_W [N m]
+  double patch_radius = 0;     // of a soft pad [m]
+  PadTouch touch, last_touch;  // where on the pad, now and in the tick before: placeOnPad, placeRateOnPad (pad_place.h)
+  double gap = 0;              // to the nearest body [m]; larger than `reach`: a lower bound
+  PadTouch nearest;            // where the nearest point would touch the pad, while nothing does
 };
 
 struct GraspScratch {
@@ -64,7 +63,7 @@ struct GraspScratch {
   std::vector<FingerReport> baselines;  // of fingers that aren't proxies (baseline.h)
   std::vector<Quat> orientations;       // of the fingers at its end
   std::vector<Quat> q_mid_WF;           // and in its middle
-  std::vector<Vec3> nearest_p_F;        // per finger: its own point nearest to the nearest body, in F [m]
+  std::vector<Vec3> nearest_d_W;        // per finger, from its centre to its own point nearest to the nearest body [m]
 };
 
 // State with every body at `starts` and every finger's device at `fingers` [m].
@@ -73,11 +72,5 @@ GraspState makeState(const GraspModel& model, const std::vector<engine::BodyStar
 // One tick. `inputs` has one entry per finger. Results per finger in scratch.fingers. Allocates nothing, throws nothing.
 engine::StepReport step(const GraspModel& model, GraspState& state, GraspScratch& scratch, std::span<const FingerInput> inputs,
                         std::span<const engine::MotionInput> motions = {});
-
-// Place on the pad of the fingertip's point in direction `d_F` (from the centre, of any length): arc length over the skin from the pad's centre (the
-// finger's support point along the pad normal), in the direction in which it lies about the pad normal.
-Vec2 placeOnPad(const FingerModel& finger, const Vec3& d_F);
-// The same of any finger's surface point `p_F` [m] with outward normal `normal_F`.
-Vec2 placeOnPad(const FingerModel& finger, const Vec3& p_F, const Vec3& normal_F);
 
 }  // namespace pincer::grasp

@@ -15,11 +15,12 @@ struct Direction {
   double length;
 };
 
-template <class Vector>
-Direction<Vector> directionOf(const Vector& v, const Vector& choice) {
+// `choice` may be an expression; it is made only where it is needed.
+template <class Vector, class Choice>
+Direction<Vector> directionOf(const Vector& v, const Choice& choice) {
   constexpr double kShortest = 1e-100;
   const double length = std::sqrt(v.squaredNorm());
-  if (length < kShortest) return {choice, 0};
+  if (length < kShortest) return {Vector(choice), 0};
   return {v / length, length};
 }
 

@@ -23,4 +23,20 @@ template <int stride, int out_stride = stride>
   return true;
 }
 
+// The same of a symmetric A; nothing below its diagonal is read.
+template <int stride, int out_stride = stride>
+[[gnu::always_inline]] inline bool invertSymmetric3(const double* A, double* out) {
+  const double a = A[0], b = A[1], c = A[2], d = A[stride + 1], e = A[stride + 2], f = A[2 * stride + 2];
+  const double df = d * f - e * e, ec = e * c - b * f, be = b * e - d * c;
+  const double inverse = 1 / (a * df + b * ec + c * be);
+  if (!std::isfinite(inverse)) return false;
+  out[0] = inverse * df;
+  out[1] = out[out_stride] = inverse * ec;
+  out[2] = out[2 * out_stride] = inverse * be;
+  out[out_stride + 1] = inverse * (a * f - c * c);
+  out[out_stride + 2] = out[2 * out_stride + 1] = inverse * (b * c - a * e);
+  out[2 * out_stride + 2] = inverse * (a * d - b * b);
+  return true;
+}
+
 }  // namespace pincer::engine

@@ -83,6 +83,31 @@ template <int m>
   return true;
 }
 
+// The same for a symmetric A; nothing below its diagonal is read.
+template <int m>
+[[gnu::always_inline]] inline bool eliminateSymmetric(double (&A)[m][m], double (&b)[m]) {
+  double across[m][m];  // A_kk^-1 A_kj, j > k
+  for (int k = 0; k < m; k += 3) {
+    double inverse[3][3];
+    if (!invertSymmetric3<m, 3>(&A[k][k], inverse[0])) return false;
+    const double b_k[3] = {b[k], b[k + 1], b[k + 2]};
+    for (int l = 0; l < 3; ++l) b[k + l] = rowTimes(inverse[l], b_k);
+    for (int i = k + 3; i < m; ++i) {
+      for (int l = 0; l < 3; ++l) across[k + l][i] = (inverse[l][0] * A[k][i] + inverse[l][1] * A[k + 1][i]) + inverse[l][2] * A[k + 2][i];
+      b[i] -= (A[k][i] * b[k] + A[k + 1][i] * b[k + 1]) + A[k + 2][i] * b[k + 2];
+    }
+    for (int i = k + 3; i < m; ++i) {
+      for (int j = i; j < m; ++j) A[i][j] -= (A[k][i] * across[k][j] + A[k + 1][i] * across[k + 1][j]) + A[k + 2][i] * across[k + 2][j];
+    }
+  }
+  for (int k = m - 6; k >= 0; k -= 3) {
+    for (int j = k + 3; j < m; j += 3) {
+      for (int l = 0; l < 3; ++l) b[k + l] -= rowTimes(&across[k + l][j], b + j);
+    }
+  }
+  return true;
+}
+
 // `count` contacts of `rows` rows each.
 template <int count, int rows>
 class SmallProblem {
@@ -96,7 +121,7 @@ class SmallProblem {
       fillOwn(problem.sides[static_cast<std::size_t>(i)], rows * i);
       double trace = 0;
       for (int k = rows * i; k < rows * (i + 1); ++k) trace += W_[k][k];
-      w_[i] = trace / rows;
+      w_[i] = trace * (1.0 / rows);
     }
     for (int i = 0; i < count; ++i) {
       for (int j = i + 1; j < count; ++j)
@@ -200,8 +225,9 @@ class SmallProblem {
 
   // A full step of Newton's method.
   bool step(bool blocks) {
-    for (int i = 0; i < count; ++i) linearise(i);
-    if (!eliminate(blocks)) return false;
+    bool all_stick = true;
+    for (int i = 0; i < count; ++i) all_stick &= linearise(i) == ContactMode::kStick;
+    if (!eliminate(blocks, all_stick)) return false;
     for (int i = 0; i < count; ++i) {
       double* const r_i = r_ + rows * i;
       for (int k = 0; k < rows; ++k) r_i[k] += b_[rows * i + k];
@@ -210,14 +236,15 @@ class SmallProblem {
     return true;
   }
 
-  bool eliminate([[maybe_unused]] bool blocks) {
+  // What sticks is linear, with the symmetric W.
+  bool eliminate([[maybe_unused]] bool blocks, [[maybe_unused]] bool all_stick) {
     if constexpr (rows == 3) {
-      if (blocks) return eliminateBlocks(J_, b_);
+      if (blocks) return all_stick ? eliminateSymmetric(J_, b_) : eliminateBlocks(J_, b_);
     }
     return eliminateRows(J_, b_);
   }
 
-  void linearise(int i) {
+  ContactMode linearise(int i) {
     const int first = rows * i;
     const double w = w_[i];
     double y[rows];
@@ -229,7 +256,7 @@ class SmallProblem {
         J_[k][k] = w;
         b_[k] = -w * r_[k];
       }
-      return;
+      return mode;
     }
     for (int k = first; k < first + rows; ++k) {
       std::copy(W_[k], W_[k] + m, J_[k]);
@@ -237,6 +264,7 @@ class SmallProblem {
     }
     if (mode == ContactMode::kSlide) slide(i, y);
     for (int k = first; k < first + rows; ++k) J_[k][k] += kSmallEpsilon * w;
+    return mode;
   }
 
   // The tangential rows: D W + w (I - D), row k: s W_k + (mu W_n - s t.W_T) t_k, and w ((1 - s) e_k + s t_k t - mu t_k e_n).

@@ -110,7 +110,7 @@ Mat3 rootOfInertia(const FreeRotation& rotation, const Quat& q_WI) {
 }
 
 void fillPointSide(const Contact& c, int rows, double sign, const PointScratch& point, ContactSide& out) {
-  const Vec3 root = sign * point.inverse_mass.cwiseSqrt();
+  const Vec3 root = sign * point.root_inverse_mass;
   for (int k = 0; k < rows; ++k) std::fill(out.A[k], out.A[k] + kMoverFreedoms, 0.0);
   for (int k = 0; k < 3; ++k) {
     for (int j = 0; j < 3; ++j) out.A[k][j] = root[j] * (point.turned ? point.R_WA.col(j).dot(c.R_WC.col(k)) : c.R_WC(j, k));

@@ -53,10 +53,6 @@ void predictDriven(const BodyState& s, const MotionInput& in, double h, BodyScra
 }
 
 // One axis of a driven point: (effective mass) v+ = momentum + contact impulse, with the spring-damper's impulse over the tick inside.
-struct PointAxis {
-  double v_free, inverse_mass;
-};
-
 // What the axis knows at the start: error e = p - target, velocity v, the target's motion over the tick, the force f.
 struct AxisInput {
   double m, k, d, e, v, v_target, v_target_end, target_step, f, h;
@@ -64,19 +60,21 @@ struct AxisInput {
 
 // Spring impulse -k [h (e + e+)/2 - h^2/6 (e'+ - e')], damper impulse -d (change of e), kinematics p+ = p + h (v + v+)/2. With the 1/6 the
 // scheme is Numerov's (Fox and Goodwin, Proc. Camb. Phil. Soc. 45 (1949) 373-388): the error of frequency is 4th order, not 2nd.
-PointAxis fourthOrderAxis(const AxisInput& a) {
-  const double mass = a.m + a.k * a.h * a.h / 12 + 0.5 * a.d * a.h;
+double fourthOrderMass(const AxisInput& a) { return a.m + a.k * a.h * a.h / 12 + 0.5 * a.d * a.h; }
+double fourthOrderMomentum(const AxisInput& a) {
   const double spring = a.k * a.h * (a.e + a.h * (5.0 / 12 * a.v + (a.v_target_end - a.v_target) / 6) - 0.5 * a.target_step);
   const double damper = a.d * (0.5 * a.h * a.v - a.target_step);
-  return {(a.m * a.v + a.h * a.f - spring - damper) / mass, 1 / mass};
+  return a.m * a.v + a.h * a.f - spring - damper;
 }
 
 // Force at the end of the tick: k and d act on the end values, which are implicit in v+. `theta`: share of v+ in the displacement.
-PointAxis implicitAxis(const AxisInput& a, double theta) {
-  const double mass = a.m + a.h * a.d + a.h * a.h * a.k * theta;
+double implicitMass(const AxisInput& a, double theta) { return a.m + a.h * a.d + a.h * a.h * a.k * theta; }
+double implicitMomentum(const AxisInput& a, double theta) {
   const double spring = a.h * a.k * (a.e + (1 - theta) * a.h * a.v - a.target_step);
-  return {(a.m * a.v + a.h * (a.f + a.d * a.v_target_end) - spring) / mass, 1 / mass};
+  return a.m * a.v + a.h * (a.f + a.d * a.v_target_end) - spring;
 }
+
+double shareOfEnd(bool touching) { return touching ? 0.5 : 1.0; }
 
 // How it turns: as the device does, and about the contact normal past that, against a spring without inertia.
 void predictTwist(const DrivenPointModel& point, const PointState& s, const PointInput& in, double h, PointScratch& out) {
@@ -84,12 +82,12 @@ void predictTwist(const DrivenPointModel& point, const PointState& s, const Poin
   out.inverse_twist = 0;
   if (!(point.twist_stiffness + point.twist_damping > 0)) return;
   const AxisInput a{0, point.twist_stiffness, point.twist_damping, s.twist, s.twist_rate, 0, 0, 0, 0, h};
-  const PointAxis axis = implicitAxis(a, s.touching ? 0.5 : 1.0);
-  out.inverse_twist = axis.inverse_mass;
-  out.twist_rate = axis.v_free;
+  const double theta = shareOfEnd(s.touching);
+  out.inverse_twist = 1 / implicitMass(a, theta);
+  out.twist_rate = out.inverse_twist * implicitMomentum(a, theta);
   if (out.input_ok) out.R_WA.col(2) = in.n_W;
   out.start.w_W += s.twist_rate * out.R_WA.col(2);
-  out.free.w_W += axis.v_free * out.R_WA.col(2);
+  out.free.w_W += out.twist_rate * out.R_WA.col(2);
 }
 
 // A driven point's error, velocities, the target's motion over the tick and the force, all in one frame.
@@ -102,16 +100,30 @@ struct PointMotion {
   }
 };
 
+// The same from tick to tick, as long as the point touches, or doesn't, in parts of the same length.
+void findMobility(const DrivenPointModel& point, const std::array<AxisForm, 3>& forms, bool touching, double h, PointScratch& out) {
+  if (out.mobility_h == h && out.mobility_touching == touching) return;
+  out.mobility_h = h;
+  out.mobility_touching = touching;
+  for (int i = 0; i < 3; ++i) {
+    const AxisInput a{point.mass, point.stiffness[i], point.damping[i], 0, 0, 0, 0, 0, 0, h};
+    if (forms[i] == AxisForm::kLocked) out.inverse_mass[i] = 0;
+    if (forms[i] == AxisForm::kFourthOrder) out.inverse_mass[i] = 1 / fourthOrderMass(a);
+    if (forms[i] == AxisForm::kImplicit) out.inverse_mass[i] = 1 / implicitMass(a, shareOfEnd(touching));
+  }
+  out.root_inverse_mass = out.inverse_mass.cwiseSqrt();
+}
+
 void predictAxes(const DrivenPointModel& point, const std::array<AxisForm, 3>& forms, const PointMotion& m, bool touching, double h,
                  PointScratch& out) {
+  findMobility(point, forms, touching, h, out);
   for (int i = 0; i < 3; ++i) {
     const AxisInput a{point.mass,    point.stiffness[i], point.damping[i], m.e[i], m.v[i],
                       m.v_target[i], m.v_target_end[i],  m.target_step[i], m.f[i], h};
-    PointAxis axis{m.v_target_end[i], 0};
-    if (forms[i] == AxisForm::kFourthOrder) axis = fourthOrderAxis(a);
-    if (forms[i] == AxisForm::kImplicit) axis = implicitAxis(a, touching ? 0.5 : 1.0);
-    out.free.v_W[i] = axis.v_free;
-    out.inverse_mass[i] = axis.inverse_mass;
+    double v_free = m.v_target_end[i];
+    if (forms[i] == AxisForm::kFourthOrder) v_free = out.inverse_mass[i] * fourthOrderMomentum(a);
+    if (forms[i] == AxisForm::kImplicit) v_free = out.inverse_mass[i] * implicitMomentum(a, shareOfEnd(touching));
+    out.free.v_W[i] = v_free;
   }
 }
 
@@ -180,6 +192,8 @@ void predictImpact(const WorldModel& model, const WorldState& state, WorldScratc
     out.turned = false;
     out.inverse_twist = 0;
     for (int axis = 0; axis < 3; ++axis) out.inverse_mass[axis] = model.points[i].locked[axis] || mass <= 0 ? 0 : 1 / mass;
+    out.root_inverse_mass = out.inverse_mass.cwiseSqrt();
+    out.mobility_h = 0;
   }
   if (!model.joints.empty()) predictJoints(model, scratch);
   scratch.contacts.clear();

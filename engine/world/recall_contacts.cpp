@@ -9,27 +9,29 @@ Vec3 centre(const WorldScratch& scratch, const Side& side) {
   return side.kind == SideKind::kBody ? scratch.bodies[side.index].X_WI_mid.p : scratch.points[side.index].p_mid_W;
 }
 
-// Keeps the first tangent as close as possible to the one remembered, so that the warm start keeps its meaning.
-Mat3 carriedFrame(const Vec3& n_W, const Vec3& n_old_W, const Vec3& t1_old_W) {
-  if (n_W == n_old_W) {
-    Mat3 R;
-    R << t1_old_W, n_W.cross(t1_old_W), n_W;
-    return R;
+// Keeps the first tangent as close as possible to the one remembered, so that the warm start keeps its meaning. R holds the normal already.
+void carryFrame(const ContactMemory& memory, Mat3& R) {
+  const Vec3 n_W = R.col(2);
+  Vec3 t1_W = memory.t1_W;
+  if (n_W != memory.n_W) {
+    t1_W -= n_W * n_W.dot(t1_W);
+    const double length = t1_W.norm();
+    if (length < 0.1) {
+      R = frameFromNormal(n_W);
+      return;
+    }
+    t1_W *= 1 / length;
   }
-  const Vec3 t1 = t1_old_W - n_W * n_W.dot(t1_old_W);
-  const double length = t1.norm();
-  if (length < 0.1) return frameFromNormal(n_W);
-  Mat3 R;
-  R.col(0) = (1 / length) * t1;
-  R.col(1) = n_W.cross(R.col(0));
-  R.col(2) = n_W;
-  return R;
+  R.col(0) = t1_W;
+  R.col(1) = n_W.cross(t1_W);
 }
 
 void recall(const WorldScratch& scratch, Contact& c) {
   const ContactMemory* const memory = c.memory;
-  const Vec3 n_W = c.R_WC.col(2);
-  c.R_WC = memory ? carriedFrame(n_W, memory->n_W, memory->t1_W) : frameFromNormal(n_W);
+  if (memory)
+    carryFrame(*memory, c.R_WC);
+  else
+    c.R_WC = frameFromNormal(c.n_W());
   c.arm_a_W = c.p_W - centre(scratch, c.a);
   c.arm_b_W = c.p_W - centre(scratch, c.b);
   c.mover_a = &mover(scratch, c.a);

@@ -91,7 +91,10 @@ struct BodyScratch : MoverScratch {
 struct PointScratch : MoverScratch {
   Vec3 p_mid_W = Vec3::Zero();
   Vec3 inverse_mass = Vec3::Zero();  // effective, per axis of A, of the implicit spring-damper [1/kg]
-  bool turned = false;               // A isn't W
+  Vec3 root_inverse_mass = Vec3::Zero();
+  double mobility_h = 0;  // the length of a part of a tick that these hold for [s], 0: none; and whether the point touched
+  bool mobility_touching = false;
+  bool turned = false;  // A isn't W
   Mat3 R_WA = Mat3::Identity();
   double inverse_twist = 0;                                   // effective inverse inertia about A's third axis [1/(kg m^2)]
   double twist_rate = 0;                                      // about it, past what the device turns, if nothing touched [rad/s]
@@ -192,7 +195,8 @@ inline double radiusOf(const Contact& c, int k) { return k == kTorsionRow ? c.ma
 inline bool turns(const Motion& m) { return m.w_W.squaredNorm() != 0; }
 
 // Velocity of a relative to b where they touch, in C: along t1, t2, n [m/s]; of rows that the contact has, about n, t1, t2 [rad/s].
-inline ContactVector relativeVelocity(const Contact& c, const Motion& a, const Motion& b) {
+// In line: what a call returns in memory is read back before it is there.
+[[gnu::always_inline]] inline ContactVector relativeVelocity(const Contact& c, const Motion& a, const Motion& b) {
   Vec3 v_W = a.v_W - b.v_W;
   if (turns(a)) v_W += a.w_W.cross(c.arm_a_W);
   if (turns(b)) v_W -= b.w_W.cross(c.arm_b_W);

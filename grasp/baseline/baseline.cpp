@@ -186,7 +186,7 @@ class BaselineFinger {
     if (!report_.touching) return;
     report_.p_WC /= report_.normal_force;
     report_.tangential_force = (report_.f_contact_W - report_.f_contact_W.dot(report_.n_W) * report_.n_W).norm();
-    report_.place_L = placeOnPad(finger_, input_.q_WF.conjugate() * -report_.n_W);
+    report_.touch = {true, input_.q_WF, -report_.n_W, -report_.n_W};
   }
 
   const GraspModel& model_;

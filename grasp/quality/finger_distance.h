@@ -16,7 +16,7 @@ struct FingerDistance {
 };
 
 // Of every finger and every body, finger by finger, with the proxies and orientations of `state`. Searches each surface anew and allocates: off
-// the tick. The tick itself reports each finger's nearest body within its reach (FingerReport::gap, nearest_place_L).
+// the tick. The tick itself reports each finger's nearest body within its reach (FingerReport::gap, nearest).
 std::vector<FingerDistance> fingerDistances(const GraspModel& model, const GraspState& state);
 
 }  // namespace pincer::grasp

@@ -14,6 +14,7 @@ Vec3 spin(M m, I i) { return engine::bodyAngularVelocity(m.model.world, m.state.
 const engine::BodyState& body(M m, I i) { return m.state.world.bodies[i]; }
 const engine::PointState& proxy(M m, I i) { return m.state.world.points[i]; }
 const grasp::FingerReport& felt(M m, I i) { return m.fingers[i]; }
+Vec2 place(M m, I i) { return grasp::placeOnPad(m.model.fingers[i], felt(m, i).touch); }
 
 constexpr std::array kWorld = {
     QuantityKind{
@@ -65,8 +66,8 @@ constexpr std::array kFinger = {
     QuantityKind{"touching", "-", [](M m, I i) { return felt(m, i).touching ? 1.0 : 0.0; }},
     QuantityKind{"sliding", "-", [](M m, I i) { return felt(m, i).sliding ? 1.0 : 0.0; }},
     QuantityKind{"gap", "m", [](M m, I i) { return felt(m, i).gap; }},
-    QuantityKind{"place_distal", "m", [](M m, I i) { return felt(m, i).place_L.x(); }},
-    QuantityKind{"place_radial", "m", [](M m, I i) { return felt(m, i).place_L.y(); }},
+    QuantityKind{"place_distal", "m", [](M m, I i) { return place(m, i).x(); }},
+    QuantityKind{"place_radial", "m", [](M m, I i) { return place(m, i).y(); }},
 };
 
 }  // namespace

@@ -38,7 +38,7 @@ void captureGrasp(const grasp::GraspModel& model, const grasp::GraspState& state
     seen.normal_force = finger.normal_force;
     seen.touching = finger.touching;
     seen.sliding = finger.sliding;
-    seen.place_L = finger.touching ? std::optional(finger.place_L) : std::nullopt;
+    seen.place_L = finger.touching ? std::optional(grasp::placeOnPad(model.fingers[i], finger.touch)) : std::nullopt;
   }
   snapshot.contact_count = 0;
   for (const engine::Contact& c : scratch.world.contacts) {

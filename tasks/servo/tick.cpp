@@ -75,15 +75,15 @@ void watchPorts(const TickModel& model, TickState& state, TickScratch& scratch) 
   grasp::holdPorts(scratch.f_user_W, state.passivity);
 }
 
-devices::TactileCommand tactorTarget(const TickModel& model, MountState& mount, const FingerMount& config,
+devices::TactileCommand tactorTarget(const TickModel& model, MountState& mount, const FingerMount& config, const grasp::FingerModel& shape,
                                      const grasp::FingerReport& finger) {
   devices::PadInput in;
   in.parked = !config.display_tactile;
   if (finger.touching) {
-    in.contacts[0] = {finger.place_L, finger.normal_force};
+    in.contacts[0] = {grasp::placeOnPad(shape, finger.touch), finger.normal_force};
     in.contact_count = 1;
   }
-  in.nearest = devices::NearestPoint{finger.nearest_place_L, finger.gap};
+  in.nearest = devices::NearestPoint{grasp::placeOnPad(shape, finger.nearest), finger.gap};
   return devices::padCommand(config.pad, in, model.grasp.world.options.h, mount.pad);
 }
 
@@ -107,7 +107,7 @@ engine::StepReport tick(const TickModel& model, TickState& state, TickScratch& s
     const grasp::FingerReport& finger = scratch.grasp.fingers[i];
     scratch.outputs[i].f_D = gatedForce(model, state.mounts[i], model.mounts[i], inputs[i].arm,
                                         scratch.f_user_W[i] + state.mounts[i].f_lead_W, now, report.status);
-    scratch.outputs[i].tactile = tactorTarget(model, state.mounts[i], model.mounts[i], finger);
+    scratch.outputs[i].tactile = tactorTarget(model, state.mounts[i], model.mounts[i], model.grasp.fingers[i], finger);
   }
   watchPorts(model, state, scratch);
   return report;

@@ -112,7 +112,7 @@ Rolled rollOver(double body_radius) {
     grasp.tick();
     if (k < 400) continue;
     const grasp::FingerReport& f = grasp.felt(0);
-    worst.speed = std::max(worst.speed, std::abs(f.place_rate_L.norm() / exact - 1));
+    worst.speed = std::max(worst.speed, std::abs(grasp::placeRateOnPad(grasp.model.fingers[0], f, kGraspTick).norm() / exact - 1));
     worst.share = std::max(worst.share, f.tangential_force / f.normal_force);
   }
   return worst;

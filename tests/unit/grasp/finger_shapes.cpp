@@ -247,7 +247,7 @@ TEST(FingerShape, EllipsoidsHoldABall) {
   EXPECT_TRUE(scratch.fingers[0].touching);
   EXPECT_NEAR(scratch.fingers[0].n_W.x(), -1, 0.01);
   // The pad looks down (-z of F); the touch is a quarter of the way round, on the side towards +x: distal.
-  EXPECT_GT(scratch.fingers[0].place_L.x(), 0.008);
+  EXPECT_GT(placeOnPad(model.fingers[0], scratch.fingers[0].touch).x(), 0.008);
 }
 
 }  // namespace

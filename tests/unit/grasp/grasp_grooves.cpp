@@ -55,12 +55,13 @@ struct FeltChange {
   double place = 0, force = 0;  // of the place on the pad [-] and of the force [N/m]
   int fewest = 99, most = 0;    // contacts that push
 
-  void see(const FingerReport& now, int contacts, double way) {
+  void see(const FingerModel& finger, const FingerReport& now, int contacts, double way) {
+    const Vec2 place_now = placeOnPad(finger, now.touch);
     if (seen_) {
-      place = std::max(place, (now.place_L - place_).norm() / way);
+      place = std::max(place, (place_now - place_).norm() / way);
       force = std::max(force, (now.f_contact_W - force_).norm() / way);
     }
-    place_ = now.place_L;
+    place_ = place_now;
     force_ = now.f_contact_W;
     seen_ = true;
     fewest = std::min(fewest, contacts);
@@ -84,7 +85,8 @@ TEST(GraspGrooves, AcrossAGrooveForceAndPlaceAreContinuous) {
   Pressed finger(contact::grooveBlock(M_PI / 4, 0.02, 0.04, 0.04), Vec3(-0.006, 0.001, rest + 0.006));
   finger.leadTo(Vec3(-0.006, 0.001, rest - depth));
   FeltChange felt;
-  for (int i = 0; i < 12000; ++i) felt.see(finger.moveTo(Vec3(-0.006 + kWay * i, 0.001, rest - depth)), finger.activeContacts(), kWay);
+  for (int i = 0; i < 12000; ++i)
+    felt.see(finger.model.fingers[0], finger.moveTo(Vec3(-0.006 + kWay * i, 0.001, rest - depth)), finger.activeContacts(), kWay);
   EXPECT_EQ(felt.fewest, 1);
   EXPECT_EQ(felt.most, 2);
   EXPECT_LT(felt.place, 2.2);
@@ -101,7 +103,7 @@ TEST(GraspGrooves, IntoACornerForceAndPlaceAreContinuous) {
   for (int i = 1; i < 20000; ++i) {
     const double s = std::min(1.0, 1e-4 * i);
     const Vec3 at = Vec3(0.005, 0.02 - 0.015 * s, 0.02 - 0.0155 * s) + 1e-3 * s * Vec3(std::sin(1e-3 * i), std::cos(8e-4 * i) - 1, 0);
-    felt.see(finger.moveTo(at), finger.activeContacts(), std::max(kWay, (at - last).norm()));
+    felt.see(finger.model.fingers[0], finger.moveTo(at), finger.activeContacts(), std::max(kWay, (at - last).norm()));
     last = at;
   }
   EXPECT_EQ(felt.most, 3);
@@ -118,7 +120,7 @@ TEST(GraspGrooves, ThroughATightHoleTheForceIsContinuous) {
   Vec3 last = above;
   for (int i = 1; i < 22000; ++i) {
     const Vec3 at = above + Vec3(2e-4 * std::sin(1e-3 * i), 0, -kWay * i);
-    felt.see(finger.moveTo(at), finger.activeContacts(), (at - last).norm());
+    felt.see(finger.model.fingers[0], finger.moveTo(at), finger.activeContacts(), (at - last).norm());
     last = at;
   }
   EXPECT_GE(felt.most, 1);

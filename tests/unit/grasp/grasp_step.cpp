@@ -232,7 +232,8 @@ TEST(GraspStep, ForceShadingShowsTheFacetsPlaceOnThePad) {
     EXPECT_LT((scratch.fingers[0].n_W - c.n_B).norm(), 1e-12);
     const Vec2 of_facet = placeOnPad(model.fingers[0], (c.p_BS - C).normalized());
     const double half_gap = 0.5 * std::abs(c.phi);  // they touch midway along the force, which leans by up to 15 degrees: 0.26 r / h
-    EXPECT_LT((scratch.fingers[0].place_L - of_facet).norm(), variant == contact::SurfaceVariant::facet ? 1e-12 : 0.3 * half_gap);
+    EXPECT_LT((placeOnPad(model.fingers[0], scratch.fingers[0].touch) - of_facet).norm(),
+              variant == contact::SurfaceVariant::facet ? 1e-12 : 0.3 * half_gap);
     const double of_force = (placeOnPad(model.fingers[0], -c.n_B) - of_facet).norm();
     EXPECT_EQ(of_force > half_gap, variant == contact::SurfaceVariant::force) << of_force;
   }

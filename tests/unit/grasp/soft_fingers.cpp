@@ -146,9 +146,9 @@ TEST(TurningFinger, RollsWithoutSlip) {
     f.lead(Vec3(x, 0, 6e-3));
   }
   EXPECT_FALSE(f.felt().sliding);
-  EXPECT_NEAR(f.felt().place_rate_L.norm(), 8e-3 * w, 1e-6 * 8e-3 * w);
-  EXPECT_LT(f.felt().tangential_force, 0.05 * f.felt().normal_force);     // what the spring's lag of a tick pulls
-  EXPECT_NEAR(f.felt().place_L.norm(), 8e-3 * angle, 8e-3 * 1.1e-3 * w);  // of the middle of the tick
+  EXPECT_NEAR(placeRateOnPad(f.model.fingers[0], f.felt(), 1e-3).norm(), 8e-3 * w, 1e-6 * 8e-3 * w);
+  EXPECT_LT(f.felt().tangential_force, 0.05 * f.felt().normal_force);  // what the spring's lag of a tick pulls
+  EXPECT_NEAR(placeOnPad(f.model.fingers[0], f.felt().touch).norm(), 8e-3 * angle, 8e-3 * 1.1e-3 * w);  // of the middle of the tick
 }
 
 TEST(TurningFinger, DragsWhatItTouchesSideways) {

@@ -1,0 +1,38 @@
+#include "grasp/pad_place.h"
+
+#include <cmath>
+
+#include "grasp/step.h"
+
+namespace pincer::grasp {
+
+Vec2 placeOnPad(const FingerModel& finger, const PadTouch& touch) {
+  if (!touch.there) return Vec2::Zero();
+  const Quat q_FW = touch.q_WF.conjugate();
+  return finger.shape ? placeOnPad(finger, q_FW * touch.d_W, q_FW * touch.n_W) : placeOnPad(finger, q_FW * touch.d_W);
+}
+
+Vec2 placeOnPad(const FingerModel& finger, const Vec3& d_F) {
+  const Vec3 radial_F = finger.pad_normal_F.cross(finger.distal_F);
+  const Vec2 tangent(d_F.dot(finger.distal_F), d_F.dot(radial_F));
+  const double sine = tangent.norm();
+  if (sine < 1e-300) return Vec2::Zero();
+  if (finger.shape) return placeOnPad(finger, contact::supportOf(*finger.shape, d_F.normalized()), d_F.normalized());
+  return (finger.radius * std::atan2(sine, d_F.dot(finger.pad_normal_F)) / sine) * tangent;
+}
+
+Vec2 placeOnPad(const FingerModel& finger, const Vec3& p_F, const Vec3& normal_F) {
+  if (!finger.shape) return placeOnPad(finger, normal_F);
+  const Vec3 from_centre = p_F - contact::supportOf(*finger.shape, finger.pad_normal_F);
+  const Vec2 tangent(from_centre.dot(finger.distal_F), from_centre.dot(finger.pad_normal_F.cross(finger.distal_F)));
+  const double length = tangent.norm();
+  if (length < 1e-300) return Vec2::Zero();
+  return contact::arcOverSkin(*finger.shape, finger.pad_normal_F, normal_F, p_F) / length * tangent;
+}
+
+Vec2 placeRateOnPad(const FingerModel& finger, const FingerReport& report, double h) {
+  if (!report.touch.there || !report.last_touch.there) return Vec2::Zero();
+  return (placeOnPad(finger, report.touch) - placeOnPad(finger, report.last_touch)) / h;
+}
+
+}  // namespace pincer::grasp
