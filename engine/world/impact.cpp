@@ -109,6 +109,8 @@ bool closesFaster(const WorldModel& model, const WorldState& state, const WorldS
 
 // Notes the pairs that land hard, and takes the contacts that close out of scratch.contacts.
 void holdBackLandings(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
+  const auto is_of_bodies = [](const Contact& c) { return c.a.kind == SideKind::kBody; };
+  if (std::none_of(scratch.contacts.begin(), scratch.contacts.end(), is_of_bodies)) return;
   const double hard = hardLanding(model);
   const std::size_t before = scratch.impact_pairs.size();
   for (const Contact& c : scratch.contacts) {
@@ -126,7 +128,9 @@ bool somethingIsPushed(const WorldModel& model, const WorldScratch& scratch) {
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
     const BodyScratch& body = scratch.bodies[i];
     if (!body.touched || !model.bodies[i].dynamic) continue;
-    if (scratch.h * model.bodies[i].inverse_mass * body.impulse_W.norm() > kSlowWay * kSlowWay * model.bodies[i].inner_radius) return true;
+    const double least = kSlowWay * kSlowWay * model.bodies[i].inner_radius;  // [m]
+    const Vec3 way = scratch.h * model.bodies[i].inverse_mass * body.impulse_W;
+    if (way.squaredNorm() > least * least) return true;
   }
   return false;
 }
