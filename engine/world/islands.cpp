@@ -8,9 +8,9 @@
 #include "engine/solve/contact_equations.h"
 #include "engine/solve/gauss_seidel.h"
 #include "engine/world/contact_rows.h"
+#include "engine/world/contact_sides.h"
 #include "engine/world/island_bias.h"
 #include "engine/world/island_threads.h"
-#include "engine/world/joints.h"
 #include "engine/world/scratch.h"
 
 namespace pincer::engine {
@@ -103,71 +103,6 @@ void sortContacts(std::span<const ContactEnds> all, IslandScratch& s) {
   }
 }
 
-// Of a body: F = R diag(1 / sqrt(I_k)).
-Mat3 rootOfInertia(const FreeRotation& rotation, const Quat& q_WI) {
-  if (rotation.kind == FreeRotation::Kind::kSpherical) return rotation.root_inverse_moments[0] * Mat3::Identity();
-  return q_WI.toRotationMatrix() * rotation.root_inverse_moments.asDiagonal();
-}
-
-void fillPointSide(const Contact& c, int rows, double sign, const PointScratch& point, ContactSide& out) {
-  const Vec3 root = sign * point.root_inverse_mass;
-  for (int k = 0; k < rows; ++k) std::fill(out.A[k], out.A[k] + kMoverFreedoms, 0.0);
-  for (int k = 0; k < 3; ++k) {
-    for (int j = 0; j < 3; ++j) out.A[k][j] = root[j] * (point.turned ? point.R_WA.col(j).dot(c.R_WC.col(k)) : c.R_WC(j, k));
-  }
-  if (rows > kTorsionRow) out.A[kTorsionRow][3] = sign * radiusOf(c, kTorsionRow) * std::sqrt(point.inverse_twist);
-}
-
-// F  of a sphere a multiple of the identity
-void fillBodySide(const Contact& c, int rows, double sign, const Vec3& arm_W, double root_mass, const Mat3& F, bool is_sphere,
-                  ContactSide& out) {
-  const double linear = sign * root_mass;
-  const Vec3 arm = is_sphere ? Vec3((sign * F(0, 0)) * arm_W) : arm_W;
-  for (int k = 0; k < 3; ++k) {
-    const double x = c.R_WC(0, k), y = c.R_WC(1, k), z = c.R_WC(2, k);
-    const double ang[3] = {arm[1] * z - arm[2] * y, arm[2] * x - arm[0] * z, arm[0] * y - arm[1] * x};
-    double* const A = out.A[k];
-    A[0] = linear * x;
-    A[1] = linear * y;
-    A[2] = linear * z;
-    for (int j = 0; j < 3; ++j) A[3 + j] = is_sphere ? ang[j] : sign * (F(0, j) * ang[0] + F(1, j) * ang[1] + F(2, j) * ang[2]);
-  }
-  for (int k = kTorsionRow; k < rows; ++k) {
-    const Vec3 ang = (sign * radiusOf(c, k)) * axisOf(c, k);
-    for (int j = 0; j < 3; ++j) {
-      out.A[k][j] = 0;
-      out.A[k][3 + j] = F(0, j) * ang[0] + F(1, j) * ang[1] + F(2, j) * ang[2];
-    }
-  }
-}
-
-void fillSide(const WorldModel& model, const WorldScratch& scratch, const Contact& c, int rows, bool is_a, int mover, int number,
-              IslandScratch& s, ContactSide& out) {
-  out.mover = number;
-  if (mover < 0) return;
-  const Side& side = is_a ? c.a : c.b;
-  out.is_point = side.kind == SideKind::kPoint && rows == kTorsionRow;
-  const double sign = is_a ? 1 : -1;
-  if (side.kind == SideKind::kPoint) return fillPointSide(c, rows, sign, scratch.points[side.index], out);
-  const BodyModel& body = model.bodies[side.index];
-  const Vec3& arm_W = is_a ? c.arm_a_W : c.arm_b_W;
-  if (body.joint_group < 0) {
-    const bool is_sphere = body.rotation.kind == FreeRotation::Kind::kSpherical;
-    return fillBodySide(c, rows, sign, arm_W, body.root_inverse_mass, s.root_inertia[mover], is_sphere, out);
-  }
-  for (int k = 0; k < rows; ++k) std::fill(out.A[k], out.A[k] + kMoverFreedoms, 0.0);
-  addJointedSide(model, scratch, c, rows, sign, side.index, arm_W, out);
-}
-
-// Two joined bodies that touch each other are one mover: what they do is one block.
-void joinSides(int rows, ContactSides& sides) {
-  for (int k = 0; k < rows; ++k) {
-    for (int j = 0; j < kMoverFreedoms; ++j) sides[0].A[k][j] += sides[1].A[k][j];
-  }
-  sides[0].is_point = false;
-  sides[1].mover = -1;
-}
-
 int numberOf(const WorldModel& model, const WorldScratch& scratch, const Side& side, int mover, Island& island, IslandScratch& s) {
   if (mover < 0) return -1;
   if (s.number[mover] < 0) {
@@ -178,39 +113,72 @@ int numberOf(const WorldModel& model, const WorldScratch& scratch, const Side& s
   return s.number[mover];
 }
 
-// Copies what the contacts of island k are to the solver.
-void gather(const WorldModel& model, const WorldScratch& scratch, int k, int row, IslandScratch& s) {
-  Island& island = s.islands[k];
-  island.row = row;
-  int* const first_row = s.first_row.data() + island.place + k;
+// What the contacts of the island are to the movers.
+void fillSides(const WorldModel& model, const WorldScratch& scratch, Island& island, IslandScratch& s) {
   const int *const order = s.order.data() + island.place, *const from_row = scratch.first_row.data();
   const Contact* const contacts = scratch.contacts.data();
   const ContactEnds* const all_ends = s.ends.data();
-  const double *const all_mu = scratch.mu.data(), *const all_q = scratch.q.data(), *const all_r = scratch.r.data();
   ContactSides* const all_sides = s.sides.data() + island.place;
-  double *const mu = s.mu.data() + island.place, *const q = s.q.data() + row, *const r = s.r.data() + row;
-  int rows_before = 0, settling = 0;
   for (int n = 0; n < island.contacts; ++n) {
-    const int i = order[n], from = from_row[i], rows = from_row[i + 1] - from;
+    const int i = order[n], rows = from_row[i + 1] - from_row[i];
     const Contact& c = contacts[i];
     const ContactEnds ends = all_ends[i];
     ContactSides& sides = all_sides[n];
-    fillSide(model, scratch, c, rows, true, ends.a, numberOf(model, scratch, c.a, ends.a, island, s), s, sides[0]);
-    fillSide(model, scratch, c, rows, false, ends.b, numberOf(model, scratch, c.b, ends.b, island, s), s, sides[1]);
+    fillSide(model, scratch, c, rows, true, ends.a, numberOf(model, scratch, c.a, ends.a, island, s), s.root_inertia, sides[0]);
+    fillSide(model, scratch, c, rows, false, ends.b, numberOf(model, scratch, c.b, ends.b, island, s), s.root_inertia, sides[1]);
     if (ends.a >= 0 && ends.a == ends.b) joinSides(rows, sides);
-    first_row[n] = rows_before;
-    mu[n] = all_mu[i];
-    settling = std::max(settling, c.settling);
+    island.settling = std::max(island.settling, c.settling);
+  }
+}
+
+// Of the only island: as it lies.
+void takeRows(WorldScratch& scratch, Island& island) {
+  island.first_row = scratch.first_row.data();
+  island.mu = scratch.mu.data();
+  island.q = scratch.q.data();
+  island.r = scratch.r.data();
+  island.u = scratch.u.data();
+  island.rows = island.first_row[island.contacts];
+}
+
+// Of island k among others, from `row` on.
+void copyRows(const WorldScratch& scratch, int k, int row, Island& island, IslandScratch& s) {
+  island.first_row = s.first_row.data() + island.place + k;
+  island.mu = s.mu.data() + island.place;
+  island.q = s.q.data() + row;
+  island.r = s.r.data() + row;
+  island.u = s.u.data() + row;
+  const int *const order = s.order.data() + island.place, *const from_row = scratch.first_row.data();
+  const double *const all_mu = scratch.mu.data(), *const all_q = scratch.q.data(), *const all_r = scratch.r.data();
+  int rows_before = 0;
+  for (int n = 0; n < island.contacts; ++n) {
+    const int i = order[n], from = from_row[i], rows = from_row[i + 1] - from;
+    island.first_row[n] = rows_before;
+    island.mu[n] = all_mu[i];
     withRows(rows, [&](auto count) {
       for (int l = 0; l < count; ++l) {
-        q[rows_before + l] = all_q[from + l];
-        r[rows_before + l] = all_r[from + l];
+        island.q[rows_before + l] = all_q[from + l];
+        island.r[rows_before + l] = all_r[from + l];
       }
     });
     rows_before += rows;
   }
-  island.settling = settling;
-  first_row[island.contacts] = island.rows = rows_before;
+  island.first_row[island.contacts] = island.rows = rows_before;
+}
+
+void gather(const WorldModel& model, WorldScratch& scratch) {
+  IslandScratch& s = scratch.islands;
+  s.rows = 0;
+  for (std::size_t k = 0; k < s.islands.size(); ++k) {
+    Island& island = s.islands[k];
+    if (s.islands.size() == 1) {
+      takeRows(scratch, island);
+    } else {
+      copyRows(scratch, static_cast<int>(k), s.rows, island, s);
+    }
+    fillSides(model, scratch, island, s);
+    s.rows += island.rows;
+  }
 }
 
 // For how long warm starts have to be exact to round-off: from an answer that took iterations on, until it is clear that none comes that is. One
@@ -226,12 +194,13 @@ void scatter(const IslandScratch& s, const Island& island, double tolerance, Wor
   const bool quiet = island.result.method == SolveMethod::kWarmStart;
   const int *const order = s.order.data() + island.place, *const from_row = scratch.first_row.data();
   Contact* const contacts = scratch.contacts.data();
-  const double *r_k = s.r.data() + island.row, *u_k = s.u.data() + island.row;
+  const double *r_k = island.r, *u_k = island.u;
   double *const r = scratch.r.data(), *const u = scratch.u.data();
   for (int n = 0; n < island.contacts; ++n) {
     const int i = order[n];
     contacts[i].settling = settling;
     contacts[i].quiet = quiet;
+    if (r_k == r) continue;  // nothing was copied
     const int first = from_row[i], rows = from_row[i + 1] - first;
     withRows(rows, [&](auto count) {
       for (int l = 0; l < count; ++l) {
@@ -282,7 +251,7 @@ std::int64_t reserveFor(const Island& island) { return kStoppingSweeps * kPerCon
 // biases that push are left out, and sweeps from no impulse at all each take energy away. Support is better than falling through the floor.
 void stopOnly(const ContactProblem& problem, const SolverOptions& options, Island& island, SolverScratch& memory, WorldScratch& scratch) {
   IslandScratch& s = scratch.islands;
-  double *const q = s.q.data() + island.row, *const r = s.r.data() + island.row;
+  double *const q = island.q, *const r = island.r;
   for (int n = 0; n < island.contacts; ++n) {
     const Contact& c = scratch.contacts[s.order[island.place + n]];
     const int first = problem.firstRow(n);
@@ -297,7 +266,7 @@ void stopOnly(const ContactProblem& problem, const SolverOptions& options, Islan
   const SolveResult lost = island.result;
   const std::int64_t left = memory.operations_left;
   memory.operations_left = kNoLimit;
-  solveContacts(problem, sweeps, memory, VectorMap(r, island.rows), VectorMap(s.u.data() + island.row, island.rows));
+  solveContacts(problem, sweeps, memory, VectorMap(r, island.rows), VectorMap(island.u, island.rows));
   memory.operations_left = left - reserveFor(island);
   island.result = lost;
 }
@@ -328,17 +297,13 @@ void solveIsland(const WorldModel& model, int k, int thread, WorldScratch& scrat
   IslandScratch& s = scratch.islands;
   Island& island = s.islands[k];
   const auto n = static_cast<std::size_t>(island.contacts);
-  const ContactProblem problem{{s.first_row.data() + island.place + k, n + 1},
-                               {s.mu.data() + island.place, n},
-                               {s.sides.data() + island.place, n},
-                               VectorMap(s.q.data() + island.row, island.rows),
-                               island.movers,
-                               island.settling > 0};
+  const ContactProblem problem{{island.first_row, n + 1},        {island.mu, n}, {s.sides.data() + island.place, n},
+                               VectorMap(island.q, island.rows), island.movers,  island.settling > 0};
   SolverScratch& memory = *s.solvers[thread];
   const bool is_heap = island.contacts > kHeapContacts, is_entangled = is_heap && chooseForm(problem, memory) == EquationForm::kTooLarge;
   const auto fit = [&](PushingBy pushing) {
     if (scratch.h > 0 && (!is_heap || is_entangled))
-      fitIslandBiases(pushing, scratch.h, kTangentCorrection / model.options.h, problem, s.r.data() + island.row, s.q.data() + island.row,
+      fitIslandBiases(pushing, scratch.h, kTangentCorrection / model.options.h, problem, island.r, island.q,
                       {s.order.data() + island.place, n}, scratch.contacts, memory);
   };
   const bool is_limited = scratch.operations_left < kNoLimit;
@@ -346,7 +311,7 @@ void solveIsland(const WorldModel& model, int k, int thread, WorldScratch& scrat
   const std::int64_t reserve = is_limited ? reserveFor(island) : 0;
   memory.operations_left = share - reserve;
   fit(PushingBy::kLastTick);
-  const VectorMap r(s.r.data() + island.row, island.rows), u(s.u.data() + island.row, island.rows);
+  const VectorMap r(island.r, island.rows), u(island.u, island.rows);
   if (scratch.h > 0 && !is_heap && mayContradict(problem)) {
     island.result = solveContacts(problem, withoutCostly(model.options.solver), memory, r, u);
     if (!island.result.converged) {
@@ -375,13 +340,8 @@ void solveIslands(const WorldModel& model, WorldScratch& scratch) {
     uniteMovers(ends, s);
     sortContacts(ends, s);
   }
-  int row = 0;
+  gather(model, scratch);
   const int count = static_cast<int>(s.islands.size());
-  for (int k = 0; k < count; ++k) {
-    gather(model, scratch, k, row, s);
-    row += s.islands[k].rows;
-  }
-  s.rows = row;
   const auto solve = [&](int k, int thread) { solveIsland(model, k, thread, scratch); };
   if (s.threads && count > 1) {
     s.threads->run(count, solve);

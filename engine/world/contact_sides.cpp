@@ -1,0 +1,76 @@
+#include "engine/world/contact_sides.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/world/joints.h"
+
+namespace pincer::engine {
+namespace {
+
+void fillPointSide(const Contact& c, int rows, double sign, const PointScratch& point, ContactSide& out) {
+  const Vec3 root = sign * point.root_inverse_mass;
+  for (int k = 0; k < rows; ++k) std::fill(out.A[k], out.A[k] + kMoverFreedoms, 0.0);
+  for (int k = 0; k < 3; ++k) {
+    for (int j = 0; j < 3; ++j) out.A[k][j] = root[j] * (point.turned ? point.R_WA.col(j).dot(c.R_WC.col(k)) : c.R_WC(j, k));
+  }
+  if (rows > kTorsionRow) out.A[kTorsionRow][3] = sign * radiusOf(c, kTorsionRow) * std::sqrt(point.inverse_twist);
+}
+
+// F  of a sphere a multiple of the identity
+void fillBodySide(const Contact& c, int rows, double sign, const Vec3& arm_W, double root_mass, const Mat3& F, bool is_sphere,
+                  ContactSide& out) {
+  const double linear = sign * root_mass;
+  const Vec3 arm = is_sphere ? Vec3((sign * F(0, 0)) * arm_W) : arm_W;
+  for (int k = 0; k < 3; ++k) {
+    const double x = c.R_WC(0, k), y = c.R_WC(1, k), z = c.R_WC(2, k);
+    const double ang[3] = {arm[1] * z - arm[2] * y, arm[2] * x - arm[0] * z, arm[0] * y - arm[1] * x};
+    double* const A = out.A[k];
+    A[0] = linear * x;
+    A[1] = linear * y;
+    A[2] = linear * z;
+    for (int j = 0; j < 3; ++j) A[3 + j] = is_sphere ? ang[j] : sign * (F(0, j) * ang[0] + F(1, j) * ang[1] + F(2, j) * ang[2]);
+  }
+  for (int k = kTorsionRow; k < rows; ++k) {
+    const Vec3 ang = (sign * radiusOf(c, k)) * axisOf(c, k);
+    for (int j = 0; j < 3; ++j) {
+      out.A[k][j] = 0;
+      out.A[k][3 + j] = F(0, j) * ang[0] + F(1, j) * ang[1] + F(2, j) * ang[2];
+    }
+  }
+}
+
+}  // namespace
+
+Mat3 rootOfInertia(const FreeRotation& rotation, const Quat& q_WI) {
+  if (rotation.kind == FreeRotation::Kind::kSpherical) return rotation.root_inverse_moments[0] * Mat3::Identity();
+  return q_WI.toRotationMatrix() * rotation.root_inverse_moments.asDiagonal();
+}
+
+void fillSide(const WorldModel& model, const WorldScratch& scratch, const Contact& c, int rows, bool is_a, int mover, int number,
+              const std::vector<Mat3>& root_inertia, ContactSide& out) {
+  out.mover = number;
+  if (mover < 0) return;
+  const Side& side = is_a ? c.a : c.b;
+  out.is_point = side.kind == SideKind::kPoint && rows == kTorsionRow;
+  const double sign = is_a ? 1 : -1;
+  if (side.kind == SideKind::kPoint) return fillPointSide(c, rows, sign, scratch.points[side.index], out);
+  const BodyModel& body = model.bodies[side.index];
+  const Vec3& arm_W = is_a ? c.arm_a_W : c.arm_b_W;
+  if (body.joint_group < 0) {
+    const bool is_sphere = body.rotation.kind == FreeRotation::Kind::kSpherical;
+    return fillBodySide(c, rows, sign, arm_W, body.root_inverse_mass, root_inertia[mover], is_sphere, out);
+  }
+  for (int k = 0; k < rows; ++k) std::fill(out.A[k], out.A[k] + kMoverFreedoms, 0.0);
+  addJointedSide(model, scratch, c, rows, sign, side.index, arm_W, out);
+}
+
+void joinSides(int rows, ContactSides& sides) {
+  for (int k = 0; k < rows; ++k) {
+    for (int j = 0; j < kMoverFreedoms; ++j) sides[0].A[k][j] += sides[1].A[k][j];
+  }
+  sides[0].is_point = false;
+  sides[1].mover = -1;
+}
+
+}  // namespace pincer::engine
