@@ -17,11 +17,18 @@ bool isFree(const WorldModel& model, const Side& side) {
 
 double deepGap(const WorldModel& model) { return -kDeepSpeed * model.options.h / kNormalCorrection; }
 
-// At the start of this part of the tick: in its predicted middle what lands seems to overlap, and doesn't.
-double gapOf(const WorldScratch& scratch, const Contact& c) { return c.phi - 0.5 * scratch.h * c.v_start_C[kNormalRow]; }
+double thinner(const WorldModel& model, const Contact& c) {
+  return std::min(model.bodies[c.a.index].inner_radius, model.bodies[c.b.index].inner_radius);
+}
+
+// At the start of this part of the tick: in its predicted middle what lands seems to overlap, and doesn't. Deeper than one of them is thick, that
+// counts all the same: a sheet that slaps down must not come through.
+double gapOf(const WorldModel& model, const WorldScratch& scratch, const Contact& c) {
+  return -c.phi > thinner(model, c) ? c.phi : c.phi - 0.5 * scratch.h * c.v_start_C[kNormalRow];
+}
 
 bool isDeep(const WorldModel& model, const WorldScratch& scratch, const Contact& c) {
-  return isPushedOut(model, c) && gapOf(scratch, c) < deepGap(model);
+  return isPushedOut(model, c) && gapOf(model, scratch, c) < deepGap(model);
 }
 
 // The contact's normal row on one of its bodies, and that body's mobility.
@@ -55,10 +62,9 @@ void markBodies(const Contact& c, WorldScratch& scratch) {
 }
 
 double wantedWay(const WorldModel& model, const WorldScratch& scratch, const Contact& c) {
-  const double phi = gapOf(scratch, c);
+  const double phi = gapOf(model, scratch, c);
   if (!isDeep(model, scratch, c)) return -std::max(phi - deepGap(model), 0.0);
-  const double thickness = std::min(model.bodies[c.a.index].inner_radius, model.bodies[c.b.index].inner_radius);
-  const double largest = kLargestCorrection * model.options.h * std::max(1.0, -phi / thickness);
+  const double largest = kLargestCorrection * model.options.h * std::max(1.0, -phi / thinner(model, c));
   return std::min(-kNormalCorrection * phi, largest);
 }
 
