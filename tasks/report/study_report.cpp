@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "tasks/report/device_errors.h"
 #include "tasks/report/html_page.h"
 #include "tasks/session/atomic_file.h"
 
@@ -25,7 +26,8 @@ std::vector<Picture> studyPictures(const StudySummary& s, const std::vector<Resp
   return pictures;
 }
 
-std::string studyHtml(const StudySummary& s, const std::vector<Picture>& pictures, const std::string& figures_name) {
+std::string studyHtml(const StudySummary& s, const std::vector<Picture>& pictures, const std::string& figures_name,
+                      const std::string& errors) {
   std::string html = htmlHead(fmt::format("{}, seed {}", s.info.task, s.info.seed), s.warning);
   html += htmlFacts({{"task", s.info.task},
                      {"seed", std::to_string(s.info.seed)},
@@ -41,7 +43,7 @@ std::string studyHtml(const StudySummary& s, const std::vector<Picture>& picture
   for (const StudyCondition& c : s.conditions) html += htmlRow(studyTableRow(s, c), "td");
   html += fmt::format("</table></div>\n<p class=\"note\">{}</p>\n", escaped(studyNote(s)));
   for (const Picture& picture : pictures) html += htmlFigure(picture, figures_name);
-  return html + htmlFoot(s.info);
+  return html + errors + htmlFoot(s.info);
 }
 
 }  // namespace
@@ -52,7 +54,7 @@ ReportFiles writeStudyReport(const SessionReader& session, const std::string& ht
   std::vector<Picture> pictures = studyPictures(summary, responses);
   ReportFiles files;
   const std::string figures_name = plotAndWrite(pictures, html_path, options, files);
-  writeAtomically(html_path, studyHtml(summary, pictures, figures_name));
+  writeAtomically(html_path, studyHtml(summary, pictures, figures_name, deviceErrorsHtml(deviceErrors(session))));
   return files;
 }
 

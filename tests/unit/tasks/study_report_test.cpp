@@ -79,5 +79,31 @@ TEST(StudyReport, EveryFigureStandsInThePageAndBesideItWithItsNumbers) {
   EXPECT_TRUE(contains(html, "0123456789abcdef"));
 }
 
+// Of studies with one finger no report said it.
+TEST(StudyReport, SaysHowFarTheDisplayWasFromWhatItWasTold) {
+  const TemporaryDirectory dir;
+  writeDelaySession(dir / "a.db", false);
+  {
+    SessionWriter writer = SessionWriter::resume(dir / "a.db");
+    for (int k = 0; k < 100; ++k) {
+      SampleRecord sample;
+      sample.tick = 50 * k;
+      sample.time = 0.05 * k;
+      sample.fingers[0].flags = 1;
+      sample.fingers[0].place_wanted_L = {1e-3, 0};
+      sample.fingers[0].place_shown_L = {1.25e-3, 0};
+      writer.pushSample(sample);
+    }
+    ResponseRecord last;
+    last.trial = 40;
+    last.condition = "whole";
+    writer.finishResponse(last);
+    writer.close();
+  }
+  const std::string html = readFile(writeStudyReport(SessionReader(dir / "a.db"), dir / "report.html").html);
+  EXPECT_TRUE(contains(html, "Errors of the displays, and what people notice"));
+  EXPECT_TRUE(contains(html, "<td>0.25</td>")) << "the median";
+}
+
 }  // namespace
 }  // namespace pincer::tasks
