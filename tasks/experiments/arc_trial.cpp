@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "tasks/measure/timing.h"
+
 namespace pincer::tasks {
 namespace {
 
@@ -53,17 +55,19 @@ bool ArcTrial::tick(double now) {
     display_.advance(dt);
   }
   now_ = now;
+  const double start = steadySeconds();
   if (cut_) devices::trip(state_.gate, devices::Trip::kMissedDeadline);
   const devices::ArmSample arm = arm_.sample();
   const devices::TactileSample tactile = display_.sample();
   out_ = planarTick(model_, interval().shown, state_, arm, now, dt);
   arm_.commandForce(out_.f_D);
   display_.command(out_.tactile);
+  const double took = steadySeconds() - start;
   if (stage_ == Stage::kInterval) count(tactile, dt);
   const OneFingerAction action = observer_.act({arm, out_.f_D, tactile}, now, cue_);
   arm_.setHand(action.pull);
   advance(action, now);
-  if (ticks_++ % setup_.stride == 0) record(tactile, now);
+  if (ticks_++ % setup_.stride == 0) record(tactile, now, took);
   return stage_ != Stage::kOver;
 }
 
@@ -115,11 +119,12 @@ void ArcTrial::count(const devices::TactileSample& tactile, double dt) {
   tactor_mark_ = place;
 }
 
-void ArcTrial::record(const devices::TactileSample& tactile, double now) {
+void ArcTrial::record(const devices::TactileSample& tactile, double now, double took) {
   SampleRecord sample;
   sample.trial = setup_.trial;
   sample.tick = ticks_ - 1;
   sample.time = now;
+  sample.tick_us = 1e6 * took;
   sample.q_WB = {1, 0, 0, 0};
   FingerRecord& finger = sample.fingers[0];
   const Vec3 n_W(out_.contact.n_B.x(), 0, out_.contact.n_B.y());

@@ -57,7 +57,7 @@ class ArcTrial final : public ServoCycle {
 
   void advance(const OneFingerAction& action, double now);
   void count(const devices::TactileSample& tactile, double dt);
-  void record(const devices::TactileSample& tactile, double now);
+  void record(const devices::TactileSample& tactile, double now, double took);
   void end(const char* outcome);
   const ArcInterval& interval() const { return setup_.intervals[static_cast<std::size_t>(shown_)]; }
 

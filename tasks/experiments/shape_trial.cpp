@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "tasks/measure/timing.h"
+
 namespace pincer::tasks {
 namespace {
 
@@ -80,17 +82,19 @@ bool ShapeTrial::tick(double now) {
     display_.advance(dt);
   }
   now_ = now;
+  const double start = steadySeconds();
   if (cut_) devices::trip(state_.mounts[0].gate, devices::Trip::kMissedDeadline);
   inputs_[0] = {arm_.sample(), display_.sample()};
   const engine::StepReport report = tasks::tick(model_, state_, scratch_, inputs_, now);
   arm_.commandForce(scratch_.outputs[0].f_D);
   display_.command(scratch_.outputs[0].tactile);
+  const double took = steadySeconds() - start;
   if (stage_ == Stage::kFeel) count(dt);
   const ShapeAction action = explorer_.act({inputs_[0].arm, scratch_.outputs[0].f_D, inputs_[0].tactile}, now, cue_);
   arm_.setHand(action.finger.pull);
   arm_.setGimbal(model_.mounts[0].X_WD.q.conjugate() * action.q_WF);
   advance(action, now);
-  if (ticks_++ % setup_.stride == 0) record(now, report.status);
+  if (ticks_++ % setup_.stride == 0) record(now, took, report.status);
   return stage_ != Stage::kOver;
 }
 
@@ -134,13 +138,14 @@ void ShapeTrial::count(double dt) {
   tactor_mark_ = *tactile.place_L;
 }
 
-void ShapeTrial::record(double now, std::uint32_t status) {
+void ShapeTrial::record(double now, double took, std::uint32_t status) {
   const auto array = [](const Vec3& v) { return std::array<double, 3>{v.x(), v.y(), v.z()}; };
   const grasp::FingerReport& felt = scratch_.grasp.fingers[0];
   SampleRecord sample;
   sample.trial = setup_.trial;
   sample.tick = ticks_ - 1;
   sample.time = now;
+  sample.tick_us = 1e6 * took;
   sample.q_WB = {1, 0, 0, 0};
   sample.status = status;
   FingerRecord& finger = sample.fingers[0];

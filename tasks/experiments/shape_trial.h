@@ -41,7 +41,7 @@ class ShapeTrial final : public ServoCycle {
   enum class Stage : std::uint8_t { kPrepare, kFeel, kAnswer, kOver };
   void advance(const ShapeAction& action, double now);
   void count(double dt);
-  void record(double now, std::uint32_t status);
+  void record(double now, double took, std::uint32_t status);
 
   ShapeTrialSetup setup_;
   ShapeExplorer& explorer_;

@@ -3,13 +3,14 @@
 #include <fmt/format.h>
 
 #include "tasks/report/device_errors.h"
+#include "tasks/report/figures.h"
 #include "tasks/report/html_page.h"
 #include "tasks/session/atomic_file.h"
 
 namespace pincer::tasks {
 namespace {
 
-std::vector<Picture> studyPictures(const StudySummary& s, const std::vector<ResponseRecord>& responses) {
+std::vector<Picture> studyPictures(const SessionReader& session, const StudySummary& s, const std::vector<ResponseRecord>& responses) {
   std::vector<Picture> pictures;
   if (responses.empty()) return pictures;
   const auto add = [&](Figure figure) { pictures.push_back({std::move(figure), "", ""}); };
@@ -23,6 +24,7 @@ std::vector<Picture> studyPictures(const StudySummary& s, const std::vector<Resp
   if (s.info.task == "shape-identification") add(confusionFigure(responses));
   add(speedFigure(s));
   add(timeFigure(s));
+  if (auto ticks = tickFigure(session)) add(*std::move(ticks));
   return pictures;
 }
 
@@ -51,7 +53,7 @@ std::string studyHtml(const StudySummary& s, const std::vector<Picture>& picture
 ReportFiles writeStudyReport(const SessionReader& session, const std::string& html_path, const ReportOptions& options) {
   const std::vector<ResponseRecord> responses = session.responses();
   const StudySummary summary = summariseStudy(session, responses);
-  std::vector<Picture> pictures = studyPictures(summary, responses);
+  std::vector<Picture> pictures = studyPictures(session, summary, responses);
   ReportFiles files;
   const std::string figures_name = plotAndWrite(pictures, html_path, options, files);
   writeAtomically(html_path, studyHtml(summary, pictures, figures_name, deviceErrorsHtml(deviceErrors(session))));

@@ -5,6 +5,7 @@
 //   psychometric  all answers by level, with the function of most likelihood
 //   confusions  shapes shown against shapes named; places: places shown against places named
 //   speeds      of finger and tactor, beside the published ranges; times of the stimuli
+//   tick_times  how long the recorded ticks took
 #pragma once
 #include "tasks/report/report.h"
 #include "tasks/report/study_summary.h"

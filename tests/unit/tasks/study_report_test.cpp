@@ -79,8 +79,8 @@ TEST(StudyReport, EveryFigureStandsInThePageAndBesideItWithItsNumbers) {
   EXPECT_TRUE(contains(html, "0123456789abcdef"));
 }
 
-// Of studies with one finger no report said it.
-TEST(StudyReport, SaysHowFarTheDisplayWasFromWhatItWasTold) {
+// Of studies with one finger no report said either.
+TEST(StudyReport, SaysHowFarTheDisplayWasFromWhatItWasToldAndHowLongTicksTook) {
   const TemporaryDirectory dir;
   writeDelaySession(dir / "a.db", false);
   {
@@ -89,6 +89,7 @@ TEST(StudyReport, SaysHowFarTheDisplayWasFromWhatItWasTold) {
       SampleRecord sample;
       sample.tick = 50 * k;
       sample.time = 0.05 * k;
+      sample.tick_us = 2;
       sample.fingers[0].flags = 1;
       sample.fingers[0].place_wanted_L = {1e-3, 0};
       sample.fingers[0].place_shown_L = {1.25e-3, 0};
@@ -100,7 +101,10 @@ TEST(StudyReport, SaysHowFarTheDisplayWasFromWhatItWasTold) {
     writer.finishResponse(last);
     writer.close();
   }
-  const std::string html = readFile(writeStudyReport(SessionReader(dir / "a.db"), dir / "report.html").html);
+  const ReportFiles files = writeStudyReport(SessionReader(dir / "a.db"), dir / "report.html");
+  const std::string html = readFile(files.html);
+  EXPECT_TRUE(contains(html, "figure-tick_times"));
+  EXPECT_TRUE(contains(readFile(files.figures_directory + "/tick_times_percentiles.csv"), "\n0.5,2\n"));
   EXPECT_TRUE(contains(html, "Errors of the displays, and what people notice"));
   EXPECT_TRUE(contains(html, "<td>0.25</td>")) << "the median";
 }

@@ -26,7 +26,10 @@ using tests::errorOf;
 using tests::TemporaryDirectory;
 
 struct StudyMemory final : StudySink {
-  void sample(const SampleRecord&) override { ++samples; }
+  void sample(const SampleRecord& s) override {
+    ++samples;
+    EXPECT_GT(s.tick_us, 0) << "reports show what a tick took";
+  }
   void event(const EventRecord&) override {}
   void response(const ResponseRecord& response) override { responses.push_back(response); }
   int samples = 0;
