@@ -115,8 +115,6 @@ void addLine(const Vec2& p, double half_length, const Vec3& d, int name, Facet& 
   f.add({p.x(), p.y(), -z}, name + (z >= 0), name);
 }
 
-constexpr int kFlatEdge = 17;  // of an end, see above
-
 struct OutlinePoint {
   Vec2 p;
   int name;  // of the point; of the edge to the next as well
@@ -188,7 +186,7 @@ void cutEnd(const CylinderWithFlat& c, const Vec3& d, Facet& f) {
     const std::size_t k = (start + i) % rim.size();
     if (rim[k].x() < c.flat_distance) outline[static_cast<std::size_t>(count++)] = {rim[k], static_cast<int>(k)};
   }
-  outline[static_cast<std::size_t>(count++)] = {{c.flat_distance, -w}, 17};
+  outline[static_cast<std::size_t>(count++)] = {{c.flat_distance, -w}, Facet::kFlatEdge};
   f.rim_radius = c.radius;
   addEnd(outline, count, c.half_length, d.z() > 0, f);
 }
@@ -360,9 +358,8 @@ void addRimCorner(const Vec2& towards, Facet& f) {
     const FacetCorner& next = f.corners[static_cast<std::size_t>((i + 1) % f.count)];
     const Vec2 p = from.p.head<2>(), q = next.p.head<2>(), side = q - p;
     if (!(up * cross(side, rim - p) < 0)) continue;
-    const bool is_flat = (from.edge & 31) == kFlatEdge;
     const bool is_there = (rim - p).norm() < kStanding * f.rim_radius || (rim - q).norm() < kStanding * f.rim_radius;
-    if (is_flat || is_there || !(up * cross(side, towards - p) < 0)) return;
+    if (f.isStraight(i) || is_there || !(up * cross(side, towards - p) < 0)) return;
     const auto at = f.corners.begin() + i + 1;
     std::copy_backward(at, f.corners.begin() + f.count, f.corners.begin() + f.count + 1);
     const auto name = static_cast<std::uint16_t>((from.vertex & 32) + 18 + f.count % 8);

@@ -59,7 +59,7 @@ class MeshOnMesh {
 
   void lookAtCorners(const FlatTriangle& triangle, const MeshFeatures& own, const SeenMesh& other, std::uint32_t kind) {
     for (int i = 0; i < 3; ++i) {
-      if (triangle.ownsCorner(i)) lookAtCorner(triangle.corner(i), triangle.vertices[static_cast<std::size_t>(i)], own, other, kind);
+      if (triangle.ownsCorner(i)) lookAtCorner(triangle.corner(i), triangle.vertex(i), own, other, kind);
     }
   }
 

@@ -3,6 +3,7 @@
 #include <type_traits>
 
 #include "contact/shape/contact_candidates.h"
+#include "contact/shape/edge_on_facet.h"
 #include "contact/shape/edge_on_solid.h"
 #include "contact/shape/mesh_rules.h"
 #include "contact/shape/solid_walls.h"
@@ -35,12 +36,13 @@ class MeshOnSolid {
   void look(std::int32_t t, const Vec3& low, const Vec3& high) {
     if (!features_.meetsBox(t, low, high)) return;
     const FlatTriangle triangle = features_.triangle(t);
-    const double height = triangle.n.dot(solid_.support(-triangle.n) - triangle.p[0]) - rounding_;
+    faceAlong(triangle.n);
+    const double height = triangle.n.dot(lowest_ - triangle.p[0]);
     if (height > scale_.margin) return;
     if (height > scale_.deepest()) lookAtFace(triangle);
     for (int i = 0; i < 3; ++i) {
-      if (triangle.ownsCorner(i)) lookAtCorner(triangle.corner(i), triangle.vertices[static_cast<std::size_t>(i)]);
-      if (triangle.ownsEdge(i)) lookAtEdge(triangle, i, 3 * static_cast<std::uint32_t>(t) + static_cast<std::uint32_t>(i));
+      if (triangle.ownsCorner(i)) lookAtCorner(triangle.corner(i), triangle.vertex(i));
+      if (triangle.ownsEdge(i)) lookAtEdge({triangle, i, 3 * static_cast<std::uint32_t>(t) + static_cast<std::uint32_t>(i)});
     }
   }
 
@@ -49,12 +51,28 @@ class MeshOnSolid {
     is_way_out ? candidates_.add(point) : candidates_.addRefused(point);
   }
 
+  // The solid's facet that faces against `n`, and its point on that side: the same for all triangles of a flat face.
+  void faceAlong(const Vec3& n) {
+    constexpr double kSame = 1e-12;
+    if ((n - faced_).squaredNorm() < kSame * kSame) return;
+    faced_ = n;
+    lowest_ = solid_.support(-n) - rounding_ * n;
+    facet_.count = 0;
+  }
+  void placeFacet() {
+    if (facet_.count > 0) return;
+    facetOf(solid_.shape, solid_.inwards(-faced_), facet_);
+    for (int k = 0; k < facet_.count; ++k) {
+      Vec3& p = facet_.corners[static_cast<std::size_t>(k)].p;
+      p = solid_.place(p) - rounding_ * faced_;
+    }
+  }
+
   void lookAtFace(const FlatTriangle& triangle) {
-    Facet facet;
-    facetOf(solid_.shape, solid_.inwards(-triangle.n), facet);
-    for (int k = 0; k < facet.count; ++k) {
-      const FacetCorner& corner = facet.corners[static_cast<std::size_t>(k)];
-      const Vec3 q = solid_.place(corner.p) - rounding_ * triangle.n;
+    placeFacet();
+    for (int k = 0; k < facet_.count; ++k) {
+      const FacetCorner& corner = facet_.corners[static_cast<std::size_t>(k)];
+      const Vec3& q = corner.p;
       const double phi = triangle.n.dot(q - triangle.p[0]);
       if (!(phi < scale_.margin) || !triangle.isUnder(q, scale_.slack())) continue;
       const PairPoint point{q - 0.5 * phi * triangle.n, -triangle.n, phi, meshFeatureOf(kMeshCornerOfB, corner.vertex)};
@@ -105,33 +123,58 @@ class MeshOnSolid {
       offer({p - 0.5 * phi * n, n, phi, meshFeatureOf(kMeshCornerOfA, static_cast<std::uint32_t>(vertex))}, is_way_out);
   }
 
-  void lookAtEdge(const FlatTriangle& triangle, int i, std::uint32_t name) {
-    const Vec3 &p0 = triangle.corner(i), &p1 = triangle.corner(i + 1);
-    const double length = (p1 - p0).norm();
-    const Vec3 e = (p1 - p0) / length, across = triangle.beyond[static_cast<std::size_t>(i)] - p1;
-    const Vec3 n_other = (p0 - p1).cross(across).normalized();
-    const auto gapAt = [&](const Vec3& n) { return n.dot(p0 - solid_.support(n)) - rounding_; };
-    if (gapAt(-triangle.n) > scale_.margin || gapAt(-n_other) > scale_.margin) return;
-    const Vec3 t = e.cross(triangle.n), t_other = n_other.cross(e);  // out of the two faces
-    const EdgeContacts found = edgeOnSolid(p0, e, -(triangle.n - kEdgeSlack * t).normalized(),
-                                           -(n_other - kEdgeSlack * t_other).normalized(), solid_, scale_.deepest());
+  // A convex edge of the mesh.
+  struct Edge {
+    Vec3 p, e;  // its begin [m] and direction
+    double length;
+    Vec3 n, n_other;                   // of the faces that it joins
+    std::array<std::int32_t, 2> ends;  // vertices
+    std::uint32_t name;
+
+    Edge(const FlatTriangle& t, int i, std::uint32_t edge_name)
+        : p(t.corner(i)), e(t.corner(i + 1) - p), length(e.norm()), n(t.n), ends{t.vertex(i), t.vertex(i + 1)}, name(edge_name) {
+      n_other = (-e).cross(t.beyond[static_cast<std::size_t>(i)] - t.corner(i + 1)).normalized();
+      e /= length;
+    }
+    // How steep `m` is on the flatter of the two faces, as MeshScale::isBehindFaces has it.
+    double slope(const Vec3& m) const { return -std::max(m.dot(n), m.dot(n_other)); }
+  };
+
+  void lookAtEdge(const Edge& edge) {
+    const auto gapAt = [&](const Vec3& n) { return n.dot(edge.p - solid_.support(n)) - rounding_; };
+    if (gapAt(-edge.n) > scale_.margin || gapAt(-edge.n_other) > scale_.margin) return;
+    const Vec3 out = edge.e.cross(edge.n), out_other = edge.n_other.cross(edge.e);  // of the two faces
+    const EdgeContacts found = edgeOnSolid(edge.p, edge.e, -(edge.n - kEdgeSlack * out).normalized(),
+                                           -(edge.n_other - kEdgeSlack * out_other).normalized(), solid_, scale_.deepest());
     for (int k = 0; k < found.count; ++k) {
       const EdgeContact& s = found.all[static_cast<std::size_t>(k)];
-      const double phi = s.gap - rounding_, along = e.dot(s.p - p0);
-      if (!(phi < scale_.margin) || along < -scale_.slack() || along > length + scale_.slack()) continue;
-      const Vec3 p = p0 + along * e;
-      const PairPoint point{p - 0.5 * phi * s.n, s.n, phi, meshFeatureOf(kMeshEdges, name)};
-      phi < -scale_.slack() ? offerOverlap(point, p, -std::max(s.n.dot(triangle.n), s.n.dot(n_other))) : offer(point, true);
+      if (s.gap - rounding_ < scale_.margin) lookAlongEdge(edge, s);
     }
   }
 
-  // Of an edge's point `p`, and of the solid's opposite to it: in the solid, and behind the two faces of the mesh's edge; `slope` as
-  // MeshScale::isBehindFaces has it.
-  void offerOverlap(const PairPoint& point, const Vec3& p, double slope) {
-    const double phi = point.phi, in_solid = nearest(p).distance;
-    const MeshFeatures::Nearest in_mesh = features_.nearest(p - phi * point.n_W, -1.1 * phi);
+  // Where the edge and the solid's facet that faces it there part; of other places than faces, also where the two are nearest.
+  void lookAlongEdge(const Edge& edge, const EdgeContact& s) {
+    const EdgePart part = partOverFacet(edge.p, edge.e, edge.length, s.n, solid_, scale_.slack());
+    for (std::uint32_t end = 0; part.found && end < 2; ++end) {
+      const auto [t, phi] = part.ends[end];
+      const bool is_corner = t <= 0 || t >= edge.length;
+      if (is_corner && features_.liesAbove(edge.ends[t > 0], s.n, kConeSlack)) continue;  // lookAtCorner's
+      offerOnEdge(edge, t, s.n, phi, meshFeatureOf(kMeshEdgeEnds, 2 * edge.name + end));
+    }
+    const double along = edge.e.dot(s.p - edge.p);
+    if (!part.is_over_face && along >= -scale_.slack() && along <= edge.length + scale_.slack())
+      offerOnEdge(edge, along, s.n, s.gap - rounding_, meshFeatureOf(kMeshEdges, edge.name));
+  }
+
+  // Overlap counts where the edge's point is in the solid, and the solid's opposite to it behind the two faces of the mesh's edge.
+  void offerOnEdge(const Edge& edge, double t, const Vec3& n, double phi, std::uint32_t feature) {
+    const Vec3 p = edge.p + t * edge.e;
+    const PairPoint point{p - 0.5 * phi * n, n, phi, feature};
+    if (!(phi < -scale_.slack())) return offer(point, true);
+    const double in_solid = nearest(p).distance;
+    const MeshFeatures::Nearest in_mesh = features_.nearest(p - phi * n, -1.1 * phi);
     const bool is_way_out = in_solid < scale_.slack() - kBesideFace * phi && scale_.isWayOut(phi, in_solid) && in_mesh.found &&
-                            scale_.isBehindFaces(in_mesh.distance, phi, slope);
+                            scale_.isBehindFaces(in_mesh.distance, phi, edge.slope(n));
     if (is_way_out || in_solid < 0 || (in_mesh.found && in_mesh.distance < 0)) offer(point, is_way_out);
   }
 
@@ -139,6 +182,8 @@ class MeshOnSolid {
   const PosedSolid& solid_;
   MeshScale scale_;
   double rounding_;
+  Vec3 faced_ = Vec3::Zero(), lowest_;  // see faceAlong
+  Facet facet_;                         // its corners where they are, on the solid's surface; none until they are asked for
   ContactCandidates candidates_;
 };
 

@@ -5,7 +5,8 @@
 //   corner of the mesh on the solid     the solid's nearest point and normal there, or the wall that it is behind (solid_walls.h)
 //   corner of the solid on a triangle   the triangle's plane, where the corner lies over the triangle; which corners: those of the solid's
 //                                       facet that faces the triangle (convex_features.h)
-//   edge of the mesh on the solid       the direction between those of the edge's two faces in which the gap is greatest (edge_on_solid.h)
+//   edge of the mesh on the solid       the direction between those of the edge's two faces in which the gap is greatest (edge_on_solid.h); of a
+//                                       facet of the solid that faces the edge there, both ends of what they share (edge_on_facet.h)
 // A direction counts only where the mesh around the corner or edge lies on the far side of the plane across it. All are local, so that the depth of
 // shallow overlap is right also in hollows. What is behind the surface must be in the body, and no other way out much shorter
 // (MeshScale::isWayOut): the far side of a thin plate doesn't count. Where that leaves nothing, as of a rim across an edge of the mesh with the

@@ -37,7 +37,7 @@ struct MeshScale {
 // flat ones that rock, touch with more than one.
 constexpr double kConeSlack = 0.3, kEdgeSlack = 0.02;
 
-enum : std::uint32_t { kMeshCornerOfA = 0, kMeshCornerOfB = 1, kMeshEdges = 2 };
+enum : std::uint32_t { kMeshCornerOfA = 0, kMeshCornerOfB = 1, kMeshEdges = 2, kMeshEdgeEnds = 3 };
 inline std::uint32_t meshFeatureOf(std::uint32_t kind, std::uint32_t name) { return kind << 30 | (name & 0x3fffffff); }
 
 }  // namespace pincer::contact

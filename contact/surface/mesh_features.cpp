@@ -22,6 +22,26 @@ std::vector<Aabb> boxesOf(const TriangleMesh& mesh) {
   return boxes;
 }
 
+constexpr double kFlat = 1e-6;  // sine of the angle across or along an edge that counts as none
+
+// The convex edges and borders that end in a vertex.
+class SharpEdges {
+ public:
+  void add(const Vec3& outwards) {
+    const Vec3 e = outwards.normalized();
+    if (count_ == 0) first_ = e;
+    bends_ = bends_ || (count_ > 0 && (first_ + e).squaredNorm() > kFlat * kFlat);
+    ++count_;
+  }
+  // One straight edge that goes on through the vertex makes none.
+  bool makeCorner() const { return count_ == 1 || bends_; }
+
+ private:
+  Vec3 first_ = Vec3::Zero();
+  int count_ = 0;
+  bool bends_ = false;
+};
+
 // Nearest point of a triangle to the origin, and which corners it lies between: bit i for corner i.
 struct OnTriangle {
   Vec3 p;
@@ -50,26 +70,37 @@ OnTriangle nearestOfTriangle(const Vec3& a, const Vec3& b, const Vec3& c) {
 
 MeshFeatures::MeshFeatures(const TriangleMesh& mesh, const Neighbours& neighbours)
     : mesh_(&mesh), owned_(mesh.triangles.size(), 0), opposite_(mesh.triangles.size()), tree_(boxesOf(mesh)) {
-  constexpr double kFlat = 1e-6;  // sine of the angle across an edge that counts as none
-  std::vector<bool> taken(mesh.vertices.size(), false);
+  setOwners(neighbours);
+  setTrianglesAtVertices();
+}
+
+void MeshFeatures::setOwners(const Neighbours& neighbours) {
+  std::vector<SharpEdges> sharp(mesh_->vertices.size());
   for (std::size_t t = 0; t < owned_.size(); ++t) {
-    const auto& corners = mesh.triangles[t];
-    const Vec3 n = crossOf(mesh, corners);
+    const auto& corners = mesh_->triangles[t];
+    const Vec3 n = crossOf(*mesh_, corners);
     for (std::size_t i = 0; i < 3; ++i) {
-      const auto v = static_cast<std::size_t>(corners[i]);
-      if (!taken[v]) owned_[t] |= static_cast<std::uint8_t>(1u << i);
-      taken[v] = true;
       const Neighbour& other = neighbours[t][i];
-      opposite_[t][i] = -1;
-      if (other.triangle < 0) continue;
-      const std::int32_t beyond = cornersOf(other.triangle)[(static_cast<std::size_t>(other.edge) + 2) % 3];
-      opposite_[t][i] = beyond;
-      const Vec3 across = vertex(beyond) - vertex(corners[i]);
-      const bool convex = n.dot(across) < -kFlat * n.norm() * across.norm();
-      if (convex && other.triangle > static_cast<std::int32_t>(t)) owned_[t] |= static_cast<std::uint8_t>(8u << i);
+      const bool is_border = other.triangle < 0;
+      opposite_[t][i] = is_border ? -1 : cornersOf(other.triangle)[(static_cast<std::size_t>(other.edge) + 2) % 3];
+      if (!is_border && other.triangle < static_cast<std::int32_t>(t)) continue;  // has been seen from there
+      const Vec3 &from = vertex(corners[i]), &to = vertex(corners[(i + 1) % 3]);
+      if (!is_border) {
+        const Vec3 across = vertex(opposite_[t][i]) - from;
+        if (!(n.dot(across) < -kFlat * n.norm() * across.norm())) continue;
+        owned_[t] |= static_cast<std::uint8_t>(8u << i);
+      }
+      sharp[static_cast<std::size_t>(corners[i])].add(to - from);
+      sharp[static_cast<std::size_t>(corners[(i + 1) % 3])].add(from - to);
     }
   }
-  setTrianglesAtVertices();
+  for (std::size_t t = 0; t < owned_.size(); ++t) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      SharpEdges& edges = sharp[static_cast<std::size_t>(mesh_->triangles[t][i])];
+      if (edges.makeCorner()) owned_[t] |= static_cast<std::uint8_t>(1u << i);
+      edges = {};
+    }
+  }
 }
 
 void MeshFeatures::setTrianglesAtVertices() {
@@ -111,7 +142,8 @@ MeshFeatures::Triangle MeshFeatures::triangle(std::int32_t t) const {
 bool MeshFeatures::Triangle::isUnder(const Vec3& q, double slack) const {
   for (int i = 0; i < 3; ++i) {
     const Vec3 edge = corner(i + 1) - corner(i);
-    if (n.cross(edge).dot(q - corner(i)) < -slack * edge.norm()) return false;
+    const double inside = n.cross(edge).dot(q - corner(i));  // times the edge's length
+    if (inside < 0 && inside * inside > slack * slack * edge.squaredNorm()) return false;
   }
   return true;
 }

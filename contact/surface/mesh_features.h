@@ -2,7 +2,8 @@
 // mesh_mesh.h).
 //
 // Each vertex and each edge belongs to one triangle, the first that has it, so that a walk over triangles meets it once. An edge counts
-// where the surface is convex across it: no other can touch a body that its two triangles don't touch.
+// where the surface is convex across it, a vertex where such an edge or a border ends or bends in it: no others can touch a body that the
+// triangles and edges around them don't touch, and how a flat face and its rim are cut makes no difference.
 // The signed distance of a point is that to the nearest triangle, negative where it lies behind the surface there: behind the face, or
 // where an edge or vertex is nearest, against the sum of the normals around it, each weighted by its angle.
 // Source: J. A. Baerentzen, H. Aanaes, IEEE Trans. Visualization Comput. Graphics 11(3), 2005 (those normals decide inside and outside
@@ -28,12 +29,13 @@ class MeshFeatures {
     std::array<Vec3, 3> p;                 // [m]
     Vec3 n;                                // unit normal, out of the solid
     std::array<std::int32_t, 3> vertices;  // of the mesh
-    std::uint8_t owned;          // bit i: corner i belongs to it; bit 3 + i: edge i, from corner i to (i + 1) mod 3, and is convex
+    std::uint8_t owned;          // bit i: corner i belongs to it and counts; bit 3 + i: edge i, from corner i to (i + 1) mod 3, likewise
     std::array<Vec3, 3> beyond;  // per owned edge: the third corner of the triangle on its other side [m]
 
     bool ownsCorner(int i) const { return owned >> i & 1; }
     bool ownsEdge(int i) const { return owned >> (3 + i) & 1; }
     const Vec3& corner(int i) const { return p[static_cast<std::size_t>(i % 3)]; }
+    std::int32_t vertex(int i) const { return vertices[static_cast<std::size_t>(i % 3)]; }
     // Whether `q` lies over the triangle, or beside it by less than `slack` [m].
     bool isUnder(const Vec3& q, double slack) const;
   };
@@ -70,6 +72,7 @@ class MeshFeatures {
   const Vec3& vertex(std::int32_t v) const { return mesh_->vertices[static_cast<std::size_t>(v)]; }
   const std::array<std::int32_t, 3>& cornersOf(std::int32_t t) const { return mesh_->triangles[static_cast<std::size_t>(t)]; }
   std::span<const std::int32_t> trianglesAt(std::int32_t v) const;
+  void setOwners(const Neighbours& neighbours);
   void setTrianglesAtVertices();
   Vec3 normalAround(std::int32_t v) const;
   Vec3 normalAcross(std::int32_t t, int edge) const;

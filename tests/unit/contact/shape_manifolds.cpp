@@ -40,11 +40,12 @@ std::vector<Standing> standingBodies() {
     points.emplace_back(r * std::cos(t), r * std::sin(t), i < 6 ? -0.016 : 0.02);
   }
   const Convex hull{Polytope::hullOf(points, "frustum")};
-  const Mesh mesh{SmoothMesh::build(contact::box(box.half))};
+  const Mesh mesh{SmoothMesh::build(contact::box(box.half))}, fine{SmoothMesh::build(gridBox(box.half, 7))};
   return {{"box", box, box, 0.023, 0.023},
           {"cylinder", cylinder, cylinder, 0.019, 0.019},
           {"hull", hull, hull, 0.016, 0.02},
-          {"mesh", mesh, box, 0.023, 0.023}};
+          {"mesh", mesh, box, 0.023, 0.023},
+          {"fine mesh", fine, box, 0.023, 0.023}};
 }
 
 template <class Judge>
@@ -114,12 +115,10 @@ struct Outline {
 
 bool isMeshShape(const Shape& shape) { return std::holds_alternative<Mesh>(shape); }
 
-// Four points can't span a disc, nor a polygon of twelve sides: a square spans 2/pi of its circle. Not promised of a solid on a mesh, which may
-// be left with two points.
+// Four points can't span a disc, nor a polygon of twelve sides: a square spans 2/pi of its circle.
 TEST(Manifolds, SpanWhatTheTwoShare) {
   RandomNumbers random(3);
   forAllStanding([&](const Standing& a, const Standing& b) {
-    if (isMeshShape(a.shape) != isMeshShape(b.shape)) return;
     for (int i = 0; i < 6; ++i) {
       const Vec3 beside(random.uniform(-0.01, 0.01), random.uniform(-0.01, 0.01), b.high + a.low - 1e-6);
       const Pose X_BA{about(Vec3::UnitZ(), random.uniform(-3, 3)), beside};
@@ -132,6 +131,28 @@ TEST(Manifolds, SpanWhatTheTwoShare) {
       EXPECT_LT(outline.area, 1.02 * shared.area) << a.name << " on " << b.name << " " << i;  // the grid's error
     }
   });
+}
+
+// A table's top cut into 2, 200 and 20,000 triangles, and what overhangs its rim, or a corner of it.
+TEST(Manifolds, HowAFaceIsCutMakesNoDifference) {
+  const Vec3 half(0.15, 0.15, 0.02);
+  const Mesh whole{SmoothMesh::build(contact::box(half))};
+  const Mesh cut[] = {{SmoothMesh::build(gridBox(half, 10))}, {SmoothMesh::build(gridBox(half, 100))}};
+  RandomNumbers random(5);
+  for (const Standing& a : standingBodies()) {
+    for (int i = 0; i < 6; ++i) {
+      const double along = i % 2 == 0 ? random.uniform(-0.1, 0.1) : half.y() + random.uniform(-0.01, 0.005);
+      const Pose X_BA{about(Vec3::UnitZ(), random.uniform(-3, 3)),
+                      {half.x() + random.uniform(-0.01, 0.005), along, half.z() + a.low - 1e-6}};
+      const PairPoints p = askPair(a.shape, X_BA, whole);
+      const Outline of_whole(p, Vec2::Zero());
+      for (const Mesh& table : cut) {
+        const PairPoints q = askPair(a.shape, X_BA, table);
+        EXPECT_EQ(q.count, p.count) << a.name << " " << i;
+        EXPECT_NEAR(Outline(q, Vec2::Zero()).area, of_whole.area, 1e-9 * of_whole.area) << a.name << " " << i;  // round-off
+      }
+    }
+  }
 }
 
 // 20 mm/s and 0.2 rad/s at 1 kHz.
