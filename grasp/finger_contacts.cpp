@@ -28,16 +28,18 @@ class FingerLook {
     const engine::BodyScratch& mid = scratch_.world.bodies[body];
     const Vec3& p_WC = point_.p_mid_W;
     const Vec3 p_BC = mid.R_WB_mid.transpose() * (p_WC - mid.X_WB_mid.p);
-    const double bound = b.bounding_radius < kEndless ? (p_WC - mid.X_WI_mid.p).norm() - b.bounding_radius - f_.radius
-                                                      : contact::lowerBoundOfGap(b.shape, p_BC, f_.radius);
-    const double margin = marginTo(mid);
     const std::size_t pair = static_cast<std::size_t>(finger_) * model_.world.bodies.size() + static_cast<std::size_t>(body);
-    if (bound > std::max(f_.reach, margin)) {
-      report_.gap = std::min(report_.gap, bound);
-      if (std::holds_alternative<contact::Mesh>(b.shape)) state_.trackers[pair] = {};  // closed forms don't use it
-      if (f_.shape) state_.tips[pair] = {};
-      return;
+    if (!isWithinReach(b, mid)) {
+      const double bound = b.bounding_radius < kEndless ? (p_WC - mid.X_WI_mid.p).norm() - b.bounding_radius - f_.radius
+                                                        : contact::lowerBoundOfGap(b.shape, p_BC, f_.radius);
+      if (bound > f_.reach && isBeyondMargin(bound, mid)) {
+        report_.gap = std::min(report_.gap, bound);
+        if (std::holds_alternative<contact::Mesh>(b.shape)) state_.trackers[pair] = {};  // closed forms don't use it
+        if (f_.shape) state_.tips[pair] = {};
+        return;
+      }
     }
+    const double margin = marginTo(mid);
     if (f_.shape) {
       const Pose X_WF{scratch_.q_mid_WF[finger_], p_WC};
       return take(fingerOnBody(model_, state_, scratch_.world.patches, finger_, body, mid.X_WB_mid, X_WF, margin), body, margin);
@@ -46,9 +48,19 @@ class FingerLook {
   }
 
  private:
+  // Without a root: of what fingers hold, as a rule, the bounding sphere is.
+  bool isWithinReach(const engine::BodyModel& b, const engine::BodyScratch& mid) const {
+    const double distance = f_.reach + b.bounding_radius + f_.radius;
+    return distance < kEndless && (point_.p_mid_W - mid.X_WI_mid.p).squaredNorm() <= distance * distance;
+  }
+
   // What closes within the tick must be seen at its middle.
   double marginTo(const engine::BodyScratch& mid) const {
     return model_.world.options.contact_margin + model_.world.options.h * (point_.start.v_W - mid.start.v_W).norm();
+  }
+  bool isBeyondMargin(double bound, const engine::BodyScratch& mid) const {
+    const double h = model_.world.options.h, way = bound - model_.world.options.contact_margin;
+    return way > 0 && way * way > h * h * (point_.start.v_W - mid.start.v_W).squaredNorm();
   }
 
   // The nearest point for the pad, and the contacts for the solve.

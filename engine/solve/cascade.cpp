@@ -234,11 +234,10 @@ SolverScratch::SolverScratch(int contacts, int movers)
   active.resize(n);
 }
 
-SolveResult solveContacts(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch, VectorMap r, VectorMap u) {
-  if (problem.contactCount() == 0) return {};
-  project(problem, r.data());
-  SolveResult small;
-  if (solveSmallProblem(problem, options, r.data(), u.data(), small)) return small;
+namespace {
+
+// What solveSmallProblem leaves; r in the cones.
+SolveResult solveByForm(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch, VectorMap r, VectorMap u) {
   weighContacts(problem, scratch);
   const double start = weighedResidual(problem, r.data(), scratch, u.data());
   const bool is_close = start <= options.tolerance;
@@ -260,6 +259,17 @@ SolveResult solveContacts(const ContactProblem& problem, const SolverOptions& op
     return result;
   }
   return withoutAddedEnergy(problem, result, scratch, r, u);
+}
+
+}  // namespace
+
+void solveContacts(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch, double* r, double* u,
+                   SolveResult& result) {
+  result = {};
+  if (problem.contactCount() == 0) return;
+  project(problem, r);
+  if (solveSmallProblem(problem, options, r, u, result)) return;
+  result = solveByForm(problem, options, scratch, VectorMap(r, problem.rowCount()), VectorMap(u, problem.rowCount()));
 }
 
 }  // namespace pincer::engine

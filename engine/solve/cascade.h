@@ -102,7 +102,14 @@ double contactResidual(const ContactProblem& problem, const Eigen::Ref<const Eig
                        Eigen::Ref<Eigen::VectorXd> u);
 
 // Solves `problem`. `r` holds the warm start on entry (zeros are fine) and the impulses on return: in the cones to 1e-12 relative, whatever
-// happened. `u` receives the contact velocities.
-SolveResult solveContacts(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch, VectorMap r, VectorMap u);
+// happened. `u` receives the contact velocities. Nothing is copied here: copies wait until what they are of is written to its last byte.
+void solveContacts(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch, double* r, double* u,
+                   SolveResult& result);
+inline SolveResult solveContacts(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch, VectorMap r,
+                                 VectorMap u) {
+  SolveResult result;
+  solveContacts(problem, options, scratch, r.data(), u.data(), result);
+  return result;
+}
 
 }  // namespace pincer::engine

@@ -47,11 +47,11 @@ inline bool isInCone(const double* r, int rows, double mu, double slack = 0) {
 
 // p = the point of K_mu closest to y. p may be y itself.
 [[gnu::always_inline]] inline void projectOntoCone(const double* y, int rows, double mu, double* p) {
-  const double yT = std::sqrt(tangentNorm2(y, rows));
-  const double yn = y[kNormalRow];
+  const double yT2 = tangentNorm2(y, rows), yn = y[kNormalRow], radius = mu * yn;
+  if (yn > 0 && yT2 <= radius * radius) return setVector(p, rows, 1, y, yn);  // inside, mostly: no root
+  const double yT = std::sqrt(yT2);
   if (mu * yT <= -yn) return setVector(p, rows, 0, y, 0);  // in the polar cone; asked first: a pull without friction has yT = mu yn = 0
-  if (yT <= mu * yn) return setVector(p, rows, 1, y, yn);  // inside
-  const double normal = (yn + mu * yT) / (1 + mu * mu);    // yT > 0 here: the cases above cover yT = 0
+  const double normal = (yn + mu * yT) / (1 + mu * mu);  // yT > 0 here: the cases above cover yT = 0
   setVector(p, rows, mu * normal / yT, y, normal);
 }
 

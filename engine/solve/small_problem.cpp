@@ -108,6 +108,12 @@ template <int m>
   return true;
 }
 
+// In line: std::copy calls memmove, which reads in one piece what was just written number by number, and waits for it.
+template <int n>
+[[gnu::always_inline]] inline void copy(const double* from, double* to) {
+  for (int k = 0; k < n; ++k) to[k] = from[k];
+}
+
 // `count` contacts of `rows` rows each.
 template <int count, int rows>
 class SmallProblem {
@@ -115,8 +121,7 @@ class SmallProblem {
   static constexpr int m = count * rows;
 
   explicit SmallProblem(const ContactProblem& problem) : mu_(problem.mu.data()), speed_(referenceSpeed(problem)) {
-    const double* const q = problem.q.data();
-    std::copy(q, q + m, q_);
+    copy<m>(problem.q.data(), q_);
     for (int i = 0; i < count; ++i) {
       fillOwn(problem.sides[static_cast<std::size_t>(i)], rows * i);
       double trace = 0;
@@ -137,12 +142,12 @@ class SmallProblem {
 
  private:
   bool solveBy(bool blocks, const SolverOptions& options, bool strict, double* r_out, double* u_out, SolveResult& result) {
-    std::copy(r_out, r_out + m, r_);
+    copy<m>(r_out, r_);
     const double start = evaluate();
     const bool is_close = start <= options.tolerance;
     result = {SolveMethod::kWarmStart, 0, start, start, true};
     if (is_close && !(strict && start > exactResidual(options.tolerance, speed_))) {
-      std::copy(u_, u_ + m, u_out);
+      copy<m>(u_, u_out);
       return true;
     }
     const double enough = is_close ? kStrictness * options.tolerance : options.tolerance;
@@ -166,8 +171,8 @@ class SmallProblem {
   }
 
   void keep(double* r_out, double* u_out) const {
-    std::copy(r_, r_ + m, r_out);
-    std::copy(u_, u_ + m, u_out);
+    copy<m>(r_, r_out);
+    copy<m>(u_, u_out);
   }
 
   using Block = double[rows][rows];
@@ -259,7 +264,7 @@ class SmallProblem {
       return mode;
     }
     for (int k = first; k < first + rows; ++k) {
-      std::copy(W_[k], W_[k] + m, J_[k]);
+      copy<m>(W_[k], J_[k]);
       b_[k] = -u_[k];
     }
     if (mode == ContactMode::kSlide) slide(i, y);

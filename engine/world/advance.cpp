@@ -168,9 +168,14 @@ void remember(const Contact& c, double h, ContactMemory& m) {
   m.closing = c.closing;
   m.settling = c.settling;
   if (!m.active || m.sliding) return;
-  const ContactVector v_end_C = relativeVelocity(c, c.mover_a->end, c.mover_b->end);
-  m.offset_C = c.offset_C + h * (c.closing ? v_end_C : ContactVector(0.5 * (c.v_start_C + v_end_C)));
-  m.offset_C[kNormalRow] = 0;
+  withRows(rowsOf(c.material), [&](auto rows) {
+    double v_end_C[kMaxContactRows];
+    relativeVelocity(c, c.mover_a->end, c.mover_b->end, rows, v_end_C);
+    for (int k = 0; k < rows; ++k) {
+      const double v_mean = c.closing ? v_end_C[k] : 0.5 * (c.v_start_C[k] + v_end_C[k]);
+      m.offset_C[k] = k == kNormalRow ? 0 : c.offset_C[k] + h * v_mean;
+    }
+  });
 }
 
 constexpr double kAligned = 1e-12;  // of the offsets: round-off

@@ -9,14 +9,30 @@
 namespace pincer::engine {
 namespace {
 
+// What is the same for all contacts of this part of a tick.
+struct Rates {
+  double tangent, normal;  // share of what is missing that is made good, over the tick [1/s]
+  double turn;             // how much of the turn since the middle of the last part of a tick is to come
+  double longer;           // than the last part: impulses grow with it
+
+  Rates(const WorldModel& model, const WorldState& state, double h)
+      : tangent(h > 0 ? kTangentCorrection / model.options.h : 0),
+        normal(kNormalCorrection / model.options.h),
+        turn(h / (h + state.h_last)),
+        longer(h / state.h_last) {}
+};
+
 // The turn of the normal and of the arms from now to the end, from their motion since the middle of the last part of a tick: n_end . v_end - n_mid . v_mid.
-double turnOfNormal(const WorldScratch& scratch, double h_last, const Contact& c, const ContactMemory& memory) {
-  const Vec3 n_W = c.n_W();
-  const Vec3 v_rel_W = c.R_WC * c.v_start_C.head<3>();
-  double turn = (n_W - memory.n_W).dot(v_rel_W);
+double turnOfNormal(const Rates& rates, const Contact& c, const ContactMemory& memory) {
+  const auto n_W = c.R_WC.col(2);
+  double turn = 0;
+  for (int i = 0; i < 3; ++i) {
+    const double v_i = c.R_WC(i, 0) * c.v_start_C[0] + c.R_WC(i, 1) * c.v_start_C[1] + c.R_WC(i, 2) * c.v_start_C[2];
+    turn += (n_W[i] - memory.n_W[i]) * v_i;
+  }
   if (turns(c.mover_a->start)) turn += n_W.dot(c.mover_a->start.w_W.cross(c.arm_a_W - memory.arm_a_W));
   if (turns(c.mover_b->start)) turn -= n_W.dot(c.mover_b->start.w_W.cross(c.arm_b_W - memory.arm_b_W));
-  return scratch.h / (scratch.h + h_last) * turn;
+  return rates.turn * turn;
 }
 
 // Newton's law of impact; what touches without hitting is only kept from closing.
@@ -34,41 +50,37 @@ bool rollsOn(double u_n, double turn) {
 
 double largestCorrection(const WorldModel& model, const Contact& c) { return isPushedOut(model, c) ? kDeepSpeed : kLargestCorrection; }
 
-double normalBias(const WorldModel& model, const WorldState& state, const WorldScratch& scratch, Contact& c) {
+double normalBias(const WorldModel& model, const Rates& rates, const WorldScratch& scratch, Contact& c) {
   if (scratch.h == 0) return impactBias(model, scratch, c);
-  const double h = model.options.h;
   const ContactMemory* const memory = c.memory;
   const double u_n = c.v_start_C[kNormalRow];
   if (memory && memory->active) {
-    const double turn = turnOfNormal(scratch, state.h_last, c, *memory);
+    const double turn = turnOfNormal(rates, c, *memory);
     // What landed in the last tick still has the speed that it landed with: it is stopped like a new contact.
-    if (!memory->closing || rollsOn(u_n, turn)) return std::max(kNormalCorrection * c.phi / h, -largestCorrection(model, c)) + turn;
+    if (!memory->closing || rollsOn(u_n, turn)) return std::max(rates.normal * c.phi, -largestCorrection(model, c)) + turn;
   }
   const double phi_start = c.phi - 0.5 * scratch.h * u_n;
   c.closing = std::abs(u_n) > kClosingSpeed;  // also what hops and comes down within the tick
   if (phi_start > 0) return phi_start / scratch.h;
-  return std::max(kNormalCorrection * phi_start / h, -largestCorrection(model, c));
+  return std::max(rates.normal * phi_start, -largestCorrection(model, c));
 }
 
-void fillContact(const WorldModel& model, const WorldState& state, WorldScratch& scratch, int i) {
-  const double rate = scratch.h > 0 ? kTangentCorrection / model.options.h : 0;
+void fillContact(const WorldModel& model, const Rates& rates, WorldScratch& scratch, int i) {
   Contact& c = scratch.contacts[i];
   const int first = scratch.first_row[i], count = scratch.first_row[i + 1] - first;
   const ContactMemory* const memory = c.memory;
-  ContactVector q = relativeVelocity(c, c.mover_a->free, c.mover_b->free);
-  c.stuck = memory && memory->active && !memory->sliding;
   c.closing = false;
-  c.bias_C.setZero();
-  if (c.stuck) c.bias_C = rate * (c.offset_C + 0.5 * scratch.h * c.v_start_C);
-  c.bias_C[kNormalRow] = normalBias(model, state, scratch, c);
-  q += c.bias_C;
-  for (int k = kTorsionRow; k < count; ++k) q[k] *= radiusOf(c, k);
-  const double longer = memory ? scratch.h / state.h_last : 0;  // than the last part of a tick: impulses grow with it
+  const double normal_bias = normalBias(model, rates, scratch, c);
   double *const q_i = scratch.q.data() + first, *const r_i = scratch.r.data() + first;
+  c.bias_C.setZero();
   withRows(count, [&](auto rows) {
+    double v_free_C[kMaxContactRows];
+    relativeVelocity(c, c.mover_a->free, c.mover_b->free, rows, v_free_C);
     for (int k = 0; k < rows; ++k) {
-      q_i[k] = q[k];
-      r_i[k] = memory ? longer * memory->r[k] : 0;
+      const double tangent_bias = c.stuck ? rates.tangent * (c.offset_C[k] + 0.5 * scratch.h * c.v_start_C[k]) : 0;
+      const double bias = c.bias_C[k] = k == kNormalRow ? normal_bias : tangent_bias;
+      q_i[k] = (k >= kTorsionRow ? radiusOf(c, k) : 1) * (v_free_C[k] + bias);
+      r_i[k] = memory ? rates.longer * memory->r[k] : 0;
     }
   });
   scratch.mu[i] = c.mu;
@@ -78,12 +90,13 @@ void fillContact(const WorldModel& model, const WorldState& state, WorldScratch&
 
 void fillContacts(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
   const int n = static_cast<int>(scratch.contacts.size());
+  const Rates rates(model, state, scratch.h);
   scratch.first_row[0] = 0;
   for (int i = 0; i < n; ++i) {
     scratch.first_row[i + 1] = scratch.first_row[i] + rowsOf(scratch.contacts[i].material);
-    fillContact(model, state, scratch, i);
+    fillContact(model, rates, scratch, i);
   }
-  if (scratch.h > 0) alignStickBiases(scratch.h, kTangentCorrection / model.options.h, scratch);
+  if (scratch.h > 0) alignStickBiases(scratch.h, rates.tangent, scratch);
 }
 
 }  // namespace pincer::engine

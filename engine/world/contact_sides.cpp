@@ -21,7 +21,8 @@ void fillPointSide(const Contact& c, int rows, double sign, const PointScratch& 
 void fillBodySide(const Contact& c, int rows, double sign, const Vec3& arm_W, double root_mass, const Mat3& F, bool is_sphere,
                   ContactSide& out) {
   const double linear = sign * root_mass;
-  const Vec3 arm = is_sphere ? Vec3((sign * F(0, 0)) * arm_W) : arm_W;
+  const double root_inertia = is_sphere ? sign * F(0, 0) : 1;
+  const double arm[3] = {root_inertia * arm_W[0], root_inertia * arm_W[1], root_inertia * arm_W[2]};
   for (int k = 0; k < 3; ++k) {
     const double x = c.R_WC(0, k), y = c.R_WC(1, k), z = c.R_WC(2, k);
     const double ang[3] = {arm[1] * z - arm[2] * y, arm[2] * x - arm[0] * z, arm[0] * y - arm[1] * x};

@@ -158,7 +158,6 @@ bool mayContradict(const ContactProblem& problem) {
 
 void fitIslandBiases(PushingBy pushing, double h, double offset_rate, const ContactProblem& problem, const double* r, double* q,
                      std::span<const int> order, std::vector<Contact>& contacts, SolverScratch& memory) {
-  if (!mayContradict(problem)) return;
   BiasFit fit(pushing, problem, r, order, contacts, memory);
   if (memory.operations_left < 0 || fit.gather() <= kNegligible) return;
   fit.minimise();

@@ -301,8 +301,9 @@ void solveIsland(const WorldModel& model, int k, int thread, WorldScratch& scrat
                                VectorMap(island.q, island.rows), island.movers,  island.settling > 0};
   SolverScratch& memory = *s.solvers[thread];
   const bool is_heap = island.contacts > kHeapContacts, is_entangled = is_heap && chooseForm(problem, memory) == EquationForm::kTooLarge;
+  const bool contradicts = scratch.h > 0 && mayContradict(problem);
   const auto fit = [&](PushingBy pushing) {
-    if (scratch.h > 0 && (!is_heap || is_entangled))
+    if (contradicts && (!is_heap || is_entangled))
       fitIslandBiases(pushing, scratch.h, kTangentCorrection / model.options.h, problem, island.r, island.q,
                       {s.order.data() + island.place, n}, scratch.contacts, memory);
   };
@@ -311,16 +312,17 @@ void solveIsland(const WorldModel& model, int k, int thread, WorldScratch& scrat
   const std::int64_t reserve = is_limited ? reserveFor(island) : 0;
   memory.operations_left = share - reserve;
   fit(PushingBy::kLastTick);
-  const VectorMap r(island.r, island.rows), u(island.u, island.rows);
-  if (scratch.h > 0 && !is_heap && mayContradict(problem)) {
-    island.result = solveContacts(problem, withoutCostly(model.options.solver), memory, r, u);
+  if (contradicts && !is_heap) {
+    solveContacts(problem, withoutCostly(model.options.solver), memory, island.r, island.u, island.result);
     if (!island.result.converged) {
       fit(PushingBy::kImpulses);
       const SolverOptions& whole = model.options.solver;
-      island.result = again(island.result, solveContacts(problem, n < kLoopContacts ? whole : asOfLoops(whole), memory, r, u));
+      const SolveResult first = island.result;
+      solveContacts(problem, n < kLoopContacts ? whole : asOfLoops(whole), memory, island.r, island.u, island.result);
+      island.result = again(first, island.result);
     }
   } else {
-    island.result = solveContacts(problem, model.options.solver, memory, r, u);
+    solveContacts(problem, model.options.solver, memory, island.r, island.u, island.result);
   }
   if (isLost(island.result, is_heap)) stopOnly(problem, model.options.solver, island, memory, scratch);
   island.operations = is_limited ? share - reserve - memory.operations_left : 0;

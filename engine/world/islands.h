@@ -19,13 +19,17 @@ class IslandThreads;
 
 // Contacts place .. place + contacts - 1 of IslandScratch's arrays.
 struct Island {
-  int place = 0, contacts = 0, rows = 0, movers = 0;
+  int place = 0, contacts = 0, movers = 0;
+  int settling = 0;  // the most of its contacts (state.h)
+  // Filled by solveIslands, without a value before.
   // What the solver sees: of one among several islands in IslandScratch, of the only one the world's own (scratch.h), uncopied.
-  int* first_row = nullptr;
-  double *mu = nullptr, *q = nullptr, *r = nullptr, *u = nullptr;
-  std::int64_t operations = 0;  // that its solution took (solve/cascade.h)
-  int settling = 0;             // the most of its contacts (state.h)
+  int rows;
+  int* first_row;
+  double *mu, *q, *r, *u;
+  std::int64_t operations;  // that its solution took (solve/cascade.h)
   SolveResult result;
+
+  Island() {}  // NOLINT(modernize-use-equals-default): a defaulted one would clear all
 };
 
 // Movers of a contact; -1 for what doesn't move.

@@ -40,6 +40,7 @@ struct Contact {
   const MoverScratch *mover_a, *mover_b;  // of a and b
   double mu;                              // in force in this tick
   Vec3 arm_a_W, arm_b_W;
+  // Of these two rows that the contact doesn't have stay without a value.
   ContactVector v_start_C;  // of a relative to b at the start of the tick, see relativeVelocity
   ContactVector offset_C;   // anchored stick, at the start of the tick; see ContactMemory
   bool closing = false;     // it closes in this tick, from a positive gap or with an approaching velocity
@@ -194,16 +195,25 @@ inline double radiusOf(const Contact& c, int k) { return k == kTorsionRow ? c.ma
 
 inline bool turns(const Motion& m) { return m.w_W.squaredNorm() != 0; }
 
+// Adds w x arm.
+[[gnu::always_inline]] inline void addTurn(const Vec3& w_W, const Vec3& arm_W, double sign, double (&v_W)[3]) {
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    v_W[i] += sign * (w_W[j] * arm_W[k] - w_W[k] * arm_W[j]);
+  }
+}
+
 // Velocity of a relative to b where they touch, in C: along t1, t2, n [m/s]; of rows that the contact has, about n, t1, t2 [rad/s].
-// In line: what a call returns in memory is read back before it is there.
-[[gnu::always_inline]] inline ContactVector relativeVelocity(const Contact& c, const Motion& a, const Motion& b) {
-  Vec3 v_W = a.v_W - b.v_W;
-  if (turns(a)) v_W += a.w_W.cross(c.arm_a_W);
-  if (turns(b)) v_W -= b.w_W.cross(c.arm_b_W);
-  ContactVector v = ContactVector::Zero();
+//   rows  of the contact, from withRows
+// In line and number by number, here and where it is used: vectors that go through memory are read whole before their halves are there.
+template <class Rows>
+[[gnu::always_inline]] inline void relativeVelocity(const Contact& c, const Motion& a, const Motion& b, Rows rows, double* v) {
+  double v_W[3];
+  for (int i = 0; i < 3; ++i) v_W[i] = a.v_W[i] - b.v_W[i];
+  if (turns(a)) addTurn(a.w_W, c.arm_a_W, 1, v_W);
+  if (turns(b)) addTurn(b.w_W, c.arm_b_W, -1, v_W);
   for (int k = 0; k < 3; ++k) v[k] = c.R_WC(0, k) * v_W[0] + c.R_WC(1, k) * v_W[1] + c.R_WC(2, k) * v_W[2];
-  for (int k = kTorsionRow; k < rowsOf(c.material); ++k) v[k] = axisOf(c, k).dot(a.w_W - b.w_W);
-  return v;
+  for (int k = kTorsionRow; k < rows; ++k) v[k] = axisOf(c, k).dot(a.w_W - b.w_W);
 }
 
 inline void mark(WorldScratch& scratch, Stage stage) {

@@ -11,7 +11,7 @@ constexpr double kOnCone = 1 - 1e-9;    // of mu r_n, from which friction counts
 constexpr double kResidue = 1e-9;       // of the velocity with which a contact opens, ten times the solver's tolerance
 
 double inverseMassOf(const WorldModel& model, const WorldScratch& scratch, const Side& side) {
-  return side.kind == SideKind::kBody ? model.bodies[side.index].inverse_mass : scratch.points[side.index].inverse_mass.mean();
+  return side.kind == SideKind::kBody ? model.bodies[side.index].inverse_mass : scratch.points[side.index].inverse_mass.sum() * (1.0 / 3);
 }
 
 // Whether a contact that opens still has an impulse, below the solver's tolerance: what is in the air would stick with it, and remember how far it

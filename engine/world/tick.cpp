@@ -249,7 +249,7 @@ class Tick {
 
   // Targets at the end of a part of length h: the state holds those at its start, the inputs those at the tick's end.
   void setInputs(double h) {
-    const double share = h / left_;
+    const double share = h < left_ ? h / left_ : 1;
     for (std::size_t i = 0; i < scratch_.point_inputs.size(); ++i)
       setPoint(state_.points[i], inputs_.points[i], share, scratch_.points[i], scratch_.point_inputs[i]);
     for (std::size_t i = 0; i < model_.bodies.size() && model_.driven_count > 0; ++i) {

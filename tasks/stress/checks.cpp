@@ -57,7 +57,8 @@ std::string faultOfLaw(const engine::WorldModel& model, const engine::WorldScrat
   constexpr double kContent = 2e-8;  // [m/s] twice what the solver is content with (SolverOptions::content_speed), for w is another here
   double speed = 1e-6, worst = 0;
   for (const engine::Contact& c : scratch.contacts) {
-    const engine::ContactVector u_free_C = engine::relativeVelocity(c, engine::mover(scratch, c.a).free, engine::mover(scratch, c.b).free);
+    engine::ContactVector u_free_C = engine::ContactVector::Zero();
+    engine::relativeVelocity(c, engine::mover(scratch, c.a).free, engine::mover(scratch, c.b).free, engine::rowsOf(c.material), u_free_C.data());
     speed = std::max({speed, c.u_C.norm(), u_free_C.norm()});
   }
   for (const engine::Contact& c : scratch.contacts) {
