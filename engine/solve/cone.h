@@ -51,7 +51,7 @@ inline bool isInCone(const double* r, int rows, double mu, double slack = 0) {
   if (yn > 0 && yT2 <= radius * radius) return setVector(p, rows, 1, y, yn);  // inside, mostly: no root
   const double yT = std::sqrt(yT2);
   if (mu * yT <= -yn) return setVector(p, rows, 0, y, 0);  // in the polar cone; asked first: a pull without friction has yT = mu yn = 0
-  const double normal = (yn + mu * yT) / (1 + mu * mu);  // yT > 0 here: the cases above cover yT = 0
+  const double normal = (yn + mu * yT) / (1 + mu * mu);    // yT > 0 here: the cases above cover yT = 0
   setVector(p, rows, mu * normal / yT, y, normal);
 }
 

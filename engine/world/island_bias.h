@@ -24,8 +24,9 @@ enum class PushingBy : std::uint8_t {
 // Whether the problem's contacts may contradict each other around a loop of bodies.
 bool mayContradict(const ContactProblem& problem);
 
-// Where mayContradict(problem): fits bias_C and the stick offsets of the island's contacts, and corrects problem.q through `q`. `r`: impulses of the last tick, or the best that
-// were found in this one; `order`: which of `contacts` the problem's are; `memory` is working memory. Allocates nothing.
+// Where mayContradict(problem): fits bias_C and the stick offsets of the island's contacts, and corrects problem.q through `q`. `r`: impulses of
+// the last tick, or the best that were found in this one; `order`: which of `contacts` the problem's are; `memory` is working memory. Allocates
+// nothing.
 //   offset_rate  bias_T = offset_rate (offset_T + h v_start_T / 2) [1/s]
 void fitIslandBiases(PushingBy pushing, double h, double offset_rate, const ContactProblem& problem, const double* r, double* q,
                      std::span<const int> order, std::vector<Contact>& contacts, SolverScratch& memory);

@@ -58,7 +58,8 @@ std::string faultOfLaw(const engine::WorldModel& model, const engine::WorldScrat
   double speed = 1e-6, worst = 0;
   for (const engine::Contact& c : scratch.contacts) {
     engine::ContactVector u_free_C = engine::ContactVector::Zero();
-    engine::relativeVelocity(c, engine::mover(scratch, c.a).free, engine::mover(scratch, c.b).free, engine::rowsOf(c.material), u_free_C.data());
+    engine::relativeVelocity(c, engine::mover(scratch, c.a).free, engine::mover(scratch, c.b).free, engine::rowsOf(c.material),
+                             u_free_C.data());
     speed = std::max({speed, c.u_C.norm(), u_free_C.norm()});
   }
   for (const engine::Contact& c : scratch.contacts) {
