@@ -59,11 +59,10 @@ Vec3 sumContacts(const GraspScratch& scratch, int finger, double h, FingerReport
   }
   report.touching = normal > 0;
   if (!report.touching) return Vec3::Zero();
-  const double per_h = 1 / h;
-  report.f_contact_W = impulse_W * per_h;
-  report.normal_force = normal * per_h;
-  report.tangential_force = tangential_W.norm() * per_h;
-  report.torsion = torsion * per_h;
+  report.f_contact_W = impulse_W / h;
+  report.normal_force = normal / h;
+  report.tangential_force = tangential_W.norm() / h;
+  report.torsion = torsion / h;
   if (pushing > 1) {
     report.p_WC = p_sum / normal;
     if (n_sum.squaredNorm() > 0) report.n_W = n_sum.normalized();
