@@ -4,6 +4,7 @@
 
 #include "contact/shape/convex_features.h"
 #include "contact/shape/convex_pairs.h"
+#include "contact/shape/direction.h"
 #include "contact/shape/extreme_points.h"
 #include "contact/shape/finger_query.h"
 #include "contact/shape/mesh_mesh.h"
@@ -55,13 +56,32 @@ void collideWithSupport(const Shape& solid, const Pose& X_WA, const Shape& suppo
   collideWithSupport(solid, A, PlaneSupport(HalfSpace{}, X_WB, A), margin, out);
 }
 
+// Two spheres, and a sphere on a half-space, in the world: heaps of them are all that some scenes are. n out of b.
+PairPoint betweenSpheres(const Sphere& a, const Vec3& p_WA, const Sphere& b, const Pose& X_WB) {
+  const auto [n_W, length] = directionOf<Vec3>(p_WA - X_WB.p, X_WB.q * Vec3::UnitZ());
+  const double phi = length - b.radius - a.radius;
+  return {X_WB.p + (b.radius + 0.5 * phi) * n_W, n_W, phi, 0};
+}
+
+PairPoint onPlane(const Sphere& a, const Vec3& p_WA, const Pose& X_WB) {
+  const Vec3 n_W = X_WB.q * Vec3::UnitZ();
+  const double phi = n_W.dot(p_WA - X_WB.p) - a.radius;
+  return {p_WA - (a.radius + 0.5 * phi) * n_W, n_W, phi, 0};
+}
+
+void addWithin(double margin, const PairPoint& point, PairPoints& out) {
+  if (point.phi < margin) addPoint(point, out);
+}
+
 // n out of b.
 void collideSphere(const Sphere& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin, PatchCache& cache, PairPoints& out) {
+  if (const auto* sphere = std::get_if<Sphere>(&b)) return addWithin(margin, betweenSpheres(a, X_WA.p, *sphere, X_WB), out);
+  if (std::holds_alternative<HalfSpace>(b)) return addWithin(margin, onPlane(a, X_WA.p, X_WB), out);
   const Vec3 p_BC = X_WB.q.conjugate() * (X_WA.p - X_WB.p);
   if (isMesh(b) && !(lowerBoundOfGap(b, p_BC, a.radius) < margin)) return;  // a closed form costs no more than its bound
   SurfaceTracker whole_mesh;
   const SurfaceContact s = querySphere(b, p_BC, a.radius, margin, whole_mesh, cache).main();
-  if (s.phi < margin) addPoint({X_WB * (s.p_BS + 0.5 * s.phi * s.n_B), X_WB.q * s.n_B, s.phi, 0}, out);
+  addWithin(margin, {X_WB * (s.p_BS + 0.5 * s.phi * s.n_B), X_WB.q * s.n_B, s.phi, 0}, out);
 }
 
 void flip(PairPoints& points) {

@@ -228,7 +228,7 @@ SolverScratch::SolverScratch(int contacts, int movers)
   node.resize(static_cast<std::size_t>(movers));
   sides.resize(n);
   terms.resize(n);
-  local.resize(2 * kMaxContactRows * m);
+  local.resize(2 * (kMaxContactRows * m + n));
   scale.resize(n);
   shift.resize(n);
   active.resize(n);

@@ -42,10 +42,11 @@ template <class Act>
 }
 
 // A's block of one contact and one of the two that touch; rows beyond the contact's are never read.
-struct alignas(16) ContactSide {
-  double A[kMaxContactRows][kMoverFreedoms];
+// Of three rows the first three lines of the cache are all that is read: heaps are larger than the cache.
+struct alignas(64) ContactSide {
   int mover = -1;         // 0 .. movers - 1; -1: nothing there moves, A isn't read
   bool is_point = false;  // of three rows, and the mover doesn't turn: the last three columns are 0
+  alignas(16) double A[kMaxContactRows][kMoverFreedoms];
 };
 using ContactSides = std::array<ContactSide, 2>;  // never both of one mover
 

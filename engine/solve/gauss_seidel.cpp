@@ -16,7 +16,7 @@ namespace {
 void invertOwn(int rows, const double* W, double* inverse) {
   const auto fail = [&] { std::fill(inverse, inverse + rows * rows, std::numeric_limits<double>::quiet_NaN()); };
   if (rows == kTorsionRow) {
-    if (!invert3<kTorsionRow>(W, inverse)) fail();
+    if (!invertSymmetric3<kTorsionRow>(W, inverse)) fail();
     return;
   }
   double factors[kMaxContactRows * kMaxContactRows];
@@ -48,27 +48,33 @@ GaussSeidel::GaussSeidel(const SweptProblem& problem, SolverScratch& scratch, do
       y_direction_(scratch.interior.data()),
       weight_(scratch.weight.data()) {
   const int most = mostRows(problem);
-  stride_ = 2 * most * most;
-  for (int i = 0; i < problem.contactCount(); ++i) {
-    const int rows = problem.rows(i);
-    double* const W = termsOf(i);
-    std::fill(W, W + rows * rows, 0.0);
-    for (const ContactSide& side : problem.sides[static_cast<std::size_t>(i)]) {
-      if (side.mover >= 0) addCoupling(side, rows, side, rows, W, rows);
-    }
-    invertOwn(rows, W, W + rows * rows);
-  }
-  respond();
+  stride_ = kTermsBefore + 2 * most * most;
+  for (int i = 0; i < problem.contactCount(); ++i) fillTerms(i);
+  std::copy(problem_.y, problem_.y + kMoverFreedoms * problem_.movers, y_before_);
 }
 
-// y = A^T r
-void GaussSeidel::respond() {
-  const int size = kMoverFreedoms * problem_.movers;
-  std::fill(problem_.y, problem_.y + size, 0.0);
-  for (int i = 0; i < problem_.contactCount(); ++i) {
-    addImpulse(problem_.sides[static_cast<std::size_t>(i)], problem_.rows(i), r_ + problem_.firstRow(i), problem_.y);
+void GaussSeidel::fillTerms(int i) {
+  const int rows = problem_.rows(i);
+  double *const terms = termsOf(i), *const inverse = terms + kTermsBefore, *const W = inverse + rows * rows;
+  std::fill(W, W + rows * rows, 0.0);
+  for (const ContactSide& side : problem_.sides[static_cast<std::size_t>(i)]) {
+    if (side.mover >= 0) addCoupling(side, rows, side, rows, W, rows);
   }
-  std::copy(problem_.y, problem_.y + size, y_before_);
+  const bool is_isotropic = rows == kTorsionRow && isIsotropic(W, rows);
+  terms[0] = is_isotropic ? 1 / W[0] : 0;
+  terms[1] = 1 / W[kNormalRow * (rows + 1)];
+  if (!is_isotropic) invertOwn(rows, W, inverse);
+}
+
+// Whether contact i pushes on nothing and doesn't close: so are many of a heap's, and most rows needn't be looked at.
+bool GaussSeidel::staysOpen(int i) const {
+  const int normal = problem_.firstRow(i) + kNormalRow;
+  if (r_[normal] != 0) return false;
+  double u = problem_.q[normal];
+  for (const ContactSide& side : problem_.sides[static_cast<std::size_t>(i)]) {
+    if (side.mover >= 0) u += dot6(side.A[kNormalRow], problem_.y + kMoverFreedoms * side.mover);
+  }
+  return u >= 0;
 }
 
 // Solves contact i with all others held; the movers' y follows.
@@ -76,24 +82,11 @@ void GaussSeidel::relax(int i) {
   const ContactSides& sides = problem_.sides[static_cast<std::size_t>(i)];
   const int first = problem_.firstRow(i);
   double *const r_i = r_ + first, *const change_i = change_ + first;
-  const double* const W = termsOf(i);
   withRows(problem_.rows(i), [&](auto rows) {
-    for (int k = 0; k < rows; ++k) change_i[k] = 0;
+    if (staysOpen(i)) return std::fill(change_i, change_i + rows, 0.0);
     double u[kMaxContactRows], r[kMaxContactRows];
-    for (int k = 0; k < rows; ++k) u[k] = problem_.q[first + k];
-    addVelocity(sides, rows, problem_.y, u);
-    if (r_i[kNormalRow] == 0 && u[kNormalRow] >= 0) return;  // open, and stays so
-    const double* const inverse = W + rows * rows;
-    for (int k = 0; k < rows; ++k) {
-      r[k] = r_i[k];
-      for (int l = 0; l < rows; ++l) r[k] -= inverse[rows * l + k] * u[l];
-    }
-    if (!isInCone(r, rows, problem_.friction(i))) {  // it doesn't stick
-      for (int k = 0; k < rows; ++k) {
-        for (int l = 0; l < rows; ++l) u[k] -= W[rows * l + k] * r_i[l];
-      }
-      solveOneContact(W, rows, u, rows, problem_.friction(i), r);
-    }
+    velocityOf(sides, rows, problem_.q + first, problem_.y, u);
+    solveOwn(i, rows, u, r);
     double way2 = 0;
     for (int k = 0; k < rows; ++k) {
       change_i[k] = r[k] - r_i[k];
@@ -104,6 +97,26 @@ void GaussSeidel::relax(int i) {
     largest_change2_ = std::max(largest_change2_, weight_[i] * weight_[i] * way2);
     addImpulse(sides, rows, change_i, problem_.y);
   });
+}
+
+// r = the impulse of contact i, which has the velocity u with the present one.
+template <class Rows>
+[[gnu::always_inline]] inline void GaussSeidel::solveOwn(int i, Rows rows, double* u, double* r) const {
+  const double *const terms = termsOf(i), *const inverse = terms + kTermsBefore, *const W = inverse + rows * rows;
+  const double* const r_i = r_ + problem_.firstRow(i);
+  if (terms[0] > 0) {
+    for (int k = 0; k < kTorsionRow; ++k) r[k] = r_i[k] - terms[k == kNormalRow] * u[k];
+    return limitFriction(problem_.friction(i), r);
+  }
+  for (int k = 0; k < rows; ++k) {
+    r[k] = r_i[k];
+    for (int l = 0; l < rows; ++l) r[k] -= inverse[rows * l + k] * u[l];
+  }
+  if (isInCone(r, rows, problem_.friction(i))) return;  // it sticks
+  for (int k = 0; k < rows; ++k) {
+    for (int l = 0; l < rows; ++l) u[k] -= W[rows * l + k] * r_i[l];
+  }
+  solveOneContact(W, rows, u, rows, problem_.friction(i), r);
 }
 
 void GaussSeidel::sweep(bool backwards) {
@@ -153,6 +166,7 @@ void GaussSeidel::goFurther(int i, double ratio) {
 }
 
 void sweepGaussSeidel(const ScaledProblem& problem, int sweeps, SolverScratch& scratch, Iterate& it) {
+  respond(problem.sides, problem.first_row, it.r, problem.movers, problem.y);
   GaussSeidel method({problem.first_row, problem.mu, problem.sides, problem.q, problem.y, problem.movers}, scratch, it.r);
   for (int n = 0; n < sweeps && spend(kPerContactSwept * problem.contactCount(), scratch); ++n) method.sweep(false);
   evaluate(problem, it);

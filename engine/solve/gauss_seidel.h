@@ -19,7 +19,7 @@ struct SweptProblem {
   std::span<const double> mu;
   std::span<const ContactSides> sides;
   const double* q;
-  double* y;  // working memory, kMoverFreedoms per mover
+  double* y;  // A^T r, kMoverFreedoms per mover: it follows r
   int movers;
 
   int contactCount() const { return static_cast<int>(mu.size()); }
@@ -44,13 +44,17 @@ class GaussSeidel {
 
  private:
   double* termsOf(int i) const { return terms_ + stride_ * i; }
+  void fillTerms(int i);
   void relax(int i);
-  void respond();
+  template <class Rows>
+  void solveOwn(int i, Rows rows, double* u, double* r) const;
+  bool staysOpen(int i) const;
   void goFurther(int i, double ratio);
 
   const SweptProblem problem_;
   double* const r_;
-  double* const terms_;  // W_ii and its inverse, rows x rows each, per contact
+  static constexpr int kTermsBefore = 2;
+  double* const terms_;  // per contact: of isotropic ones 1 / W_tt, 0 of others; 1 / W_nn; the inverse of W_ii, of others; W_ii
   int stride_;
   double *const change_, *const direction_;      // of r by the last sweep; by all of them, conjugate
   double *const y_before_, *const y_direction_;  // y before the last sweep; A^T direction

@@ -23,25 +23,26 @@ int sweepsOf(int visits, int contacts) { return std::clamp(visits / contacts, kF
 SolveResult solveLargeProblem(const ContactProblem& problem, double enough, double start, SolverScratch& scratch, double* r, double* u) {
   const int n = problem.contactCount();
   const bool rests = start <= enough;
-  const int few = rests ? kRestingSweeps : sweepsOf(kSweptVisits, n), most = rests ? kRestingSweeps : sweepsOf(kMovingVisits, n);
+  const int few = sweepsOf(kSweptVisits, n), most = sweepsOf(kMovingVisits, n);
   const double near_speed = kWorthALook * enough * referenceSpeed(problem);
   GaussSeidel method({problem.first_row, problem.mu, problem.sides, problem.q.data(), scratch.y.data(), problem.movers}, scratch, r);
   double residual = start;
-  int sweeps = 0;
-  while (sweeps < most) {
+  int sweeps = 0, measured = 0;
+  const auto isEnough = [&] {
+    if (measured != sweeps) residual = respondedResidual(problem, r, scratch, u);
+    measured = sweeps;
+    return residual <= enough;
+  };
+  for (;;) {
     const bool is_spent = !spend(kPerContactSwept * n, scratch);
     method.sweep(sweeps++ % 2 == 1);
     if (sweeps == most || (is_spent && sweeps >= kFewestSweeps)) break;  // contacts that are new have no impulse yet: every tick gets a few
     const double change = method.largestChange();
-    if (sweeps >= few && change <= kMovingSpeed) break;
-    if (sweeps % kBetweenLooks == 0 && change <= near_speed) {
-      residual = weighedResidual(problem, r, scratch, u);
-      if (residual <= enough) break;
-    }
+    const bool is_due = sweeps % kBetweenLooks == 0 ? change <= near_speed : rests && sweeps == kRestingSweeps;
+    if ((is_due && isEnough()) || (sweeps >= few && change <= kMovingSpeed)) break;
     method.accelerate();
   }
-  residual = weighedResidual(problem, r, scratch, u);
-  const bool converged = residual <= enough;
+  const bool converged = isEnough();
   return {converged ? SolveMethod::kGaussSeidel : SolveMethod::kNotConverged, sweeps, residual, start, converged};
 }
 

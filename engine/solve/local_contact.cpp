@@ -120,22 +120,6 @@ void findSlide(TangentProblem<D>& problem) {
   problem.setAlpha(high < std::numeric_limits<double>::infinity() ? high : alpha);
 }
 
-// Whether all directions along the surface are alike and the normal is apart from them, as where spheres touch.
-bool isIsotropic(const double* W, int stride) {
-  constexpr double kAlike = 1e-12;  // of W: its round-off, far below any tolerance
-  const double small = kAlike * W[0];
-  return std::abs(W[1]) <= small && std::abs(W[kNormalRow]) <= small && std::abs(W[stride + kNormalRow]) <= small &&
-         std::abs(W[0] - W[stride + 1]) <= small;
-}
-
-void solveIsotropic(const double* W, int stride, const double* q, double mu, double* r) {
-  r[kNormalRow] = -q[kNormalRow] / W[kNormalRow * (stride + 1)];
-  const double speed = std::sqrt(q[0] * q[0] + q[1] * q[1]), most = mu * r[kNormalRow];
-  const double share = speed <= most * W[0] ? 1 / W[0] : most / speed;
-  r[0] = -share * q[0];
-  r[1] = -share * q[1];
-}
-
 template <int D>
 void solvePressed(const double* W, int stride, const double* q, double mu, double* r) {
   TangentProblem<D> problem(W, stride, q, mu);
@@ -146,6 +130,13 @@ void solvePressed(const double* W, int stride, const double* q, double mu, doubl
 
 }  // namespace
 
+bool isIsotropic(const double* W, int stride) {
+  constexpr double kAlike = 1e-12;  // of W: its round-off, far below any tolerance
+  const double small = kAlike * W[0];
+  return W[0] > 0 && W[kNormalRow * (stride + 1)] > 0 && std::abs(W[1]) <= small && std::abs(W[kNormalRow]) <= small &&
+         std::abs(W[stride + kNormalRow]) <= small && std::abs(W[0] - W[stride + 1]) <= small;
+}
+
 void solveOneContact(const double* W, int stride, const double* q, int rows, double mu, double* r) {
   std::fill(r, r + rows, 0.0);
   if (!(q[kNormalRow] < 0)) return;
@@ -153,7 +144,10 @@ void solveOneContact(const double* W, int stride, const double* q, int rows, dou
     r[kNormalRow] = -q[kNormalRow] / W[kNormalRow * (stride + 1)];
     return;
   }
-  if (rows == kTorsionRow && isIsotropic(W, stride)) return solveIsotropic(W, stride, q, mu, r);
+  if (rows == kTorsionRow && isIsotropic(W, stride)) {
+    for (int k = 0; k < kTorsionRow; ++k) r[k] = -q[k] / W[k * (stride + 1)];
+    return limitFriction(mu, r);
+  }
   if (rows == kTorsionRow) return solvePressed<2>(W, stride, q, mu, r);
   if (rows == kRollingRow) return solvePressed<3>(W, stride, q, mu, r);
   solvePressed<5>(W, stride, q, mu, r);

@@ -7,9 +7,29 @@
 // r_T -> 0 and r_n -> -q_n / W_nn > 0 as alpha -> infinity, so that the slide case always has a root. It is found on mu r_n / |r_T| = 1, nearly
 // linear in alpha (the secular equation of trust-region methods: J. More, D. Sorensen, SIAM J. Sci. Stat. Comput. 4 (1983) 553-572),
 // by Newton's method inside a bracket.
+//
+// Where W is isotropic, as where spheres touch, A is a multiple of the identity: what slides has the direction of what would stick.
 #pragma once
+#include <cmath>
+
+#include "engine/solve/contact_problem.h"
 
 namespace pincer::engine {
+
+// Whether, of three rows, all directions along the surface are alike and the normal is apart from them.
+bool isIsotropic(const double* W, int stride);
+
+// r = -W^-1 q of such a contact, which would stop it, becomes its solution.
+[[gnu::always_inline]] inline void limitFriction(double mu, double* r) {
+  const double most = mu * r[kNormalRow], r_T2 = r[0] * r[0] + r[1] * r[1];
+  if (!(r[kNormalRow] > 0)) {
+    r[0] = r[1] = r[kNormalRow] = 0;
+  } else if (r_T2 > most * most) {
+    const double share = most / std::sqrt(r_T2);
+    r[0] *= share;
+    r[1] *= share;
+  }
+}
 
 // r = the solution for the `rows` x `rows` block W (column-major with column stride `stride`) and q; rows is 3, 4 or 6.
 // Where W makes several solutions possible (large mu W_nT), one of them. r is in the cone to round-off.

@@ -8,11 +8,15 @@
 
 namespace pincer::engine {
 
-// Two sums, so that the compiler may do both at once.
+// Two sums at once, of what is even and what is odd: left to itself the compiler does one after the other.
+using DoublePair [[gnu::vector_size(16), gnu::aligned(8), gnu::may_alias]] = double;
+[[gnu::always_inline]] inline DoublePair dotPair6(const double* a, const double* b) {
+  const DoublePair *const x = reinterpret_cast<const DoublePair*>(a), *const y = reinterpret_cast<const DoublePair*>(b);  // auto would forget their alignment
+  return x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
+}
 [[gnu::always_inline]] inline double dot6(const double* a, const double* b) {
-  const double even = a[0] * b[0] + a[2] * b[2] + a[4] * b[4];
-  const double odd = a[1] * b[1] + a[3] * b[3] + a[5] * b[5];
-  return even + odd;
+  const auto sum = dotPair6(a, b);
+  return sum[0] + sum[1];
 }
 
 // The same where the last three are 0.
@@ -56,15 +60,30 @@ inline void addCoupling(const ContactSide& i, int rows, const ContactSide& j, in
   });
 }
 
+// u_i = A_i y + q_i
+inline void velocityOf(const ContactSides& sides, int rows, const double* q, const double* y, double* u) {
+  withRows(rows, [&](auto count) {
+    DoublePair sum[kMaxContactRows] = {};
+    for (const ContactSide& side : sides) {
+      if (side.mover < 0) continue;
+      for (int k = 0; k < count; ++k) sum[k] += dotPair6(side.A[k], y + kMoverFreedoms * side.mover);
+    }
+    for (int k = 0; k < count; ++k) u[k] = q[k] + (sum[k][0] + sum[k][1]);
+  });
+}
+
+// y = A^T r
+inline void respond(std::span<const ContactSides> sides, std::span<const int> first_row, const double* r, int movers, double* y) {
+  for (int j = 0; j < kMoverFreedoms * movers; ++j) y[j] = 0;
+  for (std::size_t i = 0; i < sides.size(); ++i) addImpulse(sides[i], first_row[i + 1] - first_row[i], r + first_row[i], y);
+}
+
 // u = W r + q; y (movers) is working memory, A^T r on return.
 inline void contactVelocities(std::span<const ContactSides> sides, std::span<const int> first_row, const double* q, const double* r,
                               int movers, double* y, double* u) {
-  for (int j = 0; j < kMoverFreedoms * movers; ++j) y[j] = 0;
-  for (std::size_t i = 0; i < sides.size(); ++i) addImpulse(sides[i], first_row[i + 1] - first_row[i], r + first_row[i], y);
-  for (std::size_t i = 0; i < sides.size(); ++i) {
-    for (int row = first_row[i]; row < first_row[i + 1]; ++row) u[row] = q[row];
-    addVelocity(sides[i], first_row[i + 1] - first_row[i], y, u + first_row[i]);
-  }
+  respond(sides, first_row, r, movers, y);
+  for (std::size_t i = 0; i < sides.size(); ++i)
+    velocityOf(sides[i], first_row[i + 1] - first_row[i], q + first_row[i], y, u + first_row[i]);
 }
 
 }  // namespace pincer::engine

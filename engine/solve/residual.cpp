@@ -23,10 +23,15 @@ double referenceSpeed(const ContactProblem& problem) {
 }
 
 double weighedResidual(const ContactProblem& problem, const double* r, SolverScratch& scratch, double* u) {
-  contactVelocities(problem.sides, problem.first_row, problem.q.data(), r, problem.movers, scratch.y.data(), u);
+  respond(problem.sides, problem.first_row, r, problem.movers, scratch.y.data());
+  return respondedResidual(problem, r, scratch, u);
+}
+
+double respondedResidual(const ContactProblem& problem, const double* r, SolverScratch& scratch, double* u) {
   WorstResidual worst;
   for (int i = 0; i < problem.contactCount(); ++i) {
     const int first = problem.firstRow(i);
+    velocityOf(problem.sides[static_cast<std::size_t>(i)], problem.rows(i), problem.q.data() + first, scratch.y.data(), u + first);
     const double w = scratch.weight[static_cast<std::size_t>(i)];
     worst.add(naturalMap2(r + first, u + first, problem.rows(i), problem.friction(i), w), u[first + kNormalRow], w * r[first + kNormalRow]);
   }

@@ -38,6 +38,9 @@ void weighContacts(const ContactProblem& problem, SolverScratch& scratch);
 // contactResidual where the weights are known.
 double weighedResidual(const ContactProblem& problem, const double* r, SolverScratch& scratch, double* u);
 
+// The same where scratch.y is A^T r already.
+double respondedResidual(const ContactProblem& problem, const double* r, SolverScratch& scratch, double* u);
+
 // max(|q|_inf, kVelocityFloor) [m/s].
 double referenceSpeed(const ContactProblem& problem);
 

@@ -37,9 +37,9 @@ Vec3 lastNormal(const WorldModel& model, const WorldState& state, const BodyPair
   return found != end && found->id >> 32 == first >> 32 ? found->n_W : Vec3(Vec3::Zero());
 }
 
-// material  of the pair, null where it is combined once they touch
+// material  of the pair, null where it is combined once they touch;   found  working memory
 void collidePair(const WorldModel& model, const WorldState& state, const BodyPair& pair, const Material* material, double h,
-                 WorldScratch& scratch) {
+                 contact::PairPoints& found, WorldScratch& scratch) {
   const BodyModel &a = model.bodies[pair.a], &b = model.bodies[pair.b];
   const BodyScratch &sa = scratch.bodies[pair.a], &sb = scratch.bodies[pair.b];
   // What closes within the tick must be seen at its middle.
@@ -47,7 +47,6 @@ void collidePair(const WorldModel& model, const WorldState& state, const BodyPai
   if (!boundsTouch(a, b, sa, sb, margin)) return;
   noteFastPair(model, pair.a, pair.b, scratch);
   chargeQuery(a, b, scratch);
-  contact::PairPoints found;
   contact::collideShapes(a.shape, sa.X_WB_mid, b.shape, sb.X_WB_mid, margin, scratch.patches, found, lastNormal(model, state, pair));
   if (found.count == 0) return;
   const Material combined = material ? *material : materialOf(model, pair.a, pair.b);
@@ -68,9 +67,10 @@ void collidePair(const WorldModel& model, const WorldState& state, const BodyPai
 
 void collideBodies(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
   const double h = model.options.h;
-  for (const PairModel& pair : model.pairs) collidePair(model, state, {pair.a, pair.b}, &pair.material, h, scratch);
+  contact::PairPoints found;
+  for (const PairModel& pair : model.pairs) collidePair(model, state, {pair.a, pair.b}, &pair.material, h, found, scratch);
   if (!scratch.broad_phase) return;
-  for (const BodyPair& pair : scratch.broad_phase->candidates(model, scratch)) collidePair(model, state, pair, nullptr, h, scratch);
+  for (const BodyPair& pair : scratch.broad_phase->candidates(model, scratch)) collidePair(model, state, pair, nullptr, h, found, scratch);
 }
 
 }  // namespace pincer::engine

@@ -91,8 +91,10 @@ void fillContact(const WorldModel& model, const Rates& rates, WorldScratch& scra
 void fillContacts(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
   const int n = static_cast<int>(scratch.contacts.size());
   const Rates rates(model, state, scratch.h);
+  std::span<const ContactMemory> memories(state.contacts.data(), static_cast<std::size_t>(state.contact_count));
   scratch.first_row[0] = 0;
   for (int i = 0; i < n; ++i) {
+    recallContact(memories, scratch, scratch.contacts[i]);
     scratch.first_row[i + 1] = scratch.first_row[i] + rowsOf(scratch.contacts[i].material);
     fillContact(model, rates, scratch, i);
   }

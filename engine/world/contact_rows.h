@@ -16,6 +16,8 @@
 // With the gap taken at the predicted middle, d' = d + h (u + u')/2 and u' = -gamma (d + h u/2)/h, an error decays by 1 - gamma per tick
 // without ringing, for any gamma <= 1.
 #pragma once
+#include <span>
+
 #include "engine/solve/contact_problem.h"
 #include "engine/world/scratch.h"
 #include "engine/world/state.h"
@@ -27,10 +29,13 @@ constexpr double kTangentCorrection = 0.5;   // gamma, per tick [-]
 constexpr double kLargestCorrection = 0.05;  // [m/s]
 constexpr double kClosingSpeed = 1e-6;       // slower approaches count as rest [m/s]
 
-// Sorts the contacts by id, finds what the state remembers of each, fills frame, arms, friction and stick offset.
-void recallContacts(const WorldState& state, WorldScratch& scratch);
+// By id.
+void sortContacts(WorldScratch& scratch);
 
-// Fills first_row, q, mu and the warm start r, in the order of scratch.contacts.
+// Finds what is remembered of the contact, fills its frame, arms, friction and stick offset. `memories`: sorted; those of ids before c's are dropped.
+void recallContact(std::span<const ContactMemory>& memories, const WorldScratch& scratch, Contact& c);
+
+// Recalls the contacts, which are sorted, and fills first_row, q, mu and the warm start r, in their order.
 void fillContacts(const WorldModel& model, const WorldState& state, WorldScratch& scratch);
 
 }  // namespace pincer::engine

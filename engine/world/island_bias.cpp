@@ -46,7 +46,7 @@ class BiasFit {
       *vector = next;
       next += rows_;
     }
-    for (double** vector : {&z_, &direction_, &gradient_}) {
+    for (double** vector : {&direction_, &gradient_, &response_}) {
       *vector = next;
       next += size_;
     }
@@ -56,32 +56,34 @@ class BiasFit {
   double gather() {
     double largest = 0;
     for (int i = 0; i < problem_.contactCount(); ++i) {
+      const int first = problem_.firstRow(i), rows = problem_.rows(i);
+      std::fill(b_ + first, b_ + first + rows, 0.0);
+      std::fill(weight_ + first, weight_ + first + rows, 0.0);
+      if (!(r_[first + kNormalRow] > 0)) continue;
       const Contact& c = contact(i);
-      for (int k = 0; k < problem_.rows(i); ++k) {
-        double& b = b_[problem_.firstRow(i) + k];
-        const double w = weight_[problem_.firstRow(i) + k] = weightOf(c, i, k);
-        b = w > 0 ? w * unitOfRow(c, k) * c.bias_C[k] : 0;
-        largest = std::max(largest, std::abs(b));
+      if (!takesPart(c)) continue;
+      const bool is_stuck = sticks(c, i);
+      for (int k = 0; k < rows; ++k) {
+        const double w = weight_[first + k] = k == kNormalRow ? kNormalRowWeight : is_stuck ? 1 : 0;
+        b_[first + k] = w * unitOfRow(c, k) * c.bias_C[k];
+        largest = std::max(largest, std::abs(b_[first + k]));
       }
     }
     return largest;
   }
 
-  // z; what is left of b is A z + b.
+  // What is left of b is A z + b; z itself nobody needs.
   void minimise() {
-    std::fill(z_, z_ + size_, 0.0);
-    respond(b_, gradient_);
-    for (int j = 0; j < size_; ++j) direction_[j] = gradient_[j] = -gradient_[j];
+    respond();
+    for (int j = 0; j < size_; ++j) direction_[j] = gradient_[j];
     double g2 = dot(gradient_, gradient_, size_);
     const double enough = kConverged * g2;
     for (int n = 0; n < most_steps_ && g2 > enough && spend(kPerContactFitted * problem_.contactCount(), memory_); ++n) {
-      move(direction_, image_);
+      move();
       const double step = g2 / dot(image_, image_, rows_);
       if (!std::isfinite(step)) return;
-      for (int j = 0; j < size_; ++j) z_[j] += step * direction_[j];
       for (int row = 0; row < rows_; ++row) b_[row] += step * image_[row];
-      respond(b_, gradient_);
-      for (int j = 0; j < size_; ++j) gradient_[j] = -gradient_[j];
+      for (int j = 0; j < size_; ++j) gradient_[j] -= step * response_[j];
       const double before = g2;
       g2 = dot(gradient_, gradient_, size_);
       for (int j = 0; j < size_; ++j) direction_[j] = gradient_[j] + g2 / before * direction_[j];
@@ -91,6 +93,7 @@ class BiasFit {
   // Takes what is left of b away from the biases: no motion gives it.
   void apply(double h, double offset_rate, double* q) {
     for (int i = 0; i < problem_.contactCount(); ++i) {
+      if (weight_[problem_.firstRow(i) + kNormalRow] == 0) continue;
       Contact& c = contact(i);
       for (int k = 0; k < problem_.rows(i); ++k) {
         const double w = weight_[problem_.firstRow(i) + k];
@@ -106,36 +109,45 @@ class BiasFit {
  private:
   Contact& contact(int i) const { return contacts_[static_cast<std::size_t>(order_[static_cast<std::size_t>(i)])]; }
 
-  // Contacts that push take part: stuck ones with all rows, sliding ones along the normal.
-  double weightOf(const Contact& c, int i, int k) const {
-    const double* const r_i = r_ + problem_.firstRow(i);
-    if (!(r_i[kNormalRow] > 0)) return 0;
-    if (pushing_ == PushingBy::kLastTick && c.closing) return 0;
-    if (c.bias_C[kNormalRow] > kLargestCorrection) return 0;  // far from touching: it may land, and asks for nothing
-    if (k == kNormalRow) return kNormalRowWeight;
-    const bool sticks = pushing_ == PushingBy::kLastTick ? c.stuck : isInCone(r_i, problem_.rows(i), problem_.friction(i), kInside);
-    return sticks ? 1 : 0;
+  // Of the contacts that push: stuck ones with all rows, sliding ones along the normal.
+  bool takesPart(const Contact& c) const {
+    if (pushing_ == PushingBy::kLastTick && c.closing) return false;
+    return !(c.bias_C[kNormalRow] > kLargestCorrection);  // far from touching: it may land, and asks for nothing
+  }
+  bool sticks(const Contact& c, int i) const {
+    if (pushing_ == PushingBy::kLastTick) return c.stuck;
+    return isInCone(r_ + problem_.firstRow(i), problem_.rows(i), problem_.friction(i), kInside);
   }
 
-  // out = A^T w v,  out = w A z
-  void respond(const double* v, double* out) const {
-    std::fill(out, out + size_, 0.0);
+  // gradient = -A^T w b
+  void respond() {
+    std::fill(gradient_, gradient_ + size_, 0.0);
     for (int i = 0; i < problem_.contactCount(); ++i) {
       const int first = problem_.firstRow(i);
       if (weight_[first + kNormalRow] == 0) continue;
       double weighed[kMaxContactRows] = {};
-      for (int k = 0; k < problem_.rows(i); ++k) weighed[k] = weight_[first + k] * v[first + k];
-      addImpulse(problem_.sides[static_cast<std::size_t>(i)], problem_.rows(i), weighed, out);
+      for (int k = 0; k < problem_.rows(i); ++k) weighed[k] = -weight_[first + k] * b_[first + k];
+      addImpulse(problem_.sides[static_cast<std::size_t>(i)], problem_.rows(i), weighed, gradient_);
     }
   }
-  void move(const double* z, double* out) const {
+  // image = w A direction,  response = A^T w image: each contact is read once
+  void move() {
+    std::fill(response_, response_ + size_, 0.0);
     for (int i = 0; i < problem_.contactCount(); ++i) {
-      double* const u = out + problem_.firstRow(i);
-      for (int k = 0; k < problem_.rows(i); ++k) u[k] = 0;
+      double* const u = image_ + problem_.firstRow(i);
       const double* const weight = weight_ + problem_.firstRow(i);
-      if (weight[kNormalRow] == 0) continue;
-      addVelocity(problem_.sides[static_cast<std::size_t>(i)], problem_.rows(i), z, u);
-      for (int k = 0; k < problem_.rows(i); ++k) u[k] *= weight[k];
+      const ContactSides& sides = problem_.sides[static_cast<std::size_t>(i)];
+      withRows(problem_.rows(i), [&](auto rows) {
+        for (int k = 0; k < rows; ++k) u[k] = 0;
+        if (weight[kNormalRow] == 0) return;
+        addVelocity(sides, rows, direction_, u);
+        double weighed[kMaxContactRows] = {};
+        for (int k = 0; k < rows; ++k) {
+          u[k] *= weight[k];
+          weighed[k] = weight[k] * u[k];
+        }
+        addImpulse(sides, rows, weighed, response_);
+      });
     }
   }
 
@@ -146,7 +158,7 @@ class BiasFit {
   std::vector<Contact>& contacts_;
   SolverScratch& memory_;
   int rows_, size_, most_steps_;
-  double *b_, *image_, *weight_, *z_, *direction_, *gradient_;
+  double *b_, *image_, *weight_, *direction_, *gradient_, *response_;
 };
 
 }  // namespace

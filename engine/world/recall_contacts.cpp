@@ -55,18 +55,17 @@ void recall(const WorldScratch& scratch, Contact& c) {
 
 }  // namespace
 
-void recallContacts(const WorldState& state, WorldScratch& scratch) {
+void sortContacts(WorldScratch& scratch) {
   const auto by_id = [](const Contact& x, const Contact& y) { return x.id < y.id; };
   if (!std::is_sorted(scratch.contacts.begin(), scratch.contacts.end(), by_id)) {  // nearly always they come sorted
     std::sort(scratch.contacts.begin(), scratch.contacts.end(), by_id);
   }
-  const ContactMemory* old = state.contacts.data();
-  const ContactMemory* const end = old + state.contact_count;
-  for (Contact& c : scratch.contacts) {
-    while (old < end && old->id < c.id) ++old;
-    c.memory = old < end && old->id == c.id ? old : nullptr;
-    recall(scratch, c);
-  }
+}
+
+void recallContact(std::span<const ContactMemory>& memories, const WorldScratch& scratch, Contact& c) {
+  while (!memories.empty() && memories.front().id < c.id) memories = memories.subspan(1);
+  c.memory = !memories.empty() && memories.front().id == c.id ? &memories.front() : nullptr;
+  recall(scratch, c);
 }
 
 }  // namespace pincer::engine

@@ -40,7 +40,7 @@ void readSolution(const WorldModel& model, const WorldScratch& scratch, int i, C
 void solveContacts(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
   scratch.solve = {};
   if (scratch.contacts.empty()) return;
-  recallContacts(state, scratch);
+  sortContacts(scratch);
   fillContacts(model, state, scratch);
   solveIslands(model, scratch);
   for (std::size_t i = 0; i < scratch.contacts.size(); ++i) readSolution(model, scratch, static_cast<int>(i), scratch.contacts[i]);
