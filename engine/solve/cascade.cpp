@@ -17,6 +17,7 @@ constexpr double kConeRoundOff =
     1e-14;  // relative: an impulse on the cone isn't projected again, so a warm start that fits stays, to the bit
 constexpr int kPolishSteps = 2;
 constexpr std::int64_t kPerContactScaled = 300, kPerPairScaled = 40;  // multiplications
+constexpr std::int64_t kPerSmallStep = 1000;                          // of three contacts at most
 constexpr double kNearSolution = 1e-8;                                // residual from which Newton's method needs a step or two
 constexpr double kShiftedGap = 1e-6;                                  // of a problem with frozen shift, itself an approximation
 constexpr int kSweepsPerRound = 15;                                   // enough to leave the basin in which Newton's method failed
@@ -111,6 +112,7 @@ class Search {
     restartFromBest();
     const double enough = contentResidual(options, problem_.speed);
     const bool is_spent = isSpent();
+    const std::int64_t left = scratch_.operations_left;
     if (is_spent) scratch_.operations_left = kNoLimit;  // the few sweeps that every tick gets: contacts that are new have no impulse yet
     const int most = is_spent ? kSweepsPerLook : options.large_sweeps;
     for (int sweeps = 0; sweeps < most && !(best_.residual <= enough); sweeps += kSweepsPerLook) {
@@ -118,7 +120,7 @@ class Search {
       iterations_ += kSweepsPerLook;
       keepBest();
     }
-    if (is_spent) scratch_.operations_left = -1;
+    if (is_spent) scratch_.operations_left = left - (kNoLimit - scratch_.operations_left);
     return best_.residual <= enough ? SolveMethod::kGaussSeidel : SolveMethod::kNotConverged;
   }
 
@@ -268,7 +270,9 @@ void solveContacts(const ContactProblem& problem, const SolverOptions& options, 
   result = {};
   if (problem.contactCount() == 0) return;
   project(problem, r);
-  if (solveSmallProblem(problem, options, r, u, result)) return;
+  const bool is_solved = solveSmallProblem(problem, options, r, u, result);
+  spend(kPerSmallStep * (1 + result.iterations), scratch);
+  if (is_solved) return;
   result = solveByForm(problem, options, scratch, VectorMap(r, problem.rowCount()), VectorMap(u, problem.rowCount()));
 }
 

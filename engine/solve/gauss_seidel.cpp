@@ -101,7 +101,7 @@ void GaussSeidel::relax(int i) {
 
 // r = the impulse of contact i, which has the velocity u with the present one.
 template <class Rows>
-[[gnu::always_inline]] inline void GaussSeidel::solveOwn(int i, Rows rows, double* u, double* r) const {
+[[gnu::always_inline]] inline void GaussSeidel::solveOwn(int i, Rows rows, double* u, double* r) {
   const double *const terms = termsOf(i), *const inverse = terms + kTermsBefore, *const W = inverse + rows * rows;
   const double* const r_i = r_ + problem_.firstRow(i);
   if (terms[0] > 0) {
@@ -116,13 +116,14 @@ template <class Rows>
   for (int k = 0; k < rows; ++k) {
     for (int l = 0; l < rows; ++l) u[k] -= W[rows * l + k] * r_i[l];
   }
-  solveOneContact(W, rows, u, rows, problem_.friction(i), r);
+  slide_steps_ += solveOneContact(W, rows, u, rows, problem_.friction(i), r);
 }
 
 void GaussSeidel::sweep(bool backwards) {
   const int n = problem_.contactCount();
   way2_before_ = way2_;
   way2_ = largest_change2_ = 0;
+  slide_steps_ = 0;
   for (int k = 0; k < n; ++k) relax(backwards ? n - 1 - k : k);
 }
 
@@ -168,7 +169,8 @@ void GaussSeidel::goFurther(int i, double ratio) {
 void sweepGaussSeidel(const ScaledProblem& problem, int sweeps, SolverScratch& scratch, Iterate& it) {
   respond(problem.sides, problem.first_row, it.r, problem.movers, problem.y);
   GaussSeidel method({problem.first_row, problem.mu, problem.sides, problem.q, problem.y, problem.movers}, scratch, it.r);
-  for (int n = 0; n < sweeps && spend(kPerContactSwept * problem.contactCount(), scratch); ++n) method.sweep(false);
+  const auto costOfSweep = [&] { return kPerContactSwept * problem.contactCount() + kPerSlideStep * method.slideSteps(); };
+  for (int n = 0; n < sweeps && spend(costOfSweep(), scratch); ++n) method.sweep(false);
   evaluate(problem, it);
 }
 

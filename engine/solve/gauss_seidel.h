@@ -11,7 +11,8 @@
 
 namespace pincer::engine {
 
-constexpr std::int64_t kPerContactSwept = 250;  // multiplications of a sweep
+constexpr std::int64_t kPerContactSwept = 250;  // multiplications of a sweep, but for
+constexpr std::int64_t kPerSlideStep = 60;      // those of a step of a search for a slide (local_contact.h), divisions and a root among them
 
 // What is swept: a ContactProblem or a ScaledProblem.
 struct SweptProblem {
@@ -42,12 +43,15 @@ class GaussSeidel {
   // How far the last sweep changed a contact's own velocity, at most: w_i |change of r_i| [m/s].
   double largestChange() const { return std::sqrt(largest_change2_); }
 
+  // Of the searches for slides in the last sweep.
+  int slideSteps() const { return slide_steps_; }
+
  private:
   double* termsOf(int i) const { return terms_ + stride_ * i; }
   void fillTerms(int i);
   void relax(int i);
   template <class Rows>
-  void solveOwn(int i, Rows rows, double* u, double* r) const;
+  void solveOwn(int i, Rows rows, double* u, double* r);
   bool staysOpen(int i) const;
   void goFurther(int i, double ratio);
 
@@ -61,6 +65,7 @@ class GaussSeidel {
   const double* const weight_;
   double way2_ = 0, way2_before_ = 0;  // of the last sweep and the one before, squared [J]
   double largest_change2_ = 0;         // [(m/s)^2]
+  int slide_steps_ = 0;
 };
 
 // `sweeps` passes over all contacts, in order. `it` is evaluated on return.

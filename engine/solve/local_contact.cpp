@@ -101,9 +101,9 @@ class TangentProblem {
   double r_n_ = 0, norm_ = 0;
 };
 
-// Leaves `problem` at the alpha > 0 for which the impulse is on the cone's surface. f is nearly a line: three or four steps from the first guess.
+// Leaves `problem` at the alpha > 0 for which the impulse is on the cone's surface. f is nearly a line: three or four steps from the first guess. Returns how many.
 template <int D>
-void findSlide(TangentProblem<D>& problem) {
+int findSlide(TangentProblem<D>& problem) {
   double low = 0, high = std::numeric_limits<double>::infinity();
   double alpha = problem.firstAlpha();
   for (int i = 0; i < kAlphaSteps; ++i) {
@@ -115,17 +115,22 @@ void findSlide(TangentProblem<D>& problem) {
     if (!(next > low && next < high)) next = std::isfinite(high) ? 0.5 * (low + high) : 8 * std::max(alpha, problem.magnitude());
     const bool is_last = std::abs(next - alpha) <= kRootRoundOff * alpha;
     alpha = next;
-    if (is_last) return problem.setAlpha(alpha);
+    if (is_last) {
+      problem.setAlpha(alpha);
+      return i + 1;
+    }
   }
   problem.setAlpha(high < std::numeric_limits<double>::infinity() ? high : alpha);
+  return kAlphaSteps;
 }
 
 template <int D>
-void solvePressed(const double* W, int stride, const double* q, double mu, double* r) {
+int solvePressed(const double* W, int stride, const double* q, double mu, double* r) {
   TangentProblem<D> problem(W, stride, q, mu);
   problem.setAlpha(0);
-  if (!problem.isInDisc()) findSlide(problem);
+  const int steps = problem.isInDisc() ? 0 : findSlide(problem);
   problem.write(r);
+  return steps;
 }
 
 }  // namespace
@@ -137,20 +142,21 @@ bool isIsotropic(const double* W, int stride) {
          std::abs(W[stride + kNormalRow]) <= small && std::abs(W[0] - W[stride + 1]) <= small;
 }
 
-void solveOneContact(const double* W, int stride, const double* q, int rows, double mu, double* r) {
+int solveOneContact(const double* W, int stride, const double* q, int rows, double mu, double* r) {
   std::fill(r, r + rows, 0.0);
-  if (!(q[kNormalRow] < 0)) return;
+  if (!(q[kNormalRow] < 0)) return 0;
   if (mu == 0) {
     r[kNormalRow] = -q[kNormalRow] / W[kNormalRow * (stride + 1)];
-    return;
+    return 0;
   }
   if (rows == kTorsionRow && isIsotropic(W, stride)) {
     for (int k = 0; k < kTorsionRow; ++k) r[k] = -q[k] / W[k * (stride + 1)];
-    return limitFriction(mu, r);
+    limitFriction(mu, r);
+    return 0;
   }
   if (rows == kTorsionRow) return solvePressed<2>(W, stride, q, mu, r);
   if (rows == kRollingRow) return solvePressed<3>(W, stride, q, mu, r);
-  solvePressed<5>(W, stride, q, mu, r);
+  return solvePressed<5>(W, stride, q, mu, r);
 }
 
 }  // namespace pincer::engine

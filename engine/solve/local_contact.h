@@ -33,6 +33,7 @@ bool isIsotropic(const double* W, int stride);
 
 // r = the solution for the `rows` x `rows` block W (column-major with column stride `stride`) and q; rows is 3, 4 or 6.
 // Where W makes several solutions possible (large mu W_nT), one of them. r is in the cone to round-off.
-void solveOneContact(const double* W, int stride, const double* q, int rows, double mu, double* r);
+// Returns how many steps the search for alpha took.
+int solveOneContact(const double* W, int stride, const double* q, int rows, double mu, double* r);
 
 }  // namespace pincer::engine

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "contact/shape/pair_query.h"
+#include "engine/world/budget.h"
 #include "engine/world/impact.h"
 
 namespace pincer::engine {
@@ -19,13 +20,6 @@ bool boundsTouch(const BodyModel& a, const BodyModel& b, const BodyScratch& sa, 
 }
 
 bool isSphere(const BodyModel& body) { return std::holds_alternative<contact::Sphere>(body.shape); }
-
-// Of the solver's budget: multiplications of a query. Solids' facets are laid over each other, spheres need little.
-void chargeQuery(const BodyModel& a, const BodyModel& b, WorldScratch& scratch) {
-  constexpr std::int64_t kOfSphere = 200, kOfSolids = 5000;
-  if (scratch.operations_left >= kNoLimit) return;
-  scratch.operations_left -= isSphere(a) || isSphere(b) ? kOfSphere : kOfSolids;
-}
 
 // Of the first contact that the pair had in the last tick; zero if it had none, or for spheres, which need none.
 Vec3 lastNormal(const WorldModel& model, const WorldState& state, const BodyPair& pair) {

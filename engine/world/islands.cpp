@@ -267,7 +267,7 @@ void stopOnly(const ContactProblem& problem, const SolverOptions& options, Islan
   const std::int64_t left = memory.operations_left;
   memory.operations_left = kNoLimit;
   solveContacts(problem, sweeps, memory, VectorMap(r, island.rows), VectorMap(island.u, island.rows));
-  memory.operations_left = left - reserveFor(island);
+  memory.operations_left = left - (kNoLimit - memory.operations_left);
   island.result = lost;
 }
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/world/budget.h"
 #include "engine/world/impact.h"
 #include "engine/world/push_out.h"
 #include "engine/world/rest.h"
@@ -12,8 +13,7 @@ namespace {
 
 constexpr double kFarTurn = 0.5;       // of what touches, in one part of a tick [rad]
 constexpr int kMostTurningParts = 64;  // that a tick is cut into for that
-constexpr std::int64_t kPerBody = 300, kPerPair = 100, kPerContact = 1000,
-                       kPerSearch = 10000;  // multiplications besides the solver's; the last: for a hit
+constexpr std::int64_t kPerBody = 300, kPerPair = 100, kPerContact = 1000;  // multiplications besides the solver's
 constexpr double kShortestPart = 1e-9;      // of a tick: a hit sooner than that is a hit at once
 
 bool isFinite(const MotionInput& in) {
@@ -135,14 +135,16 @@ class Tick {
     const double rest = left_ - stop_;
     double h = rest < 2.001 * part_ || isSpent() ? rest : 2 * part_;  // leaves no crumb of round-off
     attempt(h);
-    for (; !isSpent() && somethingTurnsFar(h) && h > model_.options.h / kMostTurningParts; attempt(h)) h *= 0.5;
+    turns_far_ = somethingTurnsFar(h);
+    for (; turns_far_ && !isSpent() && h > model_.options.h / kMostTurningParts; turns_far_ = somethingTurnsFar(h)) attempt(h *= 0.5);
     part_ = h;
     if (mayHit()) notePushedPairs(model_, state_, scratch_);
+    if (isSpent() && !scratch_.impact_pairs.empty()) attempt(h);  // which holds nothing back any more
     double t = h;
-    if (!scratch_.impact_pairs.empty()) t = searchHit();
+    if (!scratch_.impact_pairs.empty()) t = timeOfImpact(model_, state_, scratch_);
     if (!(t < h) && somethingLands()) {  // and misses, by a little: its contact counts in this part after all
       attempt(h, false);
-      t = scratch_.impact_pairs.empty() ? h : searchHit();
+      t = scratch_.impact_pairs.empty() ? h : timeOfImpact(model_, state_, scratch_);
     }
     if (!(t < h)) return finish(h);
     if (t > kShortestPart * model_.options.h) {
@@ -151,8 +153,10 @@ class Tick {
       left_ -= t;
     }
     landings_ += somethingLands();
+    const double energy = isLimited(scratch_) ? energyOf(model_, state_) : 0;
     applyImpacts(model_, state_, scratch_, source_);
     chargeSurroundings();
+    if (isSpent()) limitEnergy(model_, scratch_, energy, state_);
     note();
     ++impacts_;
   }
@@ -164,7 +168,7 @@ class Tick {
     constexpr double kSooner = 0.999;
     attempt(t);
     for (int n = 0; n < kMostCuts && !isSpent() && somethingPushesImpacts(); ++n) {
-      const double sooner = searchHit();
+      const double sooner = timeOfImpact(model_, state_, scratch_);
       if (!(sooner < kSooner * t && sooner > kShortestPart * model_.options.h)) break;
       attempt(t = sooner);
     }
@@ -199,8 +203,11 @@ class Tick {
 
   void conclude() {
     note();
+    const bool is_coarse = isSpent() || turns_far_;
+    const double energy = is_coarse ? energyOf(model_, state_) : 0;
     advance(model_, state_, scratch_);
     pushOut(model_, state_, scratch_);
+    if (is_coarse) limitEnergy(model_, scratch_, energy, state_);
     ++report_.parts;
     mark(scratch_, Stage::kAdvance);
   }
@@ -228,19 +235,11 @@ class Tick {
 
   // What a part of a tick costs besides its solve.
   void chargeSurroundings() {
-    charge(kPerBody * std::ssize(scratch_.bodies) + kPerPair * std::ssize(model_.pairs) + kPerContact * std::ssize(scratch_.contacts));
+    charge(kPerBody * std::ssize(scratch_.bodies) + kPerPair * std::ssize(model_.pairs) + kPerContact * std::ssize(scratch_.contacts),
+           scratch_);
   }
 
-  double searchHit() {
-    charge(kPerSearch * std::ssize(scratch_.impact_pairs));
-    return timeOfImpact(model_, state_, scratch_);
-  }
-
-  void charge(std::int64_t operations) {
-    if (scratch_.operations_left < kNoLimit) scratch_.operations_left -= operations;
-  }
-
-  bool isSpent() const { return scratch_.operations_left < 0; }
+  bool isSpent() const { return engine::isSpent(scratch_); }
   bool mayHit() const { return impacts_ < kMostImpacts && !isSpent(); }
 
   void note() {
@@ -284,6 +283,7 @@ class Tick {
   ContactSource* source_;
   double left_;       // of the tick [s]
   double part_ = 0;   // length of the last part, before a hit cut it [s]
+  bool turns_far_ = false;  // something does in this part, and it wasn't cut further
   double stop_ = 0;   // what is left of the tick at the end of this part [s]
   int impacts_ = 0;   // in this tick
   int landings_ = 0;  // of them that don't bounce

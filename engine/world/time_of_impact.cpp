@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "contact/shape/pair_query.h"
+#include "engine/world/budget.h"
 #include "engine/world/held_body.h"
 #include "engine/world/impact.h"
 
@@ -67,10 +68,10 @@ class ClosingPair {
   }
 
   // Newton's method on the parabolas of the points. A gap between convex bodies that don't turn is a convex function of time, so that each
-  // step falls short of the root; how far the bodies may turn in a step is limited by the gap.
-  double time() const {
+  // step falls short of the root: so does a search that the budget cuts short; how far the bodies may turn in a step is limited by the gap.
+  double time() {
     double t = 0;
-    for (int n = 0; n < kRootSteps; ++n) {
+    for (int n = 0; n < kRootSteps && !isSpent(scratch_); ++n) {
       const Next next = look(t);
       if (!(next.step <= scratch_.h - t)) return std::numeric_limits<double>::infinity();
       t = std::max(t + next.step, 0.0);
@@ -86,11 +87,13 @@ class ClosingPair {
     bool is_exact = false;                                  // the step is below the round-off of the time
   };
 
-  Next look(double t) const {
+  Next look(double t) {
     const BodyModel &A = model_.bodies[pair_.a], &B = model_.bodies[pair_.b];
     const Moment a = momentOf(model_, state_, scratch_, pair_.a, t), b = momentOf(model_, state_, scratch_, pair_.b, t);
     contact::PairPoints found;
-    contact::collideShapes(A.shape, a.X_WI * A.X_IB, B.shape, b.X_WI * B.X_IB, margin_, scratch_.patches, found);
+    chargeQuery(A, B, scratch_);
+    contact::collideShapes(A.shape, a.X_WI * A.X_IB, B.shape, b.X_WI * B.X_IB, margin_, scratch_.patches, found, last_n_W_);
+    if (found.count > 0) last_n_W_ = found.points[0].n_W;
     const Vec3 acceleration_W = acceleration(pair_.a) - acceleration(pair_.b);
     Next next;
     double nearest = margin_;
@@ -132,6 +135,7 @@ class ClosingPair {
   WorldScratch& scratch_;
   ImpactPair pair_;
   double margin_;
+  Vec3 last_n_W_ = Vec3::Zero();  // of the last look: the next one begins there
 };
 
 }  // namespace

@@ -1,8 +1,12 @@
 // The budget: what a tick may cost, counted.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "contact/error.h"
+#include "engine/solve/gauss_seidel.h"
 #include "engine/world/step.h"
+#include "tests/support/contact_problems.h"
 #include "tests/support/worlds.h"
 
 namespace pincer::engine {
@@ -59,6 +63,42 @@ TEST(Budget, RunsOutFlaggedAndAddsNoEnergy) {
 }
 
 TEST(Budget, IsDeterministic) { EXPECT_EQ(hashOf(dropBoxes(5e-5).state), hashOf(dropBoxes(5e-5).state)); }
+
+// What was left of the tick was done in one part, in which needles turned so far that contacts gave them energy: up to 5000 times what they had.
+TEST(Budget, SpinningNeedlesGainNoEnergyWhereItRunsOut) {
+  int spent = 0;
+  for (int n = 0; n < 40; ++n) {
+    WorldOptions options;
+    options.solver.budget = 1e-4;
+    WorldBuilder builder{options};
+    builder.addBody({"floor", contact::HalfSpace{}, false, 0, {}});
+    builder.addBody({"needle", contact::Box{Vec3(0.1, 5e-4 + 5e-5 * n, 5e-4)}, true, 0.02, {}});
+    const Quat q = quatFromRotationVector(Vec3(0.1 * n, 1 + 0.3 * n, 0.2 * n));
+    const WorldModel model = builder.build();
+    WorldState state = makeState(model, {startAt(Vec3::Zero()), {{q, Vec3(0, 0, 0.11)}, Vec3(0, 0, -1), 200 * Vec3(std::sin(n), std::cos(n), 0.3)}}, {});
+    WorldScratch scratch(model);
+    const double energy = kineticEnergy(model, state) + potentialEnergy(model, state);
+    for (int i = 0; i < 300; ++i) {
+      spent += (step(model, state, scratch).status & kBudgetSpent) != 0;
+      ASSERT_LE(kineticEnergy(model, state) + potentialEnergy(model, state), energy * (1 + 1e-5)) << n << ", tick " << i;  // as `pincer stress` asks
+    }
+  }
+  EXPECT_GT(spent, 1000);
+}
+
+// The sweeps that every tick gets counted as nothing, so that what was kept back for later was spent again and again: ticks of 3 ms at a budget of 0.5.
+TEST(Budget, SweepsOfAProblemThatHasNoneLeftAreCounted) {
+  tests::RandomScenes random(5);
+  for (int n = 0; n < 20; ++n) {
+    tests::OwnedContactProblem p = random.stack(3, 1, 1e-3);
+    SolverScratch scratch(static_cast<int>(p.mu.size()), p.movers);
+    Eigen::VectorXd r = Eigen::VectorXd::Zero(p.q.size()), u = r;
+    scratch.operations_left = 0;
+    const SolveResult result = solveContacts(p.view(), {}, scratch, {r.data(), r.size()}, {u.data(), u.size()});
+    ASSERT_GT(result.iterations, 0) << n;
+    EXPECT_LE(scratch.operations_left, -kPerContactSwept * result.iterations * static_cast<int>(p.mu.size())) << n;
+  }
+}
 
 TEST(Budget, OutOfRangeIsRefused) {
   WorldOptions options;

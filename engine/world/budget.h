@@ -1,0 +1,26 @@
+// budget: what a tick spends of solver.budget besides its solves, and what it does once that has run out.
+//
+// Counted in multiplications, not measured (solve/cascade.h); scratch.operations_left below 0 is spent. Then what is left of the tick is done in one
+// part, however far bodies turn in it, with impulses that are best iterates: its answer is flagged, and must not have more energy than there was.
+#pragma once
+#include "engine/world/scratch.h"
+
+namespace pincer::engine {
+
+inline bool isLimited(const WorldScratch& scratch) { return scratch.operations_left < kNoLimit; }
+inline bool isSpent(const WorldScratch& scratch) { return scratch.operations_left < 0; }
+inline void charge(std::int64_t operations, WorldScratch& scratch) {
+  if (isLimited(scratch)) scratch.operations_left -= operations;
+}
+
+// For a query of where two bodies touch: solids' facets are laid over each other, spheres need little.
+void chargeQuery(const BodyModel& a, const BodyModel& b, WorldScratch& scratch);
+
+// Kinetic and potential energy of all bodies [J].
+double energyOf(const WorldModel& model, const WorldState& state);
+
+// Slows the bodies on which contacts push, and those joined to them, all by one factor, until the energy is `most` [J] at most, or they stand. Not where
+// a finger or a driven body pushes: those may do work.
+void limitEnergy(const WorldModel& model, const WorldScratch& scratch, double most, WorldState& state);
+
+}  // namespace pincer::engine
