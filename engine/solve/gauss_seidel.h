@@ -12,7 +12,7 @@
 namespace pincer::engine {
 
 constexpr std::int64_t kPerContactSwept = 250;  // multiplications of a sweep, but for
-constexpr std::int64_t kPerSlideStep = 60;      // those of a step of a search for a slide (local_contact.h), divisions and a root among them
+constexpr std::int64_t kPerSlideStep = 60;      // those of a step of a search for a slide (local_contact.h)
 
 // What is swept: a ContactProblem or a ScaledProblem.
 struct SweptProblem {

@@ -8,10 +8,10 @@
 
 namespace pincer::engine {
 
-// Two sums at once, of what is even and what is odd: left to itself the compiler does one after the other.
+// Two sums at once, of what is even and what is odd: left to itself the compiler does one after the other. (`auto` would forget the alignment.)
 using DoublePair [[gnu::vector_size(16), gnu::aligned(8), gnu::may_alias]] = double;
 [[gnu::always_inline]] inline DoublePair dotPair6(const double* a, const double* b) {
-  const DoublePair *const x = reinterpret_cast<const DoublePair*>(a), *const y = reinterpret_cast<const DoublePair*>(b);  // auto would forget their alignment
+  const DoublePair *const x = reinterpret_cast<const DoublePair*>(a), *const y = reinterpret_cast<const DoublePair*>(b);
   return x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
 }
 [[gnu::always_inline]] inline double dot6(const double* a, const double* b) {

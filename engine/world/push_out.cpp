@@ -127,8 +127,10 @@ void pushOut(const WorldModel& model, WorldState& state, WorldScratch& scratch) 
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
     const Motion& push = scratch.bodies[i].push;
     if (!model.bodies[i].dynamic || (push.v_W.isZero(0) && push.w_W.isZero(0))) continue;
+    const Quat turn = quatFromRotationVector(share * push.w_W);
     state.bodies[i].X_WI.p += share * push.v_W;
-    state.bodies[i].X_WI.q = (quatFromRotationVector(share * push.w_W) * state.bodies[i].X_WI.q).normalized();
+    state.bodies[i].X_WI.q = (turn * state.bodies[i].X_WI.q).normalized();
+    state.bodies[i].L_W = turn * state.bodies[i].L_W;  // or a needle that spins would gain energy, turned against its spin
   }
 }
 

@@ -11,10 +11,10 @@
 namespace pincer::engine {
 namespace {
 
-constexpr double kFarTurn = 0.5;       // of what touches, in one part of a tick [rad]
-constexpr int kMostTurningParts = 64;  // that a tick is cut into for that
+constexpr double kFarTurn = 0.5;                                            // of what touches, in one part of a tick [rad]
+constexpr int kMostTurningParts = 64;                                       // that a tick is cut into for that
 constexpr std::int64_t kPerBody = 300, kPerPair = 100, kPerContact = 1000;  // multiplications besides the solver's
-constexpr double kShortestPart = 1e-9;      // of a tick: a hit sooner than that is a hit at once
+constexpr double kShortestPart = 1e-9;                                      // of a tick: a hit sooner than that is a hit at once
 
 bool isFinite(const MotionInput& in) {
   return in.X_WB.p.allFinite() && in.X_WB.q.coeffs().allFinite() && in.motion.v_W.allFinite() && in.motion.w_W.allFinite();
@@ -135,8 +135,7 @@ class Tick {
     const double rest = left_ - stop_;
     double h = rest < 2.001 * part_ || isSpent() ? rest : 2 * part_;  // leaves no crumb of round-off
     attempt(h);
-    turns_far_ = somethingTurnsFar(h);
-    for (; turns_far_ && !isSpent() && h > model_.options.h / kMostTurningParts; turns_far_ = somethingTurnsFar(h)) attempt(h *= 0.5);
+    for (; !isSpent() && somethingTurnsFar(h) && h > model_.options.h / kMostTurningParts; attempt(h)) h *= 0.5;
     part_ = h;
     if (mayHit()) notePushedPairs(model_, state_, scratch_);
     if (isSpent() && !scratch_.impact_pairs.empty()) attempt(h);  // which holds nothing back any more
@@ -203,11 +202,10 @@ class Tick {
 
   void conclude() {
     note();
-    const bool is_coarse = isSpent() || turns_far_;
-    const double energy = is_coarse ? energyOf(model_, state_) : 0;
+    const double energy = isSpent() ? energyOf(model_, state_) : 0;
     advance(model_, state_, scratch_);
     pushOut(model_, state_, scratch_);
-    if (is_coarse) limitEnergy(model_, scratch_, energy, state_);
+    if (isSpent()) limitEnergy(model_, scratch_, energy, state_);
     ++report_.parts;
     mark(scratch_, Stage::kAdvance);
   }
@@ -283,7 +281,6 @@ class Tick {
   ContactSource* source_;
   double left_;       // of the tick [s]
   double part_ = 0;   // length of the last part, before a hit cut it [s]
-  bool turns_far_ = false;  // something does in this part, and it wasn't cut further
   double stop_ = 0;   // what is left of the tick at the end of this part [s]
   int impacts_ = 0;   // in this tick
   int landings_ = 0;  // of them that don't bounce

@@ -64,23 +64,30 @@ TEST(Budget, RunsOutFlaggedAndAddsNoEnergy) {
 
 TEST(Budget, IsDeterministic) { EXPECT_EQ(hashOf(dropBoxes(5e-5).state), hashOf(dropBoxes(5e-5).state)); }
 
-// What was left of the tick was done in one part, in which needles turned so far that contacts gave them energy: up to 5000 times what they had.
+// What was left of the tick was done in one part, in which needles turned so far that contacts gave them energy: 13 of these worlds gained some, up to
+// 600 times what they had.
 TEST(Budget, SpinningNeedlesGainNoEnergyWhereItRunsOut) {
   int spent = 0;
   for (int n = 0; n < 40; ++n) {
     WorldOptions options;
     options.solver.budget = 1e-4;
     WorldBuilder builder{options};
-    builder.addBody({"floor", contact::HalfSpace{}, false, 0, {}});
-    builder.addBody({"needle", contact::Box{Vec3(0.1, 5e-4 + 5e-5 * n, 5e-4)}, true, 0.02, {}});
-    const Quat q = quatFromRotationVector(Vec3(0.1 * n, 1 + 0.3 * n, 0.2 * n));
+    builder.addBody({"floor", contact::HalfSpace{}, false, 0, {3, 3}});
+    std::vector<BodyStart> starts{startAt(Vec3::Zero())};
+    for (int k = 0; k < 2; ++k) {
+      builder.addBody({"needle", contact::Box{Vec3(0.1, 5e-4 * (1 + 0.1 * n), 5e-4)}, true, 0.02, {3, 3}});
+      const Quat q = quatFromRotationVector(Vec3(0.1 * n, 1 + 0.3 * n + k, 0.2 * n));
+      const Vec3 spin = k == 0 ? Vec3(std::sin(n), std::cos(n), 0.3) : Vec3(std::cos(n), std::sin(n), 0.3);
+      starts.push_back({{q, Vec3(0, 0, 0.11 + 0.21 * k)}, Vec3(0, 0, -1), 200 * spin});
+    }
     const WorldModel model = builder.build();
-    WorldState state = makeState(model, {startAt(Vec3::Zero()), {{q, Vec3(0, 0, 0.11)}, Vec3(0, 0, -1), 200 * Vec3(std::sin(n), std::cos(n), 0.3)}}, {});
+    WorldState state = makeState(model, starts, {});
     WorldScratch scratch(model);
-    const double energy = kineticEnergy(model, state) + potentialEnergy(model, state);
-    for (int i = 0; i < 300; ++i) {
+    const auto energy = [&] { return kineticEnergy(model, state) + potentialEnergy(model, state); };
+    const double most = energy() * (1 + 1e-5);  // as `pincer stress` asks
+    for (int i = 0; i < 200; ++i) {
       spent += (step(model, state, scratch).status & kBudgetSpent) != 0;
-      ASSERT_LE(kineticEnergy(model, state) + potentialEnergy(model, state), energy * (1 + 1e-5)) << n << ", tick " << i;  // as `pincer stress` asks
+      ASSERT_LE(energy(), most) << n << ", tick " << i;
     }
   }
   EXPECT_GT(spent, 1000);
