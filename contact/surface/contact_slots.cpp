@@ -114,7 +114,7 @@ void SurfaceTouch::findLost() {
     ShellContact nearest;
     if (seed.found) nearest = follow(seed.foot);
     if (seed.found && (!nearest.converged || !isSameSide(nearest))) nearest = straightTo(seed);
-    if (!nearest.converged || !isSameSide(nearest)) return hold(slot);
+    if (!nearest.converged || !isSameSide(nearest)) return hold(deepestLost());
     addNew(nearest);
   }
   status_ |= kQueryReseeded;
@@ -190,12 +190,14 @@ int SurfaceTouch::takeSlot() {
   return slot;
 }
 
+// The other one pushes no more, whatever becomes of the contact that it makes room for.
 void SurfaceTouch::joinFading(int slot, int other) {
   const Vec3 push = (r_ - lostHeight(slot)) * keptIn(slot).n_B + (r_ - lostHeight(other)) * keptIn(other).n_B;
   SurfaceSlot& joined = tracker_.slots[at(slot)];
   if (push.norm() > 0) joined.n_B = push.normalized();
   joined.p_BS = C_ - (r_ - push.norm()) * joined.n_B;
   joined.ease = 0;
+  tracker_.slots[at(other)].ease = kInfinity;
 }
 
 // Requires one that was lost.
