@@ -12,6 +12,7 @@
 // - A new contact is one that the finger could come to from outside: its place faces where the centre was at the last query and faces it
 //   now, and no other part of the surface hides it. A centre that has been pressed under the surface counts as being where the finger would
 //   be on that surface, so the far side of a wall stays out of reach however long the finger is pressed.
+// - Where more than three places are near, one that isn't touched yields to one that is clearly nearer; those that are touched stay.
 // - Two that have moved to one place are one. A contact whose overlap changes by more than it can (d / h of the way around an edge, d its
 //   depth; by less on anything rounder and in hollows that the finger fits into) hasn't moved but slid down to another place: it is lost, and
 //   that place is another contact's, or a new one.

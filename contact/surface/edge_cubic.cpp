@@ -35,7 +35,7 @@ EdgeHandles edgeHandles(const EdgeEnd& from, const EdgeEnd& to) {
   return {from.p + handle(from), to.p - handle(to)};
 }
 
-Vec3 middleNormal(const Vec3& p0, const Vec3& p1, const Vec3& n0, const Vec3& n1) {
+[[gnu::flatten]] Vec3 middleNormal(const Vec3& p0, const Vec3& p1, const Vec3& n0, const Vec3& n1) {
   constexpr double kCancelled = 1e-3;
   const Vec3 d = p1 - p0, sum = n0 + n1;
   const Vec3 mirrored = sum - 2 * d.dot(sum) / d.squaredNorm() * d;

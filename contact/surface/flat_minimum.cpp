@@ -71,23 +71,29 @@ FlatPoint closestOnFacet(const SurfaceNet& net, std::int32_t triangle, const Vec
   return closestOnTriangle(net.vertex(triangle, 0), net.vertex(triangle, 1), net.vertex(triangle, 2), p);
 }
 
-double wayToFlatMinimum(const SurfaceNet& net, std::int32_t t, const Vec3& p) {
+[[gnu::flatten]] double wayToFlatMinimum(const SurfaceNet& net, std::int32_t t, const Vec3& p) {
   const std::array<Vec3, 4> corners = {net.vertex(t, 0), net.vertex(t, 1), net.vertex(t, 2), net.vertex(t, 0)};
-  const Vec3 n = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
-  const double n_length = n.norm();
-  double inside = 0, least = kInfinity;
+  const Vec3 n = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
+  std::array<Vec3, 3> along, side;   // unit; p from the edge's line, turned across it
+  std::array<double, 3> over_edge;  // as far as this triangle tells
+  double least = 0;                 // over the inside, then over the edges too
   for (std::size_t i = 0; i < 3; ++i) {
-    const Vec3 edge = corners[i + 1] - corners[i], R = p - corners[i], side = R.cross(edge);
-    const double length = edge.norm(), across = side.dot(n) / (length * n_length), passed = R.dot(edge) / length;
-    inside = std::max(inside, across);
-    double over_edge = std::max({-across, -passed, passed - length, 0.0});
-    if (const Neighbour other = net.neighbour(t, static_cast<int>(i)); other.triangle >= 0 && over_edge < least) {
-      const Vec3 m = (net.vertex(other.triangle, (other.edge + 2) % 3) - corners[i]).cross(edge);  // its normal
-      over_edge = std::max(over_edge, side.dot(m) / (length * m.norm()));
-    }
-    least = std::min(least, over_edge);
+    const Vec3 edge = corners[i + 1] - corners[i], R = p - corners[i];
+    const double length = edge.norm();
+    along[i] = edge / length;
+    side[i] = R.cross(along[i]);
+    const double across = side[i].dot(n), passed = R.dot(along[i]);
+    least = std::max(least, across);
+    over_edge[i] = std::max({-across, -passed, passed - length, 0.0});
   }
-  least = std::min(least, inside);
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (!(over_edge[i] < least)) continue;  // most: their neighbours needn't be fetched
+    if (const Neighbour other = net.neighbour(t, static_cast<int>(i)); other.triangle >= 0) {
+      const Vec3 m = (net.vertex(other.triangle, (other.edge + 2) % 3) - corners[i]).cross(along[i]);  // its normal
+      over_edge[i] = std::max(over_edge[i], side[i].dot(m) / m.norm());
+    }
+    least = std::min(least, over_edge[i]);
+  }
   for (int i = 0; i < 3 && least > 0; ++i) least = std::min(least, wayToMinimumAtVertex(net, {t, i}, p, least));
   return least;
 }

@@ -100,7 +100,7 @@ bool SurfaceTouch::lookAlone() {
   const FollowedContact& f = list_.front();
   const double way = s_.search.wayAlone(C_, f.contact.n, f.contact.h, reach_, kLeast * reach_, kMost * reach_);
   if (!(way > 0)) return false;
-  tracker_.look = {C_, reach_, way, way, true, {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()}};
+  tracker_.look = {.p_BC = C_, .reach = reach_, .horizon = way, .vouched = way, .is_alone = true};
   tracker_.look.n[at(f.slot)] = f.contact.n;
   tracker_.ahead = {};
   return true;
@@ -125,7 +125,7 @@ bool SurfaceTouch::isLookEnding() const {
 }
 
 SurfaceLook SurfaceTouch::lookFrom(const Vec3& p_BC) const {
-  SurfaceLook look{p_BC, reach_, kLookHorizon * reach_, 0, false, {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()}};
+  SurfaceLook look{.p_BC = p_BC, .reach = reach_, .horizon = kLookHorizon * reach_};
   for (const FollowedContact& f : list_) {
     if (!f.fades && turnsSlowly(f.contact)) look.n[at(f.slot)] = f.contact.n;
   }
@@ -205,10 +205,10 @@ NearParts& SurfaceTouch::nearParts() {
 }
 
 // How far the centre has to move at least until the part may matter [m].
-double SurfaceTouch::wayTo(const NearPart& part) const {
+double SurfaceTouch::wayTo(std::int32_t place, const PatchBounds& part) const {
   constexpr double kRounding = 1e-12;  // of the mesh's size
-  const double approach = s_.search.part(part.place).approach(C_, reach_) - kRounding * s_.net.length();
-  return approach > 0 ? approach : std::max<double>(0, s_.search.wayToMinimumOn(s_.net, part.place, C_, reach_));
+  const double approach = part.approach(C_, reach_) - kRounding * s_.net.length();
+  return approach > 0 ? approach : std::max<double>(0, s_.search.wayToMinimumOn(s_.net, place, C_, reach_));
 }
 
 void SurfaceTouch::examine(NearPart& near) {
@@ -217,7 +217,7 @@ void SurfaceTouch::examine(NearPart& near) {
   const bool held_one = near.due == tracker_.gone;
   near.due = gone_;
   if (held_one && isFollowed(triangle, part)) return;
-  const double way = wayTo(near);
+  const double way = wayTo(near.place, part);
   near.due = gone_ + way;
   if (way > 0 || !part.mayHold(C_, reach_, Facing::front)) return;
   if (isFollowed(triangle, part) || wasSeen(triangle, part)) return;
@@ -232,7 +232,7 @@ bool SurfaceTouch::stands(const Foot& foot, const Vec3& S, const Vec3& n, std::i
   return (S - part.middle()).squaredNorm() < beside * beside && closestNormal(s_.net, triangle, n) > kBesideKnown;
 }
 
-bool SurfaceTouch::isFollowed(std::int32_t triangle, const PatchBounds& part) const {
+[[gnu::flatten]] bool SurfaceTouch::isFollowed(std::int32_t triangle, const PatchBounds& part) const {
   return std::any_of(list_.begin(), list_.end(), [&](const FollowedContact& f) {
     return !f.fades && stands(f.contact.foot, placeOf(f.contact), f.contact.n, triangle, part);
   });
@@ -274,16 +274,18 @@ bool SurfaceTouch::isNew(const ShellContact& candidate) const {
   return !s_.search.isHidden(s_.net, C_, C_ + kShort * (S - C_));
 }
 
-// FollowedContact contacts stay; of further ones the deepest do.
+// Followed contacts stay, but for those that don't touch and are clearly further: the walls of a hole hardly wider than the finger leave room for
+// its floor. Of what may go the furthest does.
 void SurfaceTouch::keepDeepestFurther(const ShellContact& candidate) {
   if (!list_.isFull()) return addNew(candidate);
   status_ |= kQueryContactsDropped;
+  FollowedContact* furthest = nullptr;
   for (FollowedContact& other : list_) {
-    if (!other.is_new || other.contact.h <= candidate.h) continue;
-    other.contact = candidate;
-    other.ease = easeOfNew(candidate);
-    return;
+    const bool is_free = !other.fades && other.shown() > r_ && other.contact.h > candidate.h + kOnePlace * r_;
+    const bool may_go = is_free || (other.is_new && other.contact.h > candidate.h);
+    if (may_go && (!furthest || other.contact.h > furthest->contact.h)) furthest = &other;
   }
+  if (furthest) *furthest = {candidate, furthest->slot, true, false, easeOfNew(candidate)};
 }
 
 }  // namespace pincer::contact

@@ -12,11 +12,16 @@ namespace {
 
 constexpr double kAtOnce = 1e-300;  // a horizon that only what matters now is within [m]
 
-bool comesFirst(const NearPart& a, const NearPart& b) { return a.approach < b.approach || (a.approach == b.approach && a.place < b.place); }
+// A type of its own, so that sorting calls no function.
+struct ComesFirst {
+  bool operator()(const NearPart& a, const NearPart& b) const {
+    return a.approach < b.approach || (a.approach == b.approach && a.place < b.place);
+  }
+};
 
 // Keeps the nearer half, and what is as near as its last; the horizon is where the others begin.
 void halve(NearParts& found) {
-  std::sort(found.parts.begin(), found.parts.end(), comesFirst);
+  std::sort(found.parts.begin(), found.parts.end(), ComesFirst());
   found.look.horizon = found.parts[kMostParts / 2].approach;
   const auto end =
       std::find_if(found.parts.begin(), found.parts.end(), [&](const NearPart& p) { return !(p.approach < found.look.horizon); });
@@ -78,7 +83,7 @@ void continueNearParts(const SurfaceNet& net, const SurfaceSearch& search, doubl
     if (approach < found.look.horizon) found.parts.push_back({place, rounded, gone_at_look + rounded});
   });
   if (!found.walk.isOver()) return;
-  std::sort(found.parts.begin(), found.parts.end(), comesFirst);
+  std::sort(found.parts.begin(), found.parts.end(), ComesFirst());
   if (!(found.look.horizon > 0)) keepMinima(net, search, gone_at_look, found);
   found.is_whole = true;
 }

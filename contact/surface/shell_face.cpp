@@ -117,7 +117,7 @@ NewtonStep newtonStep(const PatchPoint& x, const Vec3& C) {
   return newtonStepFor(x, R - hN * x.N, hN);
 }
 
-FaceStep faceStep(const PatchPoint& x, const Vec3& C, StepKind kind) {
+[[gnu::flatten]] FaceStep faceStep(const PatchPoint& x, const Vec3& C, StepKind kind) {
   const Residual r = residualOf(x, C);
   if (kind == StepKind::newton) {
     const NewtonStep step = newtonStepFor(x, r.T, r.hN);

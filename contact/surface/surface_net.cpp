@@ -217,7 +217,7 @@ bool SurfaceNet::isSharp(std::int32_t triangle, int edge) const {
   return numbers[at(edge)] != others[at(other_next)] || numbers[at(next)] != others[at(other.edge)];
 }
 
-SurfaceCell SurfaceNet::build(std::int32_t triangle) const {
+[[gnu::flatten]] SurfaceCell SurfaceNet::build(std::int32_t triangle) const {
   SurfaceCell cell{{}, {neighbour(triangle, 0), neighbour(triangle, 1), neighbour(triangle, 2)}, mesh_.triangles[at(triangle)], {}};
   Patch& p = cell.patch;
   p.b300 = vertex(triangle, 0);

@@ -145,10 +145,6 @@ void SurfaceSearch::PatchGroup::set(int lane, const PatchBounds& part) {
   cones.set(lane, part.cone);
 }
 
-PatchBounds SurfaceSearch::PatchGroup::at(int lane) const {
-  return {{centre[0][lane], centre[1][lane], centre[2][lane]}, radius[lane], bulge[lane], hollow[lane], cones.at(lane)};
-}
-
 SurfaceSeed SurfaceSearch::nearest(const SurfaceNet& net, PatchCache& cache, const Vec3& p, double bound, Facing facing) const {
   SurfaceSeed seed{{}, bound, false};
   double bound2 = bound * bound;
@@ -194,7 +190,7 @@ double SurfaceSearch::wayAlone(const Vec3& p, const Vec3& n, double h, double re
 std::optional<Foot> SurfaceSearch::minimumOn(const SurfaceNet& net, std::int32_t place, const Vec3& p, double reach) const {
   const std::int32_t triangle = triangleAt(place);
   const FlatPoint flat = closestOnFacet(net, triangle, p);
-  const double outer = reach + part(place).bulge;
+  const double outer = reach + bulge(place);
   if (flat.distance2 >= outer * outer || !isFlatMinimum(net, triangle, flat, p)) return std::nullopt;
   return Foot{triangle, flat.b};
 }
@@ -204,7 +200,7 @@ float SurfaceSearch::wayToMinimumOn(const SurfaceNet& net, std::int32_t place, c
   const std::int32_t triangle = triangleAt(place);
   const double rounding = kRounding * net.length();
   double way = wayToFlatMinimum(net, triangle, p);
-  if (!(way > rounding)) way = std::sqrt(closestOnFacet(net, triangle, p).distance2) - part(place).bulge - reach;
+  if (!(way > rounding)) way = std::sqrt(closestOnFacet(net, triangle, p).distance2) - bulge(place) - reach;
   return below(way - rounding);
 }
 

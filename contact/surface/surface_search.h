@@ -63,6 +63,7 @@ class SurfaceSearch {
   void walkParts(const Vec3& p, double reach, const double& horizon, const ConesAlong& passed, TreeWalk& walk, int most,
                  Visit&& visit) const;
   PatchBounds part(std::int32_t place) const { return group(place / kLanes).at(place % kLanes); }
+  double bulge(std::int32_t place) const { return group(place / kLanes).bulge[place % kLanes]; }
   std::int32_t triangleAt(std::int32_t place) const { return tree_.order()[static_cast<std::size_t>(place)]; }
 
   // The place of that patch's flat triangle that is nearest to `p`, if it is nearer than `reach` (less what the patch bulges), `p` is in
@@ -90,7 +91,9 @@ class SurfaceSearch {
     LaneCones cones;
 
     void set(int lane, const PatchBounds& part);
-    PatchBounds at(int lane) const;
+    PatchBounds at(int lane) const {
+      return {{centre[0][lane], centre[1][lane], centre[2][lane]}, radius[lane], bulge[lane], hollow[lane], cones.at(lane)};
+    }
     // Which of them mayHold, after `p` has moved by less than `way` [m].
     LaneMask mayHold(const LanesPoint& p, Lanes bound, Lanes way, Facing facing) const;
   };

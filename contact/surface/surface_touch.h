@@ -94,7 +94,7 @@ class SurfaceTouch {
   bool turnsSlowly(const ShellContact& contact) const;
   NearParts& nearParts();
   double goneAt(const SurfaceLook& look) const { return gone_ - wayFrom(look); }
-  double wayTo(const NearPart& part) const;
+  double wayTo(std::int32_t place, const PatchBounds& part) const;
   void examineDue(NearParts& near);
   void examine(NearPart& part);
   void keepDeepestFurther(const ShellContact& candidate);

@@ -236,7 +236,60 @@ TEST(SurfaceGrooves, ThreeContactsThatFadeMakeRoomForTheNextWithoutAJump) {
   }
 }
 
-// Beside that axis, all three slots lost in one query: of the places tried for another contact each took a slot, by joining two that faded, and
+// Down into a square hole that the finger just fits into, or just not, its centre `beside` the hole's axis: five flat faces and four rims, from
+// which the least gap follows by hand.
+struct Hole {
+  explicit Hole(double play) : half(kFinger + play), top(3 * half), floor(half), tip(tests::pitBlock(2 * half)) {}
+  double gapAt(const Vec3& C) const {
+    double gap = C.z() - floor - kFinger;
+    for (const double wall : {half - C.x(), half + C.x(), half - C.y(), half + C.y()})
+      gap = std::min(gap, std::hypot(wall, std::max(0.0, C.z() - top)) - kFinger);
+    return gap;
+  }
+  // Moves down to `lowest`; the largest change of the push over the way.
+  double comeDown(const Vec3& beside, double lowest) {
+    constexpr double kStep = 1e-5;  // [m]
+    double push = 0;
+    Vec3 f0 = Vec3::Zero();
+    for (double z = top + kFinger + kMargin; z > lowest; z -= kStep) {
+      const Vec3 C = beside + Vec3(0, 0, z);
+      const SurfaceContacts contacts = tip.at(C);
+      EXPECT_NEAR(contacts.main().phi, gapAt(C), 1e-9) << "half " << half << " z " << z;  // flat faces: to the solver's tolerance
+      const Vec3 f = pushOf(contacts);
+      push = std::max(push, (f - f0).norm() / kStep);
+      f0 = f;
+    }
+    return push;
+  }
+
+  double half, top, floor;
+  Tip tip;
+};
+
+// Four walls within the margin took all three slots, none of them touched, and the finger went through the floor.
+TEST(SurfaceGrooves, AHoleHardlyWiderThanTheFingerHasAFloor) {
+  for (const double play : {1e-3, 3e-4, 5e-5, 2e-5}) {
+    for (const double aside : {0.0, 0.3, 0.9}) {
+      Hole hole(play);
+      const double push = hole.comeDown({aside * play, 0.5 * aside * play, 0}, hole.floor + kFinger - 5e-4);
+      EXPECT_LT(push, kRightAngle) << play << ' ' << aside;  // the floor alone
+      EXPECT_EQ(hole.tip.tracker.status & (kQueryHeldDirection | kQueryReseeded), 0u);
+    }
+  }
+}
+
+// Between the rims, then between the walls: opposite ones take up to twice the way, a rim's push turns by its depth over its height.
+TEST(SurfaceGrooves, IntoAHoleHardlyNarrowerThanTheFinger) {
+  for (const double play : {-1e-6, -5e-5, -3e-4, -1e-3}) {
+    for (const Vec3& beside : {Vec3(0, 0, 0), Vec3(2e-5, 1e-5, 0), Vec3(2e-4, 1e-4, 0)}) {
+      Hole hole(play);
+      const double depth = beside.x() - play;
+      EXPECT_LT(hole.comeDown(beside, hole.floor + kFinger), 2 + depth / (kFinger - depth)) << play << ' ' << beside.x();
+    }
+  }
+}
+
+// Beside the axis of that narrow hole of a torus, all three slots lost in one query: of the places tried for another contact each took a slot, by joining two that faded, and
 // gave it back when one of them was chosen, so that one push was joined twice. 15 times the finger's way here, 68 on a rocker arm.
 TEST(SurfaceGrooves, WhatFadesIsCountedOnceWhereAllContactsAreLostAtOnce) {
   const auto tight = SmoothMesh::build(torus(0.02, 0.015, 48, 32));
