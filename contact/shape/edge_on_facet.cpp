@@ -61,7 +61,8 @@ EdgePart overLine(const Vec3& p, const Vec3& e, double length, const Vec3& n, co
   range.keep(along, rate);
   range.keep(line_length - along, -rate);
   if (range.isEmpty()) return {};
-  const auto at = [&](double t) -> EdgePart::End { return {t, -reachOf(shape, p + t * e, n)}; };
+  const Vec3 axis = line / line_length, across = (n - n.dot(axis) * axis).normalized();  // exactly, or the solid's end might be what is met
+  const auto at = [&](double t) -> EdgePart::End { return {t, -reachOf(shape, p + t * e, across)}; };
   return {{at(range.from), at(range.to)}, false, true};
 }
 

@@ -152,7 +152,7 @@ class MeshOnSolid {
     }
   }
 
-  // Where the edge and the solid's facet that faces it there part; of other places than faces, also where the two are nearest.
+  // Where the edge and the solid's facet that faces it there part; where they cross, also where the two are nearest.
   void lookAlongEdge(const Edge& edge, const EdgeContact& s) {
     const EdgePart part = partOverFacet(edge.p, edge.e, edge.length, s.n, solid_, scale_.slack());
     for (std::uint32_t end = 0; part.found && end < 2; ++end) {
@@ -161,9 +161,11 @@ class MeshOnSolid {
       if (is_corner && features_.liesAbove(edge.ends[t > 0], s.n, kConeSlack)) continue;  // lookAtCorner's
       offerOnEdge(edge, t, s.n, phi, meshFeatureOf(kMeshEdgeEnds, 2 * edge.name + end));
     }
-    const double along = edge.e.dot(s.p - edge.p);
-    if (!part.is_over_face && along >= -scale_.slack() && along <= edge.length + scale_.slack())
-      offerOnEdge(edge, along, s.n, s.gap - rounding_, meshFeatureOf(kMeshEdges, edge.name));
+    constexpr double kSameGap = 1e-6;  // [m], as in contact_candidates.cpp
+    const double phi_s = s.gap - rounding_, along = edge.e.dot(s.p - edge.p);
+    if (part.found && (part.is_over_face || phi_s > std::min(part.ends[0].phi, part.ends[1].phi) - kSameGap)) return;
+    if (along >= -scale_.slack() && along <= edge.length + scale_.slack())
+      offerOnEdge(edge, along, s.n, phi_s, meshFeatureOf(kMeshEdges, edge.name));
   }
 
   // Overlap counts where the edge's point is in the solid, and the solid's opposite to it behind the two faces of the mesh's edge.

@@ -34,7 +34,6 @@ class Search {
   }
   // Whether the normal of a face that is near `n` is the best of all: what lies on a face is known from four points.
   bool isOnFaceNear(const Vec3& n) {
-    constexpr double kNear = 0.02;  // [rad]
     const Kinks kinks = kinksNear(n, kNear, 0);
     for (int i = 0; i < kinks.normal_count; ++i) offer(kinks.normals[static_cast<std::size_t>(i)]);
     if (kinks.normal_count == 0) return false;
@@ -99,6 +98,7 @@ class Search {
   static constexpr double kRelative = 1e-9;   // of the distance
   static constexpr double kAbsolute = 1e-12;  // of the size
   static constexpr double kLargest = 0.1;     // step of Newton's method [rad]
+  static constexpr double kNear = 0.02;       // kinks to be looked at [rad]
   static constexpr double kWider = 4;         // than the overlap is deep: a disc that proves something
 
   // A disc in A - B about the point below the origin, across the way out [m]: no direction within 90 degrees of its normal has a greater gap than
@@ -167,13 +167,21 @@ class Search {
   }
 
   void snapToFaces() {
-    constexpr double kNear = 1e-4;  // [rad]
-    const Kinks kinks = kinksNear(best_.n, kNear, 0);
+    constexpr double kSnapped = 1e-4;  // [rad]
+    const Kinks kinks = kinksNear(best_.n, kSnapped, 0);
     for (int i = 0; i < kinks.normal_count; ++i) prefer(kinks.normals[static_cast<std::size_t>(i)]);
   }
 
+  // Again where that leads away: of a corner that all but meets a rim the gap hardly changes over most of a quarter turn, to a kink at its end.
   void polish() {
-    constexpr double kNear = 0.02;  // [rad]
+    constexpr int kMostRounds = 4;
+    for (int i = 0; i < kMostRounds; ++i) {
+      const Vec3 n = best_.n;
+      polishAround();
+      if ((best_.n - n).squaredNorm() < kNear * kNear) return;
+    }
+  }
+  void polishAround() {
     const Kinks kinks = kinksNear(best_.n, kNear, kNear);
     for (int i = 0; i < kinks.normal_count; ++i) prefer(kinks.normals[static_cast<std::size_t>(i)]);
     if (best_.gap > 0) offer(directionOf<Vec3>(a_.support(-best_.n) - b_.support(best_.n), best_.n).n);  // where two corners are nearest
@@ -266,8 +274,24 @@ class Search {
     const Vec2 gt(F.col(0).dot(g), F.col(1).dot(g));
     const double m00 = F.col(0).dot(H * F.col(0)) + gap, m01 = F.col(0).dot(H * F.col(1)), m11 = F.col(1).dot(H * F.col(1)) + gap;
     const double det = m00 * m11 - m01 * m01;
-    if (!(det > 0 && m00 > 0)) return kLargest * F.leftCols<2>() * directionOf<Vec2>(gt, Vec2::Zero()).n;
-    return (m11 * gt.x() - m01 * gt.y()) / det * F.col(0) + (m00 * gt.y() - m01 * gt.x()) / det * F.col(1);
+    const Vec2 step =
+        det > 0 && m00 > 0 ? Vec2(m11 * gt.x() - m01 * gt.y(), m00 * gt.y() - m01 * gt.x()) / det : stepUphill(m00, m01, m11, gt);
+    return F.leftCols<2>() * step;
+  }
+
+  // Newton's step along the directions in which the gap is concave, as far uphill as one goes at most along the others: along the first it may
+  // be narrow as a rim's bend, and nearly flat along the other.
+  static Vec2 stepUphill(double m00, double m01, double m11, const Vec2& g) {
+    const double mean = 0.5 * (m00 + m11), half = 0.5 * (m00 - m11), root = std::sqrt(half * half + m01 * m01);
+    const Vec2 v = directionOf<Vec2>(half > 0 ? Vec2(half + root, m01) : Vec2(m01, root - half), Vec2::UnitX()).n;
+    Vec2 step = Vec2::Zero();
+    const auto add = [&](const Vec2& axis, double curvature) {
+      const double rise = axis.dot(g);
+      if (rise != 0) step += (curvature > 0 ? rise / curvature : kLargest * signOf(rise)) * axis;
+    };
+    add(v, mean + root);
+    add({-v.y(), v.x()}, mean - root);
+    return step;
   }
 
   const PosedSolid& a_;

@@ -16,6 +16,8 @@
 // margins, are thereby no special case.
 // At round rims gap is smooth, and Newton's method ends the search, on the sphere and on the circles across straight edges:
 //   g = a - b, tangential part;  Hessian = -(h_A'' + h_B'') - gap 1;     h'' from bendOf (convex_features.h)
+// Where the gap is concave along one direction only, the step goes uphill along the other: of a corner that all but meets a rim the way to the
+// kink with the greatest gap is as narrow as the rim bends, and up to a quarter turn long.
 //
 // The search begins from the nearest points, or from the direction of the last tick. Of solids that overlap the step also leaves three points of
 // A - B in a plane n1 . x = gap: with r how far the foot of the origin is within that triangle, every direction within 90 degrees of n1 that is

@@ -155,6 +155,73 @@ TEST(Manifolds, HowAFaceIsCutMakesNoDifference) {
   }
 }
 
+// A box and its mesh, as what is touched.
+std::vector<Shape> boxAndItsMesh(const Vec3& half) { return {Box{half}, Mesh{SmoothMesh::build(contact::box(half))}}; }
+
+TEST(Manifolds, CylinderStandsOnItsRim) {
+  const Cylinder cylinder{0.024, 0.019};
+  for (const Shape& table : boxAndItsMesh({0.04, 0.05, 0.02})) {
+    for (const double turn : {0.0, 0.3, 2.0}) {
+      const PairPoints p = askPair(cylinder, {about(Vec3::UnitZ(), turn), {0.004, -0.01, 0.039 - 1e-6}}, table);
+      ASSERT_EQ(p.count, 4);
+      for (int k = 0; k < p.count; ++k) {
+        const Vec3& q = p.points[static_cast<std::size_t>(k)].p_W;
+        EXPECT_NEAR((q.head<2>() - Vec2(0.004, -0.01)).norm(), cylinder.radius, 1e-15);
+        EXPECT_NEAR(p.points[static_cast<std::size_t>(k)].phi, -1e-6, 1e-15);
+      }
+      EXPECT_GT(Outline(p, {0.004, -0.01}).area, 0.95 * 2 * cylinder.radius * cylinder.radius);  // of the square in the rim
+      EXPECT_TRUE(Outline(p, {0.004, -0.01}).holds);
+    }
+  }
+}
+
+// Expects two points, at `from` and `to`, with the gap and normal given.
+void expectLine(const PairPoints& p, Vec3 from, Vec3 to, double gap, const Vec3& n, const char* what) {
+  constexpr double kTurned = 2e-7;     // [rad]: beside a wall's line the gap is flat, and its maximum is known to the root of round-off
+  constexpr double kAlike = 1e-8;      // [m]: a point on a wall of 12 mm radius, turned by that
+  constexpr double kRoundOff = 1e-12;  // [m]
+  ASSERT_EQ(p.count, 2) << what;
+  if ((p.points[0].p_W - from).norm() > (p.points[0].p_W - to).norm()) std::swap(from, to);
+  EXPECT_LE((p.points[0].p_W - from).norm(), kAlike) << what;
+  EXPECT_LE((p.points[1].p_W - to).norm(), kAlike) << what;
+  for (const PairPoint& c : {p.points[0], p.points[1]}) {
+    EXPECT_NEAR(c.phi, gap, kRoundOff) << what;
+    EXPECT_LE((c.n_W - n).norm(), kTurned) << what;
+  }
+}
+
+// On the top, then beyond its rim, where it is carried between an end of its own and the rim.
+TEST(Manifolds, CylinderLiesOnTheEndsOfItsLine) {
+  const Cylinder cylinder{0.012, 0.019};
+  for (const Shape& table : boxAndItsMesh({0.04, 0.05, 0.02})) {
+    for (const double gap : {1e-5, -1e-6}) {
+      const Quat lying = about(Vec3::UnitY(), 0.5 * tests::kPi);
+      const double z = 0.02 + 0.5 * gap;
+      for (const double x : {0.003, 0.03}) {
+        const PairPoints p = askPair(cylinder, {lying, {x, -0.01, 0.032 + gap}}, table);
+        expectLine(p, {x - 0.019, -0.01, z}, {std::min(x + 0.019, 0.04), -0.01, z}, gap, Vec3::UnitZ(), "on top");
+      }
+    }
+  }
+}
+
+// Along an edge, between the two faces' normals: what rolls over the rim of a table keeps its heading.
+TEST(Manifolds, RoundBodiesAlongAnEdgeTouchItOverAllTheirLength) {
+  const Vec3 half(0.04, 0.05, 0.02), n = Vec3(1, 0, 1).normalized();
+  const Quat along_y = about(Vec3::UnitX(), 0.5 * tests::kPi);
+  for (const Shape& table : boxAndItsMesh(half)) {
+    for (const double gap : {1e-5, -1e-6}) {
+      for (const double y : {0.003, 0.04}) {
+        const Vec3 edge(half.x(), 0, half.z()), from = edge + 0.5 * gap * n + (y - 0.019) * Vec3::UnitY();
+        const Vec3 to = edge + 0.5 * gap * n + std::min(y + 0.019, half.y()) * Vec3::UnitY();
+        const Pose X{along_y, edge + (0.012 + gap) * n + y * Vec3::UnitY()};
+        expectLine(askPair(Capsule{0.012, 0.019}, X, table), from, to, gap, n, "capsule");
+        expectLine(askPair(Cylinder{0.012, 0.019}, X, table), from, to, gap, n, "cylinder");
+      }
+    }
+  }
+}
+
 // 20 mm/s and 0.2 rad/s at 1 kHz.
 TEST(Manifolds, KeepTheirNamesWhileTheBodySlidesAndTurns) {
   constexpr int kTicks = 500;

@@ -83,6 +83,25 @@ TEST(PairsJudged, NoDirectionPartsThemBetterThanTheirNormal) {
   });
 }
 
+// A corner of a box within 1e-9 m of a cylinder's rim, each in the other's cone of normals: over most of a quarter turn of the direction the gap
+// hardly changes, and the search stopped on the way: 5e-9 of the size.
+TEST(PairsJudged, ACornerThatAllButMeetsARimIsPartedAsFarAsCanBe) {
+  RandomNumbers random(11);
+  const Box box{{0.031, 0.017, 0.023}};
+  const Cylinder cylinder{0.024, 0.019};
+  for (int i = 0; i < tests::draws(60); ++i) {
+    const double rise = random.uniform(0.1, 1.4), around_axis = random.uniform(-3, 3);
+    const Vec3 rim(std::cos(around_axis), std::sin(around_axis), 0);
+    const Vec3 n = std::cos(rise) * rim + std::sin(rise) * Vec3::UnitZ();
+    const Vec3 inwards = Vec3(random.uniform(0.2, 1), random.uniform(0.2, 1), random.uniform(0.2, 1)).normalized();
+    const Quat q = about(n, random.uniform(-3, 3)) * Quat::FromTwoVectors(inwards, n);
+    const Vec3 meets = cylinder.radius * rim + cylinder.half_length * Vec3::UnitZ() + 1e-9 * (0.5 * direction(random) - n);
+    const Pose X_BA{q, meets + q * box.half};
+    const Vec3 mine = normalOf(box, X_BA, cylinder, Vec3::Zero());
+    EXPECT_GE(convexGapAlong(box, X_BA, cylinder, Pose{}, mine), convexGap(box, X_BA, cylinder, Pose{}).gap - kOfRoundRim * kSize) << i;
+  }
+}
+
 // Whatever direction the search begins with: the one of before a small step, another's, or one that was never right.
 TEST(PairsJudged, TheLastNormalDoesNotChangeTheAnswer) {
   RandomNumbers random(8);
