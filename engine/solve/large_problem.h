@@ -11,7 +11,8 @@ namespace pincer::engine {
 // What is enough: a hundredth of what gravity adds in a tick of 1 ms, 0.1 um per tick [m/s].
 constexpr double kLargeSpeed = 1e-4;
 
-// Solves `problem`, weighed, to the residual `enough` or as far as the sweeps go, with warm start r, its velocities u, scratch.y = A^T r and residual `start`; r and u on return are those of the last sweep.
+// Solves `problem`, weighed, to the residual `enough` or as far as the sweeps go, with warm start r, its velocities u, scratch.y = A^T r and
+// residual `start`; r and u on return are those of the last sweep.
 SolveResult solveLargeProblem(const ContactProblem& problem, double enough, double start, SolverScratch& scratch, double* r, double* u);
 
 }  // namespace pincer::engine

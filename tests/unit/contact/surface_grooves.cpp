@@ -289,8 +289,9 @@ TEST(SurfaceGrooves, IntoAHoleHardlyNarrowerThanTheFinger) {
   }
 }
 
-// Beside the axis of that narrow hole of a torus, all three slots lost in one query: of the places tried for another contact each took a slot, by joining two that faded, and
-// gave it back when one of them was chosen, so that one push was joined twice. 15 times the finger's way here, 68 on a rocker arm.
+// Beside the axis of that narrow hole of a torus, all three slots lost in one query: of the places tried for another contact each took a slot, by
+// joining two that faded, and gave it back when one of them was chosen, so that one push was joined twice. 15 times the finger's way here, 68 on a
+// rocker arm.
 TEST(SurfaceGrooves, WhatFadesIsCountedOnceWhereAllContactsAreLostAtOnce) {
   const auto tight = SmoothMesh::build(torus(0.02, 0.015, 48, 32));
   const Vec3 step(1.1e-5, -1.3e-6, -3.4e-5);
