@@ -1,6 +1,7 @@
 #include "engine/world/push_out.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "engine/world/contact_rows.h"
 
@@ -17,9 +18,11 @@ bool isFree(const WorldModel& model, const Side& side) {
 
 double deepGap(const WorldModel& model) { return -kDeepSpeed * model.options.h / kNormalCorrection; }
 
-double thinner(const WorldModel& model, const Contact& c) {
-  return std::min(model.bodies[c.a.index].inner_radius, model.bodies[c.b.index].inner_radius);
+// Points are no body: they are as thick as can be.
+double thicknessOf(const WorldModel& model, const Side& side) {
+  return side.kind == SideKind::kBody ? model.bodies[side.index].inner_radius : std::numeric_limits<double>::infinity();
 }
+double thinner(const WorldModel& model, const Contact& c) { return std::min(thicknessOf(model, c.a), thicknessOf(model, c.b)); }
 
 // At the start of this part of the tick: in its predicted middle what lands seems to overlap, and doesn't. Deeper than one of them is thick, that
 // counts all the same: a sheet that slaps down must not come through.

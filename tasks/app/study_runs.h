@@ -9,7 +9,7 @@
 namespace pincer::tasks {
 
 struct StudyRuns {
-  int experiments = 5;    // of each study; each has other participants
+  int experiments = 20;   // of each study; each has other participants
   int participants = 12;  // in each
   std::uint64_t seed = 1;
   int threads = 2;

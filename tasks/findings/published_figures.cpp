@@ -184,7 +184,7 @@ std::string verdictOn(const PublishedFigure& f) {
   if (2 * f.unsettled > f.experiments) return "no threshold";
   const int missed = f.experiments - f.within;
   if (f.low < f.high ? missed == 0 : wilsonInterval(missed, f.experiments).first <= kChance) return "follows";
-  return fmt::format("no: {:.2g} times", f.ratio());
+  return fmt::format("no: {:.3g} times", f.ratio());
 }
 
 std::string verdictOn(const PublishedOrder& o) {

@@ -77,6 +77,36 @@ TEST(GraspStep, ALockedFingerMayPressOnWhatNeverMoves) {
   EXPECT_EQ(state.world.points[0].p_W, pressed);
 }
 
+// A box that begins 5 mm deep in the floor rises towards the third finger, 20 um above it; a pebble of radius `pebble` lies far away.
+Pose pushedOutBesideAFinger(double pebble) {
+  engine::WorldBuilder builder(engine::WorldOptions{});
+  builder.addBody({"box", contact::Box{Vec3(0.02, 0.02, 0.02)}, true, 0.1, {}});
+  builder.addBody({"floor", contact::HalfSpace{}, false, 0, {}});
+  builder.addBody({"pebble", contact::Sphere{pebble}, false, 0, {}});
+  std::vector<FingerModel> fingers;
+  for (const char* name : {"thumb", "index", "middle"}) fingers.push_back(tests::softFinger(name, 1000, 1));
+  const GraspModel model = buildGrasp(builder, fingers);
+  const Vec3 p_WF(0, 0, 0.035 + fingers[2].radius + 2e-5);
+  engine::BodyStart box = tests::startAt({0, 0, 0.015});
+  box.v_W = Vec3(0, 0, 0.05);
+  GraspState state =
+      makeState(model, {box, tests::startAt(Vec3::Zero()), tests::startAt({1, 0, 1})}, {Vec3(-0.5, 0, 0.1), Vec3(-0.6, 0, 0.1), p_WF});
+  GraspScratch scratch(model);
+  std::vector<FingerInput> inputs(3);
+  for (std::size_t i = 0; i < 3; ++i) inputs[i].p_WF = state.world.points[i].p_W;
+  step(model, state, scratch, inputs);
+  EXPECT_TRUE(scratch.fingers[2].touching);
+  return state.world.bodies[0].X_WI;
+}
+
+// Where a body was pushed out of an overlap, the number of a finger that touched it was taken for a body's, for its thickness: what happened
+// depended on a body elsewhere, or on what lay behind the last one.
+TEST(GraspStep, APebbleElsewhereDoesNotChangeHowABodyIsPushedOutBesideAFinger) {
+  const Pose thin = pushedOutBesideAFinger(1e-6), thick = pushedOutBesideAFinger(0.05);
+  EXPECT_EQ(thin.p, thick.p);
+  EXPECT_EQ(thin.q.coeffs(), thick.q.coeffs());
+}
+
 TEST(GraspStep, CouplingSpringCarriesWhatTheUserFeels) {
   GraspWorld w = pinchedBall(0.075, 0.9);
   GraspScratch scratch(w.model);
