@@ -207,13 +207,17 @@ TEST(BenchScenes, ACapsuleBetweenPadsDoesntCreep) {
     if (!scene.name.starts_with("more/capsule")) continue;
     const auto engine = pincerContestants().front().make(scene.world, {.h = 1e-3});
     const BenchJudge judge = scene.judge();
-    for (int k = 1; k <= 4000; ++k) {
+    std::array<double, 2> way{};  // from 0.5 s to 15 and 20 s [um]
+    for (int k = 1; k <= 20000; ++k) {
       engine->step();
       judge.look(1e-3 * k, *engine);
+      if (k < 15000 || k % 5000 != 0) continue;
+      const BenchVerdict verdict = judge.verdict(*engine);
+      EXPECT_EQ(verdict.failure, "");
+      way[k / 5000 - 3] = verdict.error * 3.5;  // of the scene's 4 s
     }
-    const BenchVerdict verdict = judge.verdict(*engine);
-    EXPECT_EQ(verdict.failure, "");
-    EXPECT_LT(verdict.error * 3.5, 1e-9) << scene.name;  // [um]: the round-off of 3500 ticks
+    EXPECT_LT(way[1], 1e-7) << scene.name;  // a tenth of what is promised for a minute: within the solver's tolerance it settles once
+    EXPECT_LT(std::abs(way[1] - way[0]), 1e-11) << scene.name;  // round-off of 5000 ticks
   }
 }
 
