@@ -71,23 +71,12 @@ TEST(Budget, SpinningNeedlesGainNoEnergyWhereItRunsOut) {
   for (int n = 0; n < 40; ++n) {
     WorldOptions options;
     options.solver.budget = 1e-4;
-    WorldBuilder builder{options};
-    builder.addBody({"floor", contact::HalfSpace{}, false, 0, {3, 3}});
-    std::vector<BodyStart> starts{startAt(Vec3::Zero())};
-    for (int k = 0; k < 2; ++k) {
-      builder.addBody({"needle", contact::Box{Vec3(0.1, 5e-4 * (1 + 0.1 * n), 5e-4)}, true, 0.02, {3, 3}});
-      const Quat q = quatFromRotationVector(Vec3(0.1 * n, 1 + 0.3 * n + k, 0.2 * n));
-      const Vec3 spin = k == 0 ? Vec3(std::sin(n), std::cos(n), 0.3) : Vec3(std::cos(n), std::sin(n), 0.3);
-      starts.push_back({{q, Vec3(0, 0, 0.11 + 0.21 * k)}, Vec3(0, 0, -1), 200 * spin});
-    }
-    const WorldModel model = builder.build();
-    WorldState state = makeState(model, starts, {});
-    WorldScratch scratch(model);
-    const auto energy = [&] { return kineticEnergy(model, state) + potentialEnergy(model, state); };
-    const double most = energy() * (1 + 1e-5);  // as `pincer stress` asks
+    tests::EngineWorld w = tests::spinningNeedles(n, 5e-4, 3, 200, options);
+    WorldScratch scratch(w.model);
+    const double most = w.energy() * (1 + 1e-5);  // as `pincer stress` asks
     for (int i = 0; i < 200; ++i) {
-      spent += (step(model, state, scratch).status & kBudgetSpent) != 0;
-      ASSERT_LE(energy(), most) << n << ", tick " << i;
+      spent += (step(w.model, w.state, scratch).status & kBudgetSpent) != 0;
+      ASSERT_LE(w.energy(), most) << n << ", tick " << i;
     }
   }
   EXPECT_GT(spent, 1000);

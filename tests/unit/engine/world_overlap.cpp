@@ -127,23 +127,12 @@ TEST(Overlap, BallThatAJumpingFingerPushesStaysOnTheFloor) {
 // Turned out of an overlap against its spin, a needle had more energy than before: in these worlds 5 to 70 % more than they began with.
 TEST(Overlap, ANeedleThatSpinsGainsNoEnergyWhereItIsPushedOut) {
   for (const int n : {1, 4, 17}) {
-    WorldBuilder builder{WorldOptions{}};
-    builder.addBody({"floor", contact::HalfSpace{}, false, 0, {0, 0}});
-    std::vector<BodyStart> starts{startAt(Vec3::Zero())};
-    for (int k = 0; k < 2; ++k) {
-      builder.addBody({"needle", contact::Box{Vec3(0.1, 1e-4 * (1 + 0.1 * n), 1e-4)}, true, 0.02, {0, 0}});
-      const Quat q = quatFromRotationVector(Vec3(0.1 * n, 1 + 0.3 * n + k, 0.2 * n));
-      const Vec3 spin = k == 0 ? Vec3(std::sin(n), std::cos(n), 0.3) : Vec3(std::cos(n), std::sin(n), 0.3);
-      starts.push_back({{q, Vec3(0, 0, 0.11 + 0.21 * k)}, Vec3(0, 0, -1), 50 * spin});
-    }
-    const WorldModel model = builder.build();
-    WorldState state = makeState(model, starts, {});
-    WorldScratch scratch(model);
-    const auto energy = [&] { return kineticEnergy(model, state) + potentialEnergy(model, state); };
-    const double most = energy() * (1 + 1e-5);  // as `pincer stress` asks
+    tests::EngineWorld w = tests::spinningNeedles(n, 1e-4, 0, 50, WorldOptions{});
+    WorldScratch scratch(w.model);
+    const double most = w.energy() * (1 + 1e-5);  // as `pincer stress` asks
     for (int i = 0; i < 200; ++i) {
-      step(model, state, scratch);
-      ASSERT_LE(energy(), most) << n << ", tick " << i;
+      step(w.model, w.state, scratch);
+      ASSERT_LE(w.energy(), most) << n << ", tick " << i;
     }
   }
 }
