@@ -276,4 +276,17 @@ void solveContacts(const ContactProblem& problem, const SolverOptions& options, 
   result = solveByForm(problem, options, scratch, VectorMap(r, problem.rowCount()), VectorMap(u, problem.rowCount()));
 }
 
+void stopBySweeps(const ContactProblem& problem, int sweeps, SolverScratch& scratch, VectorMap r, VectorMap u) {
+  weighContacts(problem, scratch);
+  r.setZero();
+  std::fill(scratch.y.begin(), scratch.y.begin() + kMoverFreedoms * problem.movers, 0.0);
+  GaussSeidel method({problem.first_row, problem.mu, problem.sides, problem.q.data(), scratch.y.data(), problem.movers}, scratch, r.data());
+  for (int n = 0; n < sweeps; ++n) {
+    method.sweep(n % 2 == 1);
+    spend(kPerContactSwept * problem.contactCount() + kPerSlideStep * method.slideSteps(), scratch);
+  }
+  weighedResidual(problem, r.data(), scratch, u.data());
+  if (removeAddedEnergy(problem, r, u)) weighedResidual(problem, r.data(), scratch, u.data());
+}
+
 }  // namespace pincer::engine

@@ -112,4 +112,8 @@ inline SolveResult solveContacts(const ContactProblem& problem, const SolverOpti
   return result;
 }
 
+// Impulses that stop what closes, by `sweeps` of Gauss-Seidel from none at all. For a problem without an answer: the iterate with the least residual may
+// there be no impulse at all. Each sweep takes energy away, so that this is safe wherever it ends; what it cost is charged to the budget. `u` as above.
+void stopBySweeps(const ContactProblem& problem, int sweeps, SolverScratch& scratch, VectorMap r, VectorMap u);
+
 }  // namespace pincer::engine

@@ -36,8 +36,10 @@ void collidePair(const WorldModel& model, const WorldState& state, const BodyPai
                  contact::PairPoints& found, WorldScratch& scratch) {
   const BodyModel &a = model.bodies[pair.a], &b = model.bodies[pair.b];
   const BodyScratch &sa = scratch.bodies[pair.a], &sb = scratch.bodies[pair.b];
-  // What closes within the tick must be seen at its middle.
-  const double margin = model.options.contact_margin + h * (sa.start.v_W - sb.start.v_W).norm();
+  // What closes within the tick must be seen at its middle: the far end of a sheet that slaps down as well.
+  const double speed = (sa.start.v_W - sb.start.v_W).norm();
+  const double turning = sa.start.w_W.norm() * a.corner_reach + sb.start.w_W.norm() * b.corner_reach;
+  const double margin = model.options.contact_margin + h * std::max(speed, 0.5 * (speed + turning)) + sa.flung + sb.flung;
   if (!boundsTouch(a, b, sa, sb, margin)) return;
   noteFastPair(model, pair.a, pair.b, scratch);
   chargeQuery(a, b, scratch);

@@ -249,26 +249,16 @@ std::int64_t reserveFor(const Island& island) { return kStoppingSweeps * kPerCon
 
 // Contacts that contradict each other have no answer: what overlaps in all directions can't be pushed apart. Then they only stop what closes:
 // biases that push are left out, and sweeps from no impulse at all each take energy away. Support is better than falling through the floor.
-void stopOnly(const ContactProblem& problem, const SolverOptions& options, Island& island, SolverScratch& memory, WorldScratch& scratch) {
-  IslandScratch& s = scratch.islands;
-  double *const q = island.q, *const r = island.r;
+void stopOnly(const ContactProblem& problem, Island& island, SolverScratch& memory, WorldScratch& scratch) {
+  double* const q = island.q;
   for (int n = 0; n < island.contacts; ++n) {
-    const Contact& c = scratch.contacts[s.order[island.place + n]];
+    const Contact& c = scratch.contacts[scratch.islands.order[island.place + n]];
     const int first = problem.firstRow(n);
     for (int k = 0; k < problem.rows(n); ++k) {
       if (k != kNormalRow || c.bias_C[k] < 0) q[first + k] -= (k >= kTorsionRow ? radiusOf(c, k) : 1) * c.bias_C[k];
     }
   }
-  std::fill(r, r + island.rows, 0.0);
-  SolverOptions sweeps = options;
-  sweeps.newton_iterations = sweeps.proximal_rounds = sweeps.interior_point_iterations = sweeps.shift_updates = 0;
-  sweeps.gauss_seidel_sweeps = sweeps.large_sweeps = kStoppingSweeps;
-  const SolveResult lost = island.result;
-  const std::int64_t left = memory.operations_left;
-  memory.operations_left = kNoLimit;
-  solveContacts(problem, sweeps, memory, VectorMap(r, island.rows), VectorMap(island.u, island.rows));
-  memory.operations_left = left - (kNoLimit - memory.operations_left);
-  island.result = lost;
+  stopBySweeps(problem, kStoppingSweeps, memory, VectorMap(island.r, island.rows), VectorMap(island.u, island.rows));
 }
 
 // What is tried before what contacts ask for is fitted to what was found.
@@ -324,7 +314,7 @@ void solveIsland(const WorldModel& model, int k, int thread, WorldScratch& scrat
   } else {
     solveContacts(problem, model.options.solver, memory, island.r, island.u, island.result);
   }
-  if (isLost(island.result, is_heap)) stopOnly(problem, model.options.solver, island, memory, scratch);
+  if (isLost(island.result, is_heap)) stopOnly(problem, island, memory, scratch);
   island.operations = is_limited ? share - reserve - memory.operations_left : 0;
 }
 

@@ -24,15 +24,24 @@ double thicknessOf(const WorldModel& model, const Side& side) {
 }
 double thinner(const WorldModel& model, const Contact& c) { return std::min(thicknessOf(model, c.a), thicknessOf(model, c.b)); }
 
-// At the start of this part of the tick: in its predicted middle what lands seems to overlap, and doesn't. Deeper than one of them is thick, that
-// counts all the same: a sheet that slaps down must not come through.
-double gapOf(const WorldModel& model, const WorldScratch& scratch, const Contact& c) {
-  return -c.phi > thinner(model, c) ? c.phi : c.phi - 0.5 * scratch.h * c.v_start_C[kNormalRow];
+bool isDeep(const WorldModel& model, const Contact& c, double gap) { return gap < deepGap(model) && isPushedOut(model, c); }
+
+// Where the point of a body that touches, at an arm in the middle of this part of the tick, is at its end.
+Vec3 pointAfter(const WorldState& state, const WorldScratch& scratch, const Side& side, const Vec3& arm_W) {
+  const Pose &end = state.bodies[side.index].X_WI, &mid = scratch.bodies[side.index].X_WI_mid;
+  return end.p + end.q * (mid.q.conjugate() * arm_W);
 }
 
-bool isDeep(const WorldModel& model, const WorldScratch& scratch, const Contact& c) {
-  return isPushedOut(model, c) && gapOf(model, scratch, c) < deepGap(model);
+// Along the normal of the middle, between the two points that touch there: in the predicted middle what lands seems to overlap, and doesn't.
+double gapAfter(const WorldState& state, const WorldScratch& scratch, const Contact& c) {
+  if (c.a.kind != SideKind::kBody || c.b.kind != SideKind::kBody) return c.phi;
+  const Vec3 half_W = 0.5 * c.phi * c.n_W();
+  return c.n_W().dot(pointAfter(state, scratch, c.a, c.arm_a_W + half_W) - pointAfter(state, scratch, c.b, c.arm_b_W - half_W));
 }
+
+// Nothing needs the biases any more: two of them keep what is found here.
+double& gapOf(Contact& c) { return c.bias_C[0]; }
+double& pushOf(Contact& c) { return c.bias_C[kNormalRow]; }
 
 // The contact's normal row on one of its bodies, and that body's mobility.
 struct PushSide {
@@ -64,20 +73,20 @@ void markBodies(const Contact& c, WorldScratch& scratch) {
   }
 }
 
-double wantedWay(const WorldModel& model, const WorldScratch& scratch, const Contact& c) {
-  const double phi = gapOf(model, scratch, c);
-  if (!isDeep(model, scratch, c)) return -std::max(phi - deepGap(model), 0.0);
+double wantedWay(const WorldModel& model, Contact& c) {
+  const double phi = gapOf(c);
+  if (!isDeep(model, c, phi)) return -std::max(phi - deepGap(model), 0.0);
   const double largest = kLargestCorrection * model.options.h * std::max(1.0, -phi / thinner(model, c));
   return std::min(-kNormalCorrection * phi, largest);
 }
 
-// lambda is kept in c.bias_C, which nothing needs any more. Whether it changed.
+// Whether it pushes otherwise than before.
 bool relax(const WorldModel& model, WorldScratch& scratch, Contact& c) {
   const PushSide a(model, scratch, c.a, c.arm_a_W, c.n_W()), b(model, scratch, c.b, c.arm_b_W, -c.n_W());
   const double mobility = a.mobility() + b.mobility();
   if (!(mobility > 0)) return false;
-  const double want = wantedWay(model, scratch, c);
-  double& lambda = c.bias_C[kNormalRow];
+  const double want = wantedWay(model, c);
+  double& lambda = pushOf(c);
   const double before = lambda;
   lambda = std::max(0.0, lambda + (want - a.way() - b.way()) / mobility);
   if (lambda == before) return false;
@@ -109,9 +118,8 @@ bool isPushedOut(const WorldModel& model, const Contact& c) {
 }
 
 void pushOut(const WorldModel& model, WorldState& state, WorldScratch& scratch) {
-  if (scratch.h == 0 ||
-      std::none_of(scratch.contacts.begin(), scratch.contacts.end(), [&](const Contact& c) { return isDeep(model, scratch, c); }))
-    return;
+  const auto staysDeep = [&](const Contact& c) { return isDeep(model, c, c.phi) && isDeep(model, c, gapAfter(state, scratch, c)); };
+  if (std::none_of(scratch.contacts.begin(), scratch.contacts.end(), staysDeep)) return;
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
     scratch.bodies[i].push = {Vec3::Zero(), Vec3::Zero()};
     if (model.bodies[i].dynamic)
@@ -119,8 +127,9 @@ void pushOut(const WorldModel& model, WorldState& state, WorldScratch& scratch) 
   }
   std::fill(scratch.struck.begin(), scratch.struck.end(), false);
   for (Contact& c : scratch.contacts) {
-    c.bias_C[kNormalRow] = 0;
-    if (isDeep(model, scratch, c)) markBodies(c, scratch);
+    gapOf(c) = gapAfter(state, scratch, c);
+    pushOf(c) = 0;
+    if (isDeep(model, c, gapOf(c))) markBodies(c, scratch);
   }
   // What stands comes last: between it and something heavier a light body must not end deeper in it than it was.
   for (int sweep = 0; sweep < kPushSweeps; ++sweep) {

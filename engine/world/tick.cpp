@@ -133,9 +133,12 @@ class Tick {
   // To the end of this part, or as far as what touches doesn't turn too far, or to the next impact and through it.
   void passTime() {
     const double rest = left_ - stop_;
+    for (BodyScratch& body : scratch_.bodies) body.flung = 0;
     double h = rest < 2.001 * part_ || isSpent() ? rest : 2 * part_;  // leaves no crumb of round-off
     attempt(h);
-    for (; !isSpent() && somethingTurnsFar(h) && h > model_.options.h / kMostTurningParts; attempt(h)) h *= 0.5;
+    turns_far_ = somethingTurnsFar(h);
+    for (; turns_far_ && !isSpent() && h > model_.options.h / kMostTurningParts; turns_far_ = somethingTurnsFar(h)) attempt(h *= 0.5);
+    if (!isSpent() && flingsCorners(h)) attempt(h);
     part_ = h;
     if (mayHit()) notePushedPairs(model_, state_, scratch_);
     if (isSpent() && !scratch_.impact_pairs.empty()) attempt(h);  // which holds nothing back any more
@@ -200,12 +203,30 @@ class Tick {
     return false;
   }
 
+  // Contacts may fling a corner of a body further within this part than anything was looked for: those of a sheet between the floor and something
+  // heavy. Then its contacts are looked for so far. Whether there is such a body.
+  bool flingsCorners(double h) {
+    bool flings = false;
+    for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
+      const BodyModel& body = model_.bodies[i];
+      BodyScratch& s = scratch_.bodies[i];
+      if (!s.touched || !body.dynamic || body.corner_reach == 0) continue;
+      const double way = h * body.corner_reach * angularVelocity(body.rotation, s.X_WI_mid.q, s.angular_impulse_W).norm();
+      if (!(way > std::max(model_.options.contact_margin, s.flung))) continue;
+      s.flung = way;
+      flings = true;
+    }
+    return flings;
+  }
+
+  // Where contacts sweep under a body that turns so far, or hits are left out, its answer could bring in energy.
   void conclude() {
     note();
-    const double energy = isSpent() ? energyOf(model_, state_) : 0;
+    const bool is_rough = isSpent() || turns_far_ || impacts_ == kMostImpacts;
+    const double energy = is_rough ? energyOf(model_, state_) : 0;
     advance(model_, state_, scratch_);
     pushOut(model_, state_, scratch_);
-    if (isSpent()) limitEnergy(model_, scratch_, energy, state_);
+    if (is_rough) limitEnergy(model_, scratch_, energy, state_);
     ++report_.parts;
     mark(scratch_, Stage::kAdvance);
   }
@@ -279,11 +300,12 @@ class Tick {
   WorldScratch& scratch_;
   const StepInputs& inputs_;
   ContactSource* source_;
-  double left_;       // of the tick [s]
-  double part_ = 0;   // length of the last part, before a hit cut it [s]
-  double stop_ = 0;   // what is left of the tick at the end of this part [s]
-  int impacts_ = 0;   // in this tick
-  int landings_ = 0;  // of them that don't bounce
+  double left_;             // of the tick [s]
+  double part_ = 0;         // length of the last part, before a hit cut it [s]
+  double stop_ = 0;         // what is left of the tick at the end of this part [s]
+  bool turns_far_ = false;  // something does in this part, and it can't be cut any more
+  int impacts_ = 0;         // in this tick
+  int landings_ = 0;        // of them that don't bounce
   StepReport report_;
 };
 
