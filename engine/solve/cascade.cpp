@@ -21,6 +21,7 @@ constexpr std::int64_t kPerSmallStep = 1000;                          // of thre
 constexpr double kNearSolution = 1e-8;                                // residual from which Newton's method needs a step or two
 constexpr double kShiftedGap = 1e-6;                                  // of a problem with frozen shift, itself an approximation
 constexpr int kSweepsPerRound = 15;                                   // enough to leave the basin in which Newton's method failed
+constexpr int kFewestStops = 4;                                       // sweeps, whatever is left of the budget
 constexpr int kSweepsPerLook = 5;                                     // a look at the residual costs as much as a sweep
 constexpr int kAffordableContacts = 20;                               // beyond, only one attempt from the interior
 constexpr int kCostlyContacts = 80;  // beyond, an interior point costs milliseconds; the next tick begins where this one gives up
@@ -281,7 +282,7 @@ void stopBySweeps(const ContactProblem& problem, int sweeps, SolverScratch& scra
   r.setZero();
   std::fill(scratch.y.begin(), scratch.y.begin() + kMoverFreedoms * problem.movers, 0.0);
   GaussSeidel method({problem.first_row, problem.mu, problem.sides, problem.q.data(), scratch.y.data(), problem.movers}, scratch, r.data());
-  for (int n = 0; n < sweeps; ++n) {
+  for (int n = 0; n < sweeps && (n < kFewestStops || scratch.operations_left >= 0); ++n) {
     method.sweep(n % 2 == 1);
     spend(kPerContactSwept * problem.contactCount() + kPerSlideStep * method.slideSteps(), scratch);
   }

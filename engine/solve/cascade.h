@@ -38,7 +38,7 @@ struct SolverOptions {
 };
 
 // Multiplications in a second, of iterations as they are counted (contact_equations.h); an estimate for the machine of the README, not measured by a command yet.
-constexpr double kOperationsPerSecond = 1e9;
+constexpr double kOperationsPerSecond = 8e8;
 constexpr std::int64_t kNoLimit = std::numeric_limits<std::int64_t>::max() / 2;
 
 enum class SolveMethod : std::uint8_t { kNoContact, kWarmStart, kNewton, kProximalNewton, kInteriorPoint, kGaussSeidel, kNotConverged };
@@ -113,7 +113,7 @@ inline SolveResult solveContacts(const ContactProblem& problem, const SolverOpti
 }
 
 // Impulses that stop what closes, by `sweeps` of Gauss-Seidel from none at all. For a problem without an answer: the iterate with the least residual may
-// there be no impulse at all. Each sweep takes energy away, so that this is safe wherever it ends; what it cost is charged to the budget. `u` as above.
+// there be no impulse at all. They bring no energy in, wherever they end; the budget may end them sooner. `u` as above.
 void stopBySweeps(const ContactProblem& problem, int sweeps, SolverScratch& scratch, VectorMap r, VectorMap u);
 
 }  // namespace pincer::engine

@@ -101,6 +101,13 @@ class TangentProblem {
   double r_n_ = 0, norm_ = 0;
 };
 
+// Where Newton's method leaves the bracket: alpha spans many decades where a direction has hardly any mobility.
+double between(double low, double high, double alpha, double magnitude) {
+  constexpr double kFactor = 64;
+  if (!std::isfinite(high)) return 8 * std::max(alpha, magnitude);
+  return low > 0 ? std::sqrt(low) * std::sqrt(high) : high / kFactor;
+}
+
 // Leaves `problem` at the alpha > 0 for which the impulse is on the cone's surface. f is nearly a line: three or four steps from the first guess. Returns how many.
 template <int D>
 int findSlide(TangentProblem<D>& problem) {
@@ -112,7 +119,7 @@ int findSlide(TangentProblem<D>& problem) {
     const double f = problem.excess(slope);
     (f < 0 ? low : high) = alpha;
     double next = alpha - f / slope;
-    if (!(next > low && next < high)) next = std::isfinite(high) ? 0.5 * (low + high) : 8 * std::max(alpha, problem.magnitude());
+    if (!(next > low && next < high)) next = between(low, high, alpha, problem.magnitude());
     const bool is_last = std::abs(next - alpha) <= kRootRoundOff * alpha;
     alpha = next;
     if (is_last) {

@@ -248,7 +248,7 @@ namespace {
 std::int64_t reserveFor(const Island& island) { return kStoppingSweeps * kPerContactSwept * island.contacts; }
 
 // Contacts that contradict each other have no answer: what overlaps in all directions can't be pushed apart. Then they only stop what closes:
-// biases that push are left out, and sweeps from no impulse at all each take energy away. Support is better than falling through the floor.
+// biases that push are left out, and sweeps begin with no impulse at all. Support is better than falling through the floor.
 void stopOnly(const ContactProblem& problem, Island& island, SolverScratch& memory, WorldScratch& scratch) {
   double* const q = island.q;
   for (int n = 0; n < island.contacts; ++n) {
@@ -314,8 +314,14 @@ void solveIsland(const WorldModel& model, int k, int thread, WorldScratch& scrat
   } else {
     solveContacts(problem, model.options.solver, memory, island.r, island.u, island.result);
   }
-  if (isLost(island.result, is_heap)) stopOnly(problem, island, memory, scratch);
-  island.operations = is_limited ? share - reserve - memory.operations_left : 0;
+  std::int64_t spent = share - reserve - memory.operations_left;
+  if (isLost(island.result, is_heap)) {
+    const std::int64_t for_stops = reserve + std::max<std::int64_t>(memory.operations_left, 0);
+    memory.operations_left = for_stops;
+    stopOnly(problem, island, memory, scratch);
+    spent += for_stops - memory.operations_left;
+  }
+  island.operations = is_limited ? spent : 0;
 }
 
 }  // namespace

@@ -102,6 +102,27 @@ INSTANTIATE_TEST_SUITE_P(
         Family{"cluster, mu to 3, torsion", [](RandomScenes& s) { return s.cluster(s.integer(1, 6), s.integer(1, 12), 100, 3, true); }, 200,
                0.99}));
 
+// Wherever stops by sweeps end they have brought no energy in, and have taken some away where something closes.
+TEST_P(RandomProblems, AreStoppedBySweepsThatTakeEnergyAway) {
+  RandomScenes random(19);
+  for (int n = 0; n < 20; ++n) {
+    OwnedContactProblem p = GetParam().draw(random);
+    SolverScratch scratch(static_cast<int>(p.mu.size()), p.movers);
+    Eigen::VectorXd r(p.q.size()), u(p.q.size());
+    bool closes = false;
+    for (std::size_t i = 0; i < p.mu.size(); ++i) closes = closes || p.q[p.first_row[i] + kNormalRow] < 0;
+    for (int sweeps = 1; sweeps <= 16; sweeps *= 2) {
+      stopBySweeps(p.view(), sweeps, scratch, {r.data(), r.size()}, {u.data(), u.size()});
+      expectSound(p, {r, u, {}});
+      const double energy = r.dot(p.q) + 0.5 * r.dot(p.W * r);
+      if (closes)
+        EXPECT_LT(energy, 0) << n << ", " << sweeps;
+      else
+        EXPECT_EQ(energy, 0) << n << ", " << sweeps;
+    }
+  }
+}
+
 // Where the velocities are unique (fingers on bodies of their own, mu small), Newton and Gauss-Seidel find the same.
 TEST(Solver, NewtonAndGaussSeidelAgree) {
   RandomScenes random(14);
