@@ -76,8 +76,9 @@ void markBodies(const Contact& c, WorldScratch& scratch) {
 double wantedWay(const WorldModel& model, Contact& c) {
   const double phi = gapOf(c);
   if (!isDeep(model, c, phi)) return -std::max(phi - deepGap(model), 0.0);
+  const double buried = -phi - thinner(model, c);
   const double largest = kLargestCorrection * model.options.h * std::max(1.0, -phi / thinner(model, c));
-  return std::min(-kNormalCorrection * phi, largest);
+  return std::min(std::max(-kNormalCorrection * phi, buried), largest);
 }
 
 // Whether it pushes otherwise than before.

@@ -1,8 +1,9 @@
 // push_out: bodies that overlap deeply are moved apart, by a way, not by a velocity: what leaves an overlap doesn't fly off.
 //
 //   J_i s >= want_i,   lambda_i >= 0,   s = M^-1 J^T lambda        (one of the first two with equality, per contact)
-//   want_i = min(gamma d_i, v_max h max(1, d_i / e_i))  of contacts deeper than kDeep, d_i the overlap, e_i about half the thinner body's thickness:
-//            what is buried could tip over to the wrong side on its way;   -(phi_i + kDeep)  of the others, which stay as they are
+//   want_i = min(max(gamma d_i, d_i - e_i), v_max h max(1, d_i / e_i))  of contacts deeper than kDeep, d_i the overlap after this part of the tick,
+//            e_i about half the thinner body's thickness: what is buried could tip over to the wrong side on its way
+//            -(phi_i + kDeep)  of the others, which stay as they are
 //
 //   s  ways and turns of the bodies [m, rad];  lambda [kg m];  J normal rows only: friction is for what moves
 //   gamma, v_max  kNormalCorrection, kLargestCorrection (contact_rows.h)

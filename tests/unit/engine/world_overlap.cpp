@@ -137,49 +137,51 @@ TEST(Overlap, ANeedleThatSpinsGainsNoEnergyWhereItIsPushedOut) {
   }
 }
 
-// `pincer stress --only '*inertia'`, seeds 2153, 3672, 7575: in the predicted middle of the tick the edge that lands seemed to be 15 times the sheet's
-// thickness deep, was pushed up for that, and the edge that didn't went down by as much, into the floor.
-TEST(Overlap, ASheetThatLandsOnOneEdgeIsNotPushedIntoTheFloorByTheOther) {
-  WorldBuilder builder{WorldOptions{}};
-  const Material material{3, 3, 0, 0};
-  builder.addBody({"floor", contact::HalfSpace{}, false, 0, material});
-  const Vec3 half(0.02, 0.01, 2e-5);
-  builder.addBody({"sheet", contact::Box{half}, true, 0.01, material});
-  const WorldModel model = builder.build();
-  for (int n = 0; n < 40; ++n) {
-    const double tilt = 2e-3 + 5e-4 * n;  // [rad]
-    const Pose X{quatFromRotationVector(Vec3(0, tilt, 0)), Vec3(0, 0, half.x() * std::sin(tilt) + half.z() + 1e-6)};
-    WorldState state = makeState(model, {startAt(Vec3::Zero()), {X, Vec3(0, 0, -0.5), Vec3::Zero()}}, {});
+// `pincer stress --only '*inertia'`, seeds 2153, 3672, 7575: in the predicted middle of the tick the edge that lands seemed to be 15 times the strip's
+// thickness deep and was pushed up for that, by which the other went down into the floor. These six of 2000 sank by 11 to 23 um.
+TEST(Overlap, AStripThatLandsOnOneEdgeIsNotPushedIntoTheFloorWithTheOther) {
+  for (const int n : {140, 390, 471, 525, 665, 840}) {
+    WorldBuilder builder{WorldOptions{}};
+    const double mu = n % 3;
+    const Material material{mu, mu, 0, 0};
+    builder.addBody({"floor", contact::HalfSpace{}, false, 0, material});
+    builder.addBody({"strip", contact::Box{Vec3(0.012, 0.00013 * (1 + n % 7), 1e-5 * (1 + n % 5))}, true, 0.01, material});
+    const WorldModel model = builder.build();
+    const Pose X{quatFromRotationVector(Vec3(0.3 * n, 0.11 * n, 0.07 * n)), Vec3(0, 0, 0.0125)};
+    const Vec3 w_W = 30 * Vec3(std::sin(n), std::cos(2 * n), std::sin(3 * n));
+    WorldState state = makeState(model, {startAt(Vec3::Zero()), {X, Vec3(0, 0, -0.5), w_W}}, {});
     WorldScratch scratch(model);
-    for (int i = 0; i < 40; ++i) {
+    for (int i = 0; i < 100; ++i) {
       step(model, state, scratch);
-      for (const double x : {-half.x(), half.x()}) {
-        const Vec3 corner = state.bodies[1].X_WI * Vec3(x, 0, 0);
-        ASSERT_GT(corner.z(), -1.5e-5) << n << ", tick " << i;  // a fifth of the landing's error of second order, or kDeepSpeed's 5 um
-      }
+      ASSERT_GT(state.bodies[1].X_WI.p.z(), -1e-5) << n << ", tick " << i;  // as `pincer stress` asks; -5 um is the least of 2000
     }
   }
 }
 
-// `pincer stress --only '*inertia' --seed 5976`: a plate lies on one edge, and something 200 times as heavy drops on it. Its far edge is flung down
-// further in a tick than anything was looked for, and was 3 mm in the floor.
+// `pincer stress --only '*inertia' --seed 5976`: a plate rests on one edge, and the corner of something 200 times as heavy hits it near that. Its far edge
+// is flung down further within the tick than anything was looked for, and was up to 5 mm in the floor, in 21 of these 400 worlds.
 TEST(Overlap, AFarEdgeThatIsFlungDownWithinATickLandsOnTheFloor) {
-  WorldBuilder builder{WorldOptions{}};
-  const Material material{0.2, 0.2, 0, 0};
-  builder.addBody({"floor", contact::HalfSpace{}, false, 0, material});
-  builder.addBody({"plate", contact::Box{Vec3(0.045, 0.03, 2e-4)}, true, 1e-3, material});
-  builder.addBody({"weight", contact::Sphere{0.02}, true, 0.2, material});
-  const WorldModel model = builder.build();
-  for (int n = 0; n < 20; ++n) {
-    const double tilt = 0.02 + 0.005 * n;  // [rad]
-    const Pose X{quatFromRotationVector(Vec3(0, tilt, 0)), Vec3(0, 0, 0.045 * std::sin(tilt) + 2e-4)};
-    const BodyStart weight{{Quat::Identity(), Vec3(0.01, 0, X.p.z() + 0.0206)}, Vec3(0, 0, -2), Vec3::Zero()};
-    WorldState state = makeState(model, {startAt(Vec3::Zero()), {X, Vec3::Zero(), Vec3::Zero()}, weight}, {});
+  for (int n = 0; n < 400; ++n) {
+    WorldBuilder builder{WorldOptions{}};
+    const double mu = 0.16 * (n % 3);
+    const Material material{mu, mu, 0, 0};
+    const Vec3 plate(0.045, 0.03, 2e-4), weight(0.05, 0.05, 0.007);  // half of each
+    builder.addBody({"floor", contact::HalfSpace{}, false, 0, material});
+    builder.addBody({"plate", contact::Box{plate}, true, 1e-3, material});
+    builder.addBody({"weight", contact::Box{weight}, true, 0.2, material});
+    const WorldModel model = builder.build();
+    const double tilt = 0.02 + 5e-4 * n;  // [rad]
+    const Pose on_edge{quatFromRotationVector(Vec3(0, tilt, 0)), Vec3(0, 0, plate.x() * std::sin(tilt) + plate.z())};
+    const double x = 0.02 + 0.002 * (n % 11);  // where the weight hits [m]
+    const Quat q = quatFromRotationVector(Vec3(0, 1 + 0.01 * (n % 20), 0));
+    const Vec3 hit(x, 0, (plate.x() - x) * std::tan(tilt) + 4e-4 + 1e-4 * (n % 17));
+    const BodyStart falling{{q, hit - q * Vec3(weight.x(), 0, -weight.z())}, Vec3(0, 0, -1.6), Vec3::Zero()};
+    WorldState state = makeState(model, {startAt(Vec3::Zero()), {on_edge, Vec3::Zero(), Vec3::Zero()}, falling}, {});
     WorldScratch scratch(model);
-    for (int i = 0; i < 10; ++i) {
+    for (int i = 0; i < 20; ++i) {
       step(model, state, scratch);
-      for (const double x : {-0.045, 0.045})
-        ASSERT_GT((state.bodies[1].X_WI * Vec3(x, 0, 0)).z(), -1e-4) << n << ", tick " << i;  // half its thickness in the floor, at most
+      for (const double end : {-plate.x(), plate.x()})
+        ASSERT_GT((state.bodies[1].X_WI * Vec3(end, 0, 0)).z(), -plate.z()) << n << ", tick " << i;
     }
   }
 }
