@@ -73,12 +73,13 @@ void markBodies(const Contact& c, WorldScratch& scratch) {
   }
 }
 
-double wantedWay(const WorldModel& model, Contact& c) {
+double wantedWay(const WorldModel& model, const WorldScratch& scratch, Contact& c) {
   const double phi = gapOf(c);
   if (!isDeep(model, c, phi)) return -std::max(phi - deepGap(model), 0.0);
+  const double share = scratch.h / model.options.h;  // of the tick
   const double buried = -phi - thinner(model, c);
-  const double largest = kLargestCorrection * model.options.h * std::max(1.0, -phi / thinner(model, c));
-  return std::min(std::max(-kNormalCorrection * phi, buried), largest);
+  const double largest = kLargestCorrection * model.options.h * std::max(share, -phi / thinner(model, c));
+  return std::min(std::max(-kNormalCorrection * share * phi, buried), largest);
 }
 
 // Whether it pushes otherwise than before.
@@ -86,7 +87,7 @@ bool relax(const WorldModel& model, WorldScratch& scratch, Contact& c) {
   const PushSide a(model, scratch, c.a, c.arm_a_W, c.n_W()), b(model, scratch, c.b, c.arm_b_W, -c.n_W());
   const double mobility = a.mobility() + b.mobility();
   if (!(mobility > 0)) return false;
-  const double want = wantedWay(model, c);
+  const double want = wantedWay(model, scratch, c);
   double& lambda = pushOf(c);
   const double before = lambda;
   lambda = std::max(0.0, lambda + (want - a.way() - b.way()) / mobility);
@@ -136,12 +137,11 @@ void pushOut(const WorldModel& model, WorldState& state, WorldScratch& scratch) 
   for (int sweep = 0; sweep < kPushSweeps; ++sweep) {
     for (const bool standing : {false, true}) sweepPushes(model, standing, scratch);
   }
-  const double share = scratch.h / model.options.h;  // of the tick
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
     const Motion& push = scratch.bodies[i].push;
     if (!model.bodies[i].dynamic || (push.v_W.isZero(0) && push.w_W.isZero(0))) continue;
-    const Quat turn = quatFromRotationVector(share * push.w_W);
-    state.bodies[i].X_WI.p += share * push.v_W;
+    const Quat turn = quatFromRotationVector(push.w_W);
+    state.bodies[i].X_WI.p += push.v_W;
     state.bodies[i].X_WI.q = (turn * state.bodies[i].X_WI.q).normalized();
     state.bodies[i].L_W = turn * state.bodies[i].L_W;  // or a needle that spins would gain energy, turned against its spin
   }

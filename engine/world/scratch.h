@@ -87,7 +87,7 @@ struct BodyScratch : MoverScratch {
   Mat3 inverse_inertia_W = Mat3::Zero();        // at the middle; of bodies in joints, and in impacts
   Vec3 angular_impulse_W = Vec3::Zero();        // about the centre of mass [N m s]
   double flung = 0;                             // how far contacts turn a corner of it in this part of the tick, if that is far [m]
-  Motion push;                                  // out of overlap, over the tick, see push_out.h: a way [m] and a turn [rad]
+  Motion push;                                  // out of overlap, in this part of the tick, see push_out.h: a way [m] and a turn [rad]
   Vec3 joint_angular_impulse_W = Vec3::Zero();  // the part of it that joints would give without contact; its linear part is in `free`
 };
 struct PointScratch : MoverScratch {
