@@ -19,6 +19,10 @@ bool boundsTouch(const BodyModel& a, const BodyModel& b, const BodyScratch& sa, 
   return !isOver(a, b, sa, sb, margin) && !isOver(b, a, sb, sa, margin);
 }
 
+double cornerSpeed(const BodyModel& body, const BodyScratch& s) {
+  return body.corner_reach > 0 ? body.corner_reach * s.start.w_W.norm() : 0;
+}
+
 bool isSphere(const BodyModel& body) { return std::holds_alternative<contact::Sphere>(body.shape); }
 
 // Of the first contact that the pair had in the last tick; zero if it had none, or for spheres, which need none.
@@ -38,7 +42,7 @@ void collidePair(const WorldModel& model, const WorldState& state, const BodyPai
   const BodyScratch &sa = scratch.bodies[pair.a], &sb = scratch.bodies[pair.b];
   // What closes within the tick must be seen at its middle: the far end of a sheet that slaps down as well.
   const double speed = (sa.start.v_W - sb.start.v_W).norm();
-  const double turning = sa.start.w_W.norm() * a.corner_reach + sb.start.w_W.norm() * b.corner_reach;
+  const double turning = cornerSpeed(a, sa) + cornerSpeed(b, sb);
   const double margin = model.options.contact_margin + h * std::max(speed, 0.5 * (speed + turning)) + sa.flung + sb.flung;
   if (!boundsTouch(a, b, sa, sb, margin)) return;
   noteFastPair(model, pair.a, pair.b, scratch);

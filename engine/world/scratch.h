@@ -170,6 +170,7 @@ struct WorldScratch {
   std::vector<ImpactPair> pushed_pairs;  // get that fast in this tick (notePushedPairs); capacity as contacts
   std::vector<ImpactPair> impact_pairs;  // hit each other in this part of the tick, or may (impact.h)
   std::vector<JointGroupScratch> joint_groups;
+  bool flings = false;        // some body's `flung` isn't 0
   std::vector<bool> struck;   // per body, in an impact
   WorldState before, coarse;  // the tick's start, and its end in half as many parts
   RestScratch rest;

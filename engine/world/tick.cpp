@@ -133,7 +133,7 @@ class Tick {
   // To the end of this part, or as far as what touches doesn't turn too far, or to the next impact and through it.
   void passTime() {
     const double rest = left_ - stop_;
-    for (BodyScratch& body : scratch_.bodies) body.flung = 0;
+    if (scratch_.flings) forgetFlung();
     double h = rest < 2.001 * part_ || isSpent() ? rest : 2 * part_;  // leaves no crumb of round-off
     attempt(h);
     turns_far_ = somethingTurnsFar(h);
@@ -216,7 +216,13 @@ class Tick {
       s.flung = way;
       flings = true;
     }
+    scratch_.flings = flings;
     return flings;
+  }
+
+  void forgetFlung() {
+    for (BodyScratch& body : scratch_.bodies) body.flung = 0;
+    scratch_.flings = false;
   }
 
   // Where contacts sweep under a body that turns so far, or hits are left out, its answer could bring in energy.
