@@ -108,7 +108,7 @@ std::vector<std::array<std::int32_t, 3>> packed(const Neighbours& neighbours) {
   for (std::size_t t = 0; t < codes.size(); ++t) {
     for (std::size_t i = 0; i < 3; ++i) {
       const auto [triangle, edge] = neighbours[t][i];
-      codes[t][i] = triangle < 0 ? -1 : 4 * triangle + edge;
+      codes[t][i] = triangle < 0 ? -1 : 8 * triangle + edge;
     }
   }
   return codes;
@@ -187,6 +187,11 @@ SurfaceNet::SurfaceNet(TriangleMesh mesh, double crease_angle, bool use_file_nor
     normals_ = std::move(numbers.distinct);
     corner_normals_ = std::move(numbers.numbers);
   }
+  for (std::int32_t t = 0; t < size(); ++t) {
+    for (int i = 0; i < 3; ++i) {
+      if (neighbour(t, i).triangle >= 0 && haveOtherNormals(t, i)) neighbours_[at(t)][at(i)] += 4;
+    }
+  }
   mesh_.normals = {};
   mesh_.triangle_normals = {};
   mesh_.vertices.shrink_to_fit();
@@ -206,9 +211,9 @@ Vec3 SurfaceNet::facetNormal(std::int32_t triangle) const {
   return (vertex(triangle, 1) - p).cross(vertex(triangle, 2) - p).normalized();
 }
 
-bool SurfaceNet::isSharp(std::int32_t triangle, int edge) const {
+// Whether the two sides of an inner edge do.
+bool SurfaceNet::haveOtherNormals(std::int32_t triangle, int edge) const {
   const Neighbour other = neighbour(triangle, edge);
-  if (other.triangle < 0) return true;
   const int next = (edge + 1) % 3, other_next = (other.edge + 1) % 3;
   if (is_flat_)
     return normal(triangle, edge) != normal(other.triangle, other_next) || normal(triangle, next) != normal(other.triangle, other.edge);
@@ -239,6 +244,25 @@ bool SurfaceNet::isSharp(std::int32_t triangle, int edge) const {
   setCentre(p);
   if (variant_ == SurfaceVariant::smooth) setCentreByMedians(p);
   return cell;
+}
+
+// Who comes here goes on to a neighbour: what that is built from is fetched from memory meanwhile, its numbers first, then what they lead to.
+void SurfaceNet::fill(std::int32_t triangle, PatchCache::Place& place) const {
+  const auto& codes = neighbours_[at(triangle)];
+  for (const std::int32_t code : codes) {
+    if (code < 0) continue;
+    const std::size_t other = at(code / 8);
+    __builtin_prefetch(&mesh_.triangles[other]);
+    __builtin_prefetch(&neighbours_[other]);
+    if (!is_flat_) __builtin_prefetch(&corner_normals_[other]);
+  }
+  place = {fingerprint_, triangle, build(triangle)};
+  for (const std::int32_t code : codes) {
+    if (code < 0) continue;
+    const std::size_t other = at(code / 8), across = at((code % 4 + 2) % 3);
+    __builtin_prefetch(&mesh_.vertices[at(mesh_.triangles[other][across])]);
+    if (!is_flat_) __builtin_prefetch(&normals_[at(corner_normals_[other][across])]);
+  }
 }
 
 std::size_t SurfaceNet::memoryBytes() const {

@@ -40,7 +40,7 @@ class SurfaceNet {
   // Valid until the next call with the same cache: copy what is to be kept.
   const SurfaceCell& cell(std::int32_t triangle, PatchCache& cache) const {
     PatchCache::Place& place = cache.placeOf(fingerprint_, triangle);
-    if (place.triangle != triangle || place.net != fingerprint_) place = {fingerprint_, triangle, build(triangle)};
+    if (place.triangle != triangle || place.net != fingerprint_) fill(triangle, place);
     return place.cell;
   }
   SurfaceCell build(std::int32_t triangle) const;
@@ -53,9 +53,12 @@ class SurfaceNet {
   const Vec3& shadingNormal(std::int32_t triangle, int corner) const { return normals_[at(corner_normals_[at(triangle)][at(corner)])]; }
   Neighbour neighbour(std::int32_t triangle, int edge) const {
     const std::int32_t code = neighbours_[at(triangle)][at(edge)];
-    return code < 0 ? Neighbour{} : Neighbour{code / 4, static_cast<std::int8_t>(code % 4)};
+    return code < 0 ? Neighbour{} : Neighbour{code / 8, static_cast<std::int8_t>(code % 4)};
   }
-  bool isSharp(std::int32_t triangle, int edge) const;
+  bool isSharp(std::int32_t triangle, int edge) const {
+    const std::int32_t code = neighbours_[at(triangle)][at(edge)];
+    return code < 0 || (code & 4) != 0;
+  }
 
   // Calls visit(CellCorner) on all triangles around the vertex at `start`, once each, from `start` on clockwise (at a border then on its
   // other side), until visit returns false if it returns bool. Returns whether the vertex is on a border (as far as it came).
@@ -68,7 +71,10 @@ class SurfaceNet {
   SurfaceVariant variant_;
   bool is_flat_;  // facet or force
   TriangleMesh mesh_;
-  std::vector<std::array<std::int32_t, 3>> neighbours_;      // 4 triangle + edge, -1 at a border
+  void fill(std::int32_t triangle, PatchCache::Place& place) const;
+  bool haveOtherNormals(std::int32_t triangle, int edge) const;
+
+  std::vector<std::array<std::int32_t, 3>> neighbours_;      // 8 triangle + 4 if sharp + edge, -1 at a border
   std::vector<Vec3> normals_;                                // those that differ; a fan shares one
   std::vector<std::array<std::int32_t, 3>> corner_normals_;  // places in normals_
   std::uint64_t fingerprint_ = 0;
