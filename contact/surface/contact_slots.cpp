@@ -31,7 +31,7 @@ bool SurfaceTouch::followAlone(SurfaceContacts& found) {
   return true;
 }
 
-// Where the slots' contacts have gone. One that has slid down to where another is followed leaves the place to that one.
+// Where the slots' contacts have gone. One that has slid down to where another is followed leaves the place to that one; none slides to behind the surface.
 void SurfaceTouch::followSlots() {
   ShortList<ShellContact, kMaxSurfaceContacts> slid;
   for (int slot = 0; slot < kMaxSurfaceContacts; ++slot) {
@@ -41,7 +41,7 @@ void SurfaceTouch::followSlots() {
       lose(slot);
       continue;
     }
-    const ShellContact contact = followSlot(slot, footOf(slot));
+    const ShellContact contact = keepSide(keptIn(slot), followSlot(slot, footOf(slot)));
     cost_.iterations += contact.cost.steps;
     cost_.longest_walk = std::max(cost_.longest_walk, contact.cost.steps);
     cost_.crossings += contact.cost.crossings;
@@ -51,11 +51,22 @@ void SurfaceTouch::followSlots() {
       continue;
     }
     lose(slot);
-    if (is_found && !continued) slid.push_back(contact);
+    if (is_found && !continued && (contact.h > 0 || heightBefore(keptIn(slot)) <= 0)) slid.push_back(contact);
   }
   for (const ShellContact& contact : slid) {
     if (!isListed(contact) && hasFreeSlot()) addNew(contact);
   }
+}
+
+// Beside a fin the centre may pass the plane across its edge's mean normal, and counts as behind it, in one query as far as it was in front: the finger was
+// caught between the edge and itself, or lost it.
+ShellContact SurfaceTouch::keepSide(const SurfaceSlot& kept, const ShellContact& contact) const {
+  const bool is_on_face = *std::min_element(contact.foot.b.begin(), contact.foot.b.end()) > 0;
+  if (is_on_face || !contact.converged || !(contact.h < 0 && heightBefore(kept) > 0)) return contact;
+  ShellContact turned = contact;
+  turned.n = -contact.n;
+  turned.h = -contact.h;
+  return continues(kept, turned) ? turned : contact;
 }
 
 // A centre that begins well above the surface and ends below it has been led to the far side of the body, where the equation has
@@ -72,7 +83,7 @@ bool SurfaceTouch::continues(const SurfaceSlot& kept, const ShellContact& contac
   constexpr double kMostTurn = 5;  // of d / h, which has no bound where the centre comes to the surface
   constexpr double kStill = 1e-5;  // of r
   if (!eases_) return true;
-  const double before = std::max(0.0, r_ - (tracker_.p_BC_last - kept.p_BS).dot(kept.n_B)), now = std::max(0.0, r_ - contact.h);
+  const double before = std::max(0.0, r_ - heightBefore(kept)), now = std::max(0.0, r_ - contact.h);
   const double turn = now < kMostTurn * contact.h ? std::max(1.0, now / contact.h) : kMostTurn;
   return (now * contact.n - before * kept.n_B).norm() <= kSlack * turn * moved_ + kStill * r_;
 }

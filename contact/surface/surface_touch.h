@@ -59,6 +59,7 @@ class SurfaceTouch {
  private:
   bool followAlone(SurfaceContacts& found);
   void followSlots();
+  ShellContact keepSide(const SurfaceSlot& kept, const ShellContact& contact) const;
   bool isOtherSide(int slot, const ShellContact& contact) const;
   bool continues(const SurfaceSlot& kept, const ShellContact& contact) const;
   void lose(int slot);
@@ -128,6 +129,8 @@ class SurfaceTouch {
     const SurfaceSlot& kept = keptIn(slot);
     return {footOf(slot), kept.n_B, (C_ - kept.p_BS).dot(kept.n_B), false, {}};
   }
+  // How high the centre was over it at the last query [m].
+  double heightBefore(const SurfaceSlot& kept) const { return (tracker_.p_BC_last - kept.p_BS).dot(kept.n_B); }
   static std::size_t at(int i) { return static_cast<std::size_t>(i); }
   bool isListed(const ShellContact& contact) const {
     return std::any_of(list_.begin(), list_.end(), [&](const FollowedContact& other) {

@@ -113,24 +113,27 @@ void advanceBody(const BodyModel& body, double h, BodyScratch& scratch, BodyStat
   if (scratch.touched) scratch.end = {s.v_W, angularVelocity(body.rotation, s.X_WI.q, s.L_W)};
 }
 
-// Past what the device turns. After position: that asks `touching` too.
+// What is gone in a tick with the velocities `old` and `now` at its ends, of `now` that share; what lands goes by `now` alone.
+double wayOf(const PointScratch& scratch, double share_of_end, double h, double old, double now) {
+  const double theta = scratch.closing ? 1 : share_of_end;
+  return h * ((1 - theta) * old + theta * now);
+}
+
+// Past what the device turns.
 void advanceTwist(double h, PointScratch& scratch, PointState& s) {
   scratch.end.w_W = scratch.free.w_W;
   if (scratch.inverse_twist <= 0) return;
   const double old = s.twist_rate;
   s.twist_rate = scratch.twist_rate + scratch.inverse_twist * scratch.twist_impulse;
   scratch.end.w_W += scratch.inverse_twist * scratch.twist_impulse * scratch.R_WA.col(2);
-  s.twist += !scratch.closing && s.touching ? 0.5 * h * (old + s.twist_rate) : h * s.twist_rate;
+  s.twist += wayOf(scratch, scratch.twist_share_of_end, h, old, s.twist_rate);
 }
 
 // In axes of the coupling that aren't the world's; none of them is locked.
-void advanceTurned(const std::array<AxisForm, 3>& forms, double h, const Vec3& v_old, const PointScratch& scratch, PointState& s) {
+void advanceTurned(double h, const Vec3& v_old, const PointScratch& scratch, PointState& s) {
   const Vec3 old_A = scratch.R_WA.transpose() * v_old, new_A = scratch.R_WA.transpose() * s.v_W;
   Vec3 way_A;
-  for (int i = 0; i < 3; ++i) {
-    const bool second_order = !scratch.closing && (forms[i] == AxisForm::kFourthOrder || s.touching);
-    way_A[i] = second_order ? 0.5 * h * (old_A[i] + new_A[i]) : h * new_A[i];
-  }
+  for (int i = 0; i < 3; ++i) way_A[i] = wayOf(scratch, scratch.share_of_end[i], h, old_A[i], new_A[i]);
   s.p_W += scratch.R_WA * way_A;
 }
 
@@ -140,13 +143,12 @@ void advancePoint(const std::array<AxisForm, 3>& forms, double h, PointScratch& 
   if (scratch.quiet && isSlow(s.v_W) && isSlow(v_old)) s.v_W.setZero();
   scratch.end.v_W = s.v_W;
   advanceTwist(h, scratch, s);
-  if (scratch.turned) advanceTurned(forms, h, v_old, scratch, s);
+  if (scratch.turned) advanceTurned(h, v_old, scratch, s);
   for (int i = 0; i < 3 && !scratch.turned; ++i) {
-    const bool second_order = !scratch.closing && (forms[i] == AxisForm::kFourthOrder || s.touching);
     if (forms[i] == AxisForm::kLocked) {
       s.p_W[i] = scratch.p_target_W[i];
     } else {
-      s.p_W[i] += second_order ? 0.5 * h * (v_old[i] + s.v_W[i]) : h * s.v_W[i];
+      s.p_W[i] += wayOf(scratch, scratch.share_of_end[i], h, v_old[i], s.v_W[i]);
     }
   }
   s.p_target_W = scratch.p_target_W;

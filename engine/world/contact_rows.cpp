@@ -2,9 +2,11 @@
 
 #include <algorithm>
 
+#include "engine/world/hollow_inertia.h"
 #include "engine/world/impact.h"
 #include "engine/world/push_out.h"
 #include "engine/world/stick_bias.h"
+#include "engine/world/wedge.h"
 
 namespace pincer::engine {
 namespace {
@@ -93,8 +95,10 @@ void fillContacts(const WorldModel& model, const WorldState& state, WorldScratch
   const Rates rates(model, state, scratch.h);
   std::span<const ContactMemory> memories(state.contacts.data(), static_cast<std::size_t>(state.contact_count));
   scratch.first_row[0] = 0;
+  for (Contact& c : scratch.contacts) recallContact(memories, scratch, c);
+  steadyInHollows(model, state, scratch);
+  if (!model.points.empty()) loosenWedges(scratch);
   for (int i = 0; i < n; ++i) {
-    recallContact(memories, scratch, scratch.contacts[i]);
     scratch.first_row[i + 1] = scratch.first_row[i] + rowsOf(scratch.contacts[i].material);
     fillContact(model, rates, scratch, i);
   }

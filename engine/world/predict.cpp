@@ -67,14 +67,21 @@ double fourthOrderMomentum(const AxisInput& a) {
   return a.m * a.v + a.h * a.f - spring - damper;
 }
 
-// Force at the end of the tick: k and d act on the end values, which are implicit in v+. `theta`: share of v+ in the displacement.
+// Force at the end of the tick: k and d act on the end values, which are implicit in v+. `theta`: share of v+ in the displacement, PointScratch.
 double implicitMass(const AxisInput& a, double theta) { return a.m + a.h * a.d + a.h * a.h * a.k * theta; }
 double implicitMomentum(const AxisInput& a, double theta) {
   const double spring = a.h * a.k * (a.e + (1 - theta) * a.h * a.v - a.target_step);
   return a.m * a.v + a.h * (a.f + a.d * a.v_target_end) - spring;
 }
 
-double shareOfEnd(bool touching) { return touching ? 0.5 : 1.0; }
+// theta: second order where that leaves no more than a third of what the velocity was too large by to the next tick, with the sign turned. All of it
+// is left of a tip without mass nor damping at one half, and along a hollow that grows: such a tip is first order.
+//   (m - h^2 k (1 - theta)) / (m + h d + h^2 k theta) >= -1/3
+double shareOfEnd(const AxisInput& a, bool touching) {
+  const double stiff = a.h * a.h * a.k;
+  if (!touching || !(stiff > 0)) return touching ? 0.5 : 1.0;
+  return std::max(0.5, 0.75 - (a.m + 0.25 * a.h * a.d) / stiff);
+}
 
 // How it turns: as the device does, and about the contact normal past that, against a spring without inertia.
 void predictTwist(const DrivenPointModel& point, const PointState& s, const PointInput& in, double h, PointScratch& out) {
@@ -82,7 +89,7 @@ void predictTwist(const DrivenPointModel& point, const PointState& s, const Poin
   out.inverse_twist = 0;
   if (!(point.twist_stiffness + point.twist_damping > 0)) return;
   const AxisInput a{0, point.twist_stiffness, point.twist_damping, s.twist, s.twist_rate, 0, 0, 0, 0, h};
-  const double theta = shareOfEnd(s.touching);
+  const double theta = out.twist_share_of_end = s.touching ? 0.5 : 1.0;
   out.inverse_twist = 1 / implicitMass(a, theta);
   out.twist_rate = out.inverse_twist * implicitMomentum(a, theta);
   if (out.input_ok) out.R_WA.col(2) = in.n_W;
@@ -107,9 +114,10 @@ void findMobility(const DrivenPointModel& point, const std::array<AxisForm, 3>& 
   out.mobility_touching = touching;
   for (int i = 0; i < 3; ++i) {
     const AxisInput a{point.mass, point.stiffness[i], point.damping[i], 0, 0, 0, 0, 0, 0, h};
+    out.share_of_end[i] = forms[i] == AxisForm::kFourthOrder ? 0.5 : shareOfEnd(a, touching);
     if (forms[i] == AxisForm::kLocked) out.inverse_mass[i] = 0;
     if (forms[i] == AxisForm::kFourthOrder) out.inverse_mass[i] = 1 / fourthOrderMass(a);
-    if (forms[i] == AxisForm::kImplicit) out.inverse_mass[i] = 1 / implicitMass(a, shareOfEnd(touching));
+    if (forms[i] == AxisForm::kImplicit) out.inverse_mass[i] = 1 / implicitMass(a, out.share_of_end[i]);
   }
   out.root_inverse_mass = out.inverse_mass.cwiseSqrt();
 }
@@ -122,7 +130,7 @@ void predictAxes(const DrivenPointModel& point, const std::array<AxisForm, 3>& f
                       m.v_target[i], m.v_target_end[i],  m.target_step[i], m.f[i], h};
     double v_free = m.v_target_end[i];
     if (forms[i] == AxisForm::kFourthOrder) v_free = out.inverse_mass[i] * fourthOrderMomentum(a);
-    if (forms[i] == AxisForm::kImplicit) v_free = out.inverse_mass[i] * implicitMomentum(a, shareOfEnd(touching));
+    if (forms[i] == AxisForm::kImplicit) v_free = out.inverse_mass[i] * implicitMomentum(a, out.share_of_end[i]);
     out.free.v_W[i] = v_free;
   }
 }

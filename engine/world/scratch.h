@@ -94,12 +94,15 @@ struct PointScratch : MoverScratch {
   Vec3 p_mid_W = Vec3::Zero();
   Vec3 inverse_mass = Vec3::Zero();  // effective, per axis of A, of the implicit spring-damper [1/kg]
   Vec3 root_inverse_mass = Vec3::Zero();
+  Vec3 share_of_end = Vec3::Ones();  // per axis of A, of the velocity at the end in the way that the point goes, p+ = p + h ((1 - theta) v + theta v+)
   double mobility_h = 0;  // the length of a part of a tick that these hold for [s], 0: none; and whether the point touched
   bool mobility_touching = false;
   bool turned = false;  // A isn't W
   Mat3 R_WA = Mat3::Identity();
   double inverse_twist = 0;                                   // effective inverse inertia about A's third axis [1/(kg m^2)]
+  double twist_share_of_end = 1;                              // likewise
   double twist_rate = 0;                                      // about it, past what the device turns, if nothing touched [rad/s]
+  double turning_stiffness = 0;                               // f kappa of its contacts in hollows, see hollow_inertia.h [N/m]
   double twist_impulse = 0;                                   // of all contacts about their normals [N m s]
   Vec3 p_target_W = Vec3::Zero(), v_target_W = Vec3::Zero();  // at the end of the tick
   Vec3 v_tick_W = Vec3::Zero();                               // velocity at the start of the tick

@@ -97,6 +97,62 @@ void alignPair(std::span<Contact> pair, int first, double h, double offset_rate,
   }
 }
 
+// Those of a point's rows that ask for something: of what stuck all; of what slid, or landed in an overlap, the normal.
+bool asks(const Contact& c, int k) {
+  if (k != kNormalRow) return c.stuck;
+  return c.bias_C[kNormalRow] < 0 || (c.memory && c.memory->active && !c.closing);
+}
+
+// Whether a point sticks at one of its contacts with a body, and touches it in another plane.
+bool isHeldManyfold(std::span<const Contact> contacts) {
+  const Contact* first = nullptr;
+  bool sticks = false, flat = true;
+  for (const Contact& c : contacts) {
+    if (!asks(c, kNormalRow)) continue;
+    if (!first) first = &c;
+    sticks = sticks || c.stuck;
+    flat = flat && c.n_W().dot(first->n_W()) > kSamePlane;
+  }
+  return sticks && !flat;
+}
+
+// A point has no turn to give: V alone, and gaps that contradict each other's offsets give way too.
+bool fitMotion(std::span<const Contact> contacts, Vec3& V) {
+  Mat3 A = Mat3::Zero();
+  V.setZero();
+  for (const Contact& c : contacts) {
+    for (int k = 0; k < kTorsionRow; ++k) {
+      if (!asks(c, k)) continue;
+      const double weight = k == kNormalRow ? kNormalWeight * kNormalWeight : 1;
+      const Vec3 row = c.R_WC.col(k);
+      A += weight * row * row.transpose();
+      V -= weight * c.bias_C[k] * row;
+    }
+  }
+  return solveByLdlt(A.data(), 3, V.data());
+}
+
+void alignPoint(std::span<Contact> contacts, int first, double h, double offset_rate, WorldScratch& scratch) {
+  Vec3 V;
+  if (!isHeldManyfold(contacts) || !fitMotion(contacts, V)) return;
+  double largest = 0;
+  for (const Contact& c : contacts) {
+    if (asks(c, kNormalRow)) largest = std::max(largest, c.bias_C.head<3>().cwiseAbs().maxCoeff());
+  }
+  for (Contact& c : contacts) {
+    const int row = scratch.first_row[first++];
+    for (int k = 0; k < kTorsionRow; ++k) {
+      const double bias = -c.R_WC.col(k).dot(V);
+      if (!asks(c, k) || std::abs(bias - c.bias_C[k]) <= kFitted * largest) continue;
+      scratch.q[row + k] += bias - c.bias_C[k];
+      c.bias_C[k] = bias;
+      if (k != kNormalRow) c.offset_C[k] = bias / offset_rate - 0.5 * h * c.v_start_C[k];
+    }
+  }
+}
+
+bool isOfPoint(const Contact& c) { return c.a.kind == SideKind::kPoint || c.b.kind == SideKind::kPoint; }
+
 }  // namespace
 
 void alignStickBiases(double h, double offset_rate, WorldScratch& scratch) {
@@ -105,7 +161,8 @@ void alignStickBiases(double h, double offset_rate, WorldScratch& scratch) {
   for (std::size_t first = 0; first < contacts.size();) {
     std::size_t end = first + 1;
     while (end < contacts.size() && isOfSamePair(contacts[first], contacts[end])) ++end;
-    if (end > first + 1) alignPair(contacts.subspan(first, end - first), static_cast<int>(first), h, offset_rate, scratch);
+    const auto align = isOfPoint(contacts[first]) ? alignPoint : alignPair;
+    if (end > first + 1) align(contacts.subspan(first, end - first), static_cast<int>(first), h, offset_rate, scratch);
     first = end;
   }
 }

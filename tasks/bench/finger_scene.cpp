@@ -30,7 +30,7 @@ const grasp::FingerReport& FingerScene::tick(const Vec3& p_WF) {
   input.p_WF = p_WF;
   input.v_WF = (p_WF - device_) / model_.world.options.h;
   device_ = p_WF;
-  faults_ |= grasp::step(model_, state_, scratch_, std::array{input}).status;
+  flagged_ += grasp::step(model_, state_, scratch_, std::array{input}).status != engine::kStepOk;
   return scratch_.fingers.front();
 }
 

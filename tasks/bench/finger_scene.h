@@ -21,14 +21,14 @@ class FingerScene {
   void leadTo(const Vec3& p_WF);
 
   const Vec3& proxy() const { return state_.world.points.front().p_W; }  // centre of the fingertip on the surface [m]
-  std::uint32_t faults() const { return faults_; }                       // StepStatus bits of all ticks
+  int flagged() const { return flagged_; }                               // ticks that the step complained of
 
  private:
   grasp::GraspModel model_;
   grasp::GraspState state_;
   grasp::GraspScratch scratch_;
   Vec3 device_;
-  std::uint32_t faults_ = 0;
+  int flagged_ = 0;
 };
 
 }  // namespace pincer::tasks

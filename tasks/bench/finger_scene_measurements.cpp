@@ -161,7 +161,7 @@ std::vector<Record> dragOverPart(const TriangleMesh& triangles, MeasureContext& 
   return {atLeast("share of time in contact", static_cast<double>(touching) / kTicks, "-", 0.8),
           atMost("longest snag", 1e3 * longest * kBenchTick, "ms", 20),
           unbounded("largest force (2.2 N where nothing holds it)", largest, "N"),
-          exactly("ticks that the step complained of", rough.faults() + slippery.faults(), "-", 0)};
+          exactly("ticks that the step complained of", rough.flagged() + slippery.flagged(), "-", 0)};
 }
 
 // The same object, finger and path in every scale: what changes is the scale of the answer. Triangles down to micrometres.

@@ -159,5 +159,26 @@ TEST(SurfaceSlots, AnswersDoNotDependOnTheOrderOfTheTriangles) {
   }
 }
 
+// Along a jagged ridge past the plane across its edge's mean normal: the edge's normal turned over, and the finger was caught between the edge and itself, eased
+// in by twice its height.
+TEST(SurfaceSlots, AFingerBesideAFinIsNotCaughtByTheFinsOtherSide) {
+  Finger finger(noisy(geodesicSphere(0.03, 24), 6.25e-4, 3));
+  const Vec3 last(-0.0066452289174157731, -0.036976851446886921, -0.0068700146114014805);
+  const Vec3 way = Vec3(-0.0066288605832761621, -0.037011280240002914, -0.0067775630094508909) - last;
+  double before = 0;
+  for (int i = -20; i <= 3; ++i) {
+    const Vec3 C = last + i * way;
+    const SurfaceContacts found = finger.at(C);
+    for (int k = 0; k < found.count; ++k) {
+      const SurfaceContact& c = found.points[static_cast<std::size_t>(k)];
+      ASSERT_GT((C - c.p_BS).dot(c.n_B), 0) << i;
+      ASSERT_NEAR((C - c.p_BS).dot(c.n_B) - kFinger, c.phi, kExact) << i;  // nothing is eased
+    }
+    // The ridge stays where it is: the gap changes by no more than the way.
+    if (i > -3) ASSERT_LT(std::abs(found.main().phi - before), 1.01 * way.norm()) << i;
+    before = found.main().phi;
+  }
+}
+
 }  // namespace
 }  // namespace pincer::contact

@@ -151,5 +151,80 @@ TEST(GraspGrooves, AFingerWithoutDampingStaysWhereItLands) {
   }
 }
 
+// One finger behind a spring alone, and a body that doesn't move.
+struct Undamped {
+  Undamped(contact::Shape shape, double mu, const Vec3& start) : device(start) {
+    engine::WorldOptions options;
+    options.gravity_W = Vec3::Zero();
+    engine::WorldBuilder builder(options);
+    builder.addBody({"body", std::move(shape), false, 0, {mu, mu}});
+    model = buildGrasp(builder, {tests::softFinger("finger", kStiffness, 0)});
+    state = makeState(model, {tests::startAt(Vec3::Zero())}, {start});
+    scratch = std::make_unique<GraspScratch>(model);
+  }
+  const FingerReport& moveTo(const Vec3& p_WF) {
+    FingerInput input;
+    input.v_WF = (p_WF - device) / model.world.options.h;
+    input.p_WF = device = p_WF;
+    step(model, state, *scratch, std::span(&input, 1));
+    return scratch->fingers[0];
+  }
+  const FingerReport& leadTo(const Vec3& p_WF, int ticks) {
+    const Vec3 from = device;
+    for (int i = 1; i <= ticks; ++i) moveTo(from + (p_WF - from) * i / ticks);
+    return scratch->fingers[0];
+  }
+  const engine::PointState& tip() const { return state.world.points[0]; }
+
+  GraspModel model;
+  GraspState state;
+  std::unique_ptr<GraspScratch> scratch;
+  Vec3 device;
+};
+
+// Half of what its velocity changed by came back with the other sign in each tick, for ever.
+TEST(GraspGrooves, ATipWithoutMassNorDampingDoesNotRing) {
+  Undamped finger(contact::HalfSpace{}, 0, Vec3(0, 0, 0.01));
+  finger.leadTo(Vec3(0.01, 0, 0.006), 100);  // 100 mm/s along the floor, and stops at once
+  for (int i = 0; i < 20; ++i) finger.moveTo(finger.device);
+  EXPECT_LT(finger.tip().v_W.norm(), 0.1 * std::pow(3, -19));
+}
+
+// Pressed 2 mm into a hollow that leaves the tip's centre a sphere of radius rho, without friction: it lies in the direction of the device. Ticks that
+// take the wall where it is in their middle threw it to the other side, 2 mm / rho times as far, and through the wall.
+TEST(GraspGrooves, InAHollowHardlyWiderThanItATipWithoutDampingFollowsTheDevice) {
+  constexpr double kTickWay = 1e-4;  // of the device: 100 mm/s, reached within 100 ticks
+  for (const double rho : {0.5e-3, 1e-3, 4e-3}) {
+    const double radius = 8e-3 + rho, depth = rho + 2e-3, per_tick = kTickWay / depth;
+    const Vec3 centre(0, 0, radius);
+    Undamped finger(contact::Dish{radius}, 0, centre);
+    finger.leadTo(centre - Vec3(0, 0, depth), 100);
+    for (int i = 1; i < 2000; ++i) {
+      const double a = per_tick * (i < 100 ? 0.005 * i * i : i - 50);
+      finger.moveTo(centre + depth * Vec3(std::sin(a), 0, -std::cos(a)));
+      const Vec3 off = finger.tip().p_W - centre;
+      // A tick's way leaves the curve by its sagitta at most; swings from setting out fade within 50 ticks, then half a tick's lag is left.
+      ASSERT_LT(off.norm(), rho + 0.5 * kTickWay * kTickWay / rho) << rho << ' ' << i;
+      ASSERT_LT((off.normalized() - (finger.device - centre).normalized()).norm(), (i < 150 ? 3 : 0.5) * per_tick) << rho << ' ' << i;
+    }
+  }
+}
+
+// Between the walls of a steep groove friction holds by squeezing, whatever pulls: rigid walls may squeeze by any amount. Along the groove it takes
+// mu P / sin(alpha) to slide, P pressing in, 2 alpha the opening; and what is pulled out comes out.
+TEST(GraspGrooves, ASteepGrooveDoesNotKeepTheFinger) {
+  const double alpha = 0.25, mu = 0.5, r = 8e-3, rest = r / std::sin(alpha);  // tan(alpha) = 0.255: it locks
+  const contact::Mesh groove{contact::SmoothMesh::build(contact::grooveBlock(alpha, 0.06, 0.06, 0.06))};
+  Undamped finger(groove, mu, Vec3(1e-4, -0.02, rest + 1e-3));
+  finger.leadTo(Vec3(0, -0.02, rest - 2e-3), 100);
+  const FingerReport& pressed = finger.leadTo(Vec3(0, 0.02, rest - 2e-3), 400);
+  const double press = pressed.f_user_W.z();
+  EXPECT_NEAR(press, 2e-3 * kStiffness, 1e-3);
+  EXPECT_NEAR(-pressed.f_user_W.y(), mu * press / std::sin(alpha), 1e-3 * press);
+  for (const engine::Contact& c : finger.scratch->world.contacts) EXPECT_LT(c.r[2] / finger.model.world.options.h, press / std::sin(alpha));
+  const FingerReport& pulled = finger.leadTo(Vec3(0, 0.02, rest + 2e-3), 100);
+  EXPECT_LT(pulled.f_user_W.norm(), 0.2);
+}
+
 }  // namespace
 }  // namespace pincer::grasp

@@ -1,0 +1,43 @@
+#include "engine/world/wedge.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pincer::engine {
+namespace {
+
+constexpr double kPressedIn = 0.1;  // of 2 sin(alpha) S: far below what presses a point in, far above round-off of a squeeze
+constexpr double kLoose = 0.5;      // of tan(alpha): what is let go comes out without much of a squeeze
+
+bool isPressedPoint(const Contact& c) {
+  const bool is_point = c.a.kind == SideKind::kPoint || c.b.kind == SideKind::kPoint;
+  return is_point && c.memory && c.memory->active;
+}
+
+Vec3 lastImpulse(const ContactMemory& m) { return m.r[0] * m.t1_W + m.r[1] * m.n_W.cross(m.t1_W) + m.r[kNormalRow] * m.n_W; }
+
+void loosen(Contact& x, Contact& y) {
+  const Vec3 b = x.n_W() + y.n_W();
+  const double sine = 0.5 * b.norm(), cosine = 0.5 * (x.n_W() - y.n_W()).norm();
+  if (!(std::min(x.mu, y.mu) * cosine > sine)) return;
+  const double squeeze = std::min(x.memory->r[kNormalRow], y.memory->r[kNormalRow]);
+  const double out = (lastImpulse(*x.memory) + lastImpulse(*y.memory)).dot(b);  // times 2 sin(alpha)
+  if (!(out < kPressedIn * 4 * sine * sine * squeeze)) return;
+  const double mu = kLoose * sine / cosine;
+  x.mu = std::min(x.mu, mu);
+  y.mu = std::min(y.mu, mu);
+}
+
+}  // namespace
+
+void loosenWedges(WorldScratch& scratch) {
+  std::vector<Contact>& contacts = scratch.contacts;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    if (!isPressedPoint(contacts[i])) continue;
+    for (std::size_t k = i + 1; k < contacts.size() && contacts[k].id >> 32 == contacts[i].id >> 32; ++k) {
+      if (isPressedPoint(contacts[k])) loosen(contacts[i], contacts[k]);
+    }
+  }
+}
+
+}  // namespace pincer::engine

@@ -1,0 +1,22 @@
+// wedge: a driven point between two walls of one body that lock it.
+//
+//   2 alpha = pi - angle(n_1, n_2)                  opening of the groove
+//   mu > tan(alpha)                                 it locks: f_1 + f_2 = 0 has solutions, and any pull is held by squeezing enough
+//   (f_1 + f_2) . b < 0.1 * 2 sin(alpha) S          it holds the point by squeezing: mu <- tan(alpha) / 2
+//
+//   n_i, f_i   normals and forces of the last tick;  S  the lesser normal force [N];  b = (n_1 + n_2)/|n_1 + n_2|, out of the groove
+//
+// Rigid walls that lock may squeeze by any amount, whatever pressed the point in: a problem with many answers, of which the one that never lets go is none that
+// skin and plastic know. There the squeeze is what the point was pressed in with: S <= P / (2 sin(alpha)), and it comes out when pulled by
+// P tan(phi - alpha) / tan(phi + alpha), phi = atan(mu), never more than the press P. We let go where the pull begins. Pressed in, and along the groove, friction
+// is that of both walls: sliding along takes mu P / sin(alpha).
+// Source: K. L. Johnson, Contact Mechanics, Cambridge 1985, section 7.2 (that stick depends on how the load came); the rule is ours.
+#pragma once
+#include "engine/world/scratch.h"
+
+namespace pincer::engine {
+
+// Lowers Contact::mu of recalled contacts, sorted by id, where walls hold a point by squeezing. Allocates nothing.
+void loosenWedges(WorldScratch& scratch);
+
+}  // namespace pincer::engine
