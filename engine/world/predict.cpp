@@ -74,8 +74,8 @@ double implicitMomentum(const AxisInput& a, double theta) {
   return a.m * a.v + a.h * (a.f + a.d * a.v_target_end) - spring;
 }
 
-// theta: second order where that leaves no more than a third of what the velocity was too large by to the next tick, with the sign turned. All of it
-// is left of a tip without mass nor damping at one half, and along a hollow that grows: such a tip is first order.
+// theta: second order where that leaves no more than a third of what the velocity was off by to the next tick, with the sign turned. Of a tip without
+// mass nor damping all of it is left at one half, for ever, and in a hollow it grows: such a tip is first order (decision 17).
 //   (m - h^2 k (1 - theta)) / (m + h d + h^2 k theta) >= -1/3
 double shareOfEnd(const AxisInput& a, bool touching) {
   const double stiff = a.h * a.h * a.k;

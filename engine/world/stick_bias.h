@@ -12,8 +12,8 @@
 // motion, no motion can give: it would wedge the body against its own friction, and the solver against the round-off of that. So each
 // tangential bias becomes P_i xi_i, and the stick offset what belongs to it. Contacts of one flat face are left as they are: their gaps
 // don't couple to their offsets, which alignFaces (advance.cpp) keeps consistent at less cost.
-// A driven point has three freedoms, and two contacts hold it six-fold: in a groove, which holds it by squeezing, what is left of a contradiction squeezed it
-// with 1e9 N. Its Omega is zero, sliding contacts take part with their normals, and normal biases become n_i . V too.
+// A driven point has three freedoms, and two contacts hold it six-fold: in a steep groove what is left of a contradiction squeezed it with 1e9 N.
+// Its Omega is zero, sliding contacts take part with their normals, and normal biases become n_i . V too.
 #pragma once
 #include "engine/world/scratch.h"
 

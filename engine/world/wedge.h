@@ -6,10 +6,10 @@
 //
 //   n_i, f_i   normals and forces of the last tick;  S  the lesser normal force [N];  b = (n_1 + n_2)/|n_1 + n_2|, out of the groove
 //
-// Rigid walls that lock may squeeze by any amount, whatever pressed the point in: a problem with many answers, of which the one that never lets go is none that
-// skin and plastic know. There the squeeze is what the point was pressed in with: S <= P / (2 sin(alpha)), and it comes out when pulled by
-// P tan(phi - alpha) / tan(phi + alpha), phi = atan(mu), never more than the press P. We let go where the pull begins. Pressed in, and along the groove, friction
-// is that of both walls: sliding along takes mu P / sin(alpha).
+// Rigid walls that lock may squeeze by any amount, whatever pressed the point in: a problem with many answers, of which the one that never lets
+// go is none that skin and plastic know. There the squeeze is what the point was pressed in with, S <= P / (2 sin(alpha)), and it comes out when
+// pulled by P tan(phi - alpha) / tan(phi + alpha), phi = atan(mu), never more than the press P (both walls springs of one stiffness in all
+// directions). We let go where the pull begins. Pressed in, friction is that of both walls: sliding along the groove takes mu P / sin(alpha).
 // Source: K. L. Johnson, Contact Mechanics, Cambridge 1985, section 7.2 (that stick depends on how the load came); the rule is ours.
 #pragma once
 #include "engine/world/scratch.h"

@@ -159,8 +159,8 @@ TEST(SurfaceSlots, AnswersDoNotDependOnTheOrderOfTheTriangles) {
   }
 }
 
-// Along a jagged ridge past the plane across its edge's mean normal: the edge's normal turned over, and the finger was caught between the edge and itself, eased
-// in by twice its height.
+// Along a jagged ridge past the plane across its edge's mean normal: the edge's normal turned over, and the finger was caught between the edge and
+// itself, eased in by twice its height.
 TEST(SurfaceSlots, AFingerBesideAFinIsNotCaughtByTheFinsOtherSide) {
   Finger finger(noisy(geodesicSphere(0.03, 24), 6.25e-4, 3));
   const Vec3 last(-0.0066452289174157731, -0.036976851446886921, -0.0068700146114014805);
