@@ -175,7 +175,9 @@ TEST(SurfaceSlots, AFingerBesideAFinIsNotCaughtByTheFinsOtherSide) {
       ASSERT_NEAR((C - c.p_BS).dot(c.n_B) - kFinger, c.phi, kExact) << i;  // nothing is eased
     }
     // The ridge stays where it is: the gap changes by no more than the way.
-    if (i > -3) ASSERT_LT(std::abs(found.main().phi - before), 1.01 * way.norm()) << i;
+    if (i > -3) {
+      ASSERT_LT(std::abs(found.main().phi - before), 1.01 * way.norm()) << i;
+    }
     before = found.main().phi;
   }
 }
