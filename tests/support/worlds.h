@@ -3,6 +3,7 @@
 #include <cmath>
 #include <vector>
 
+#include "engine/world/budget.h"
 #include "grasp/step.h"
 
 namespace pincer::tests {
@@ -15,7 +16,7 @@ struct EngineWorld {
   engine::WorldModel model;
   engine::WorldState state;
 
-  double energy() const { return engine::kineticEnergy(model, state) + engine::potentialEnergy(model, state); }
+  double energy() const { return engine::energyOf(model, state); }
 };
 
 // Two needles of 20 g, 0.2 m long, one over the other, that spin by about `rate` [rad/s] and come down on a floor: the n-th of many such pairs.
