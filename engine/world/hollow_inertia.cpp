@@ -7,8 +7,13 @@ namespace {
 
 constexpr double kLeastWay = 1e-6;  // over less than this a normal's turn is noise [m]
 
+bool mayBeHollow(const WorldModel& model, const Side& side) {
+  return side.kind == SideKind::kBody && model.bodies[side.index].may_be_hollow;
+}
+
 // f kappa of one contact [N/m].
-double turningStiffness(const WorldState& state, double h, const Contact& c) {
+double turningStiffness(const WorldModel& model, const WorldState& state, double h, const Contact& c) {
+  if (!mayBeHollow(model, c.a) && !mayBeHollow(model, c.b)) return 0;
   if (!c.memory || !c.memory->active || !(state.h_last > 0)) return 0;
   const double time = 0.5 * (h + state.h_last);  // between the middles
   const Vec3 way_W = time * (c.R_WC.leftCols<2>() * c.v_start_C.head<2>());
@@ -40,11 +45,11 @@ void addInertia(const DrivenPointModel& point, const std::array<AxisForm, 3>& fo
 }  // namespace
 
 void steadyInHollows(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
-  if (model.points.empty() || !(scratch.h > 0)) return;
+  if (!(scratch.h > 0)) return;
   for (PointScratch& point : scratch.points) point.turning_stiffness = 0;
   for (const Contact& c : scratch.contacts) {
     for (const Side& side : {c.a, c.b}) {
-      if (side.kind == SideKind::kPoint) scratch.points[side.index].turning_stiffness += turningStiffness(state, scratch.h, c);
+      if (side.kind == SideKind::kPoint) scratch.points[side.index].turning_stiffness += turningStiffness(model, state, scratch.h, c);
     }
   }
   for (std::size_t i = 0; i < scratch.points.size(); ++i) {

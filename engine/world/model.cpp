@@ -59,6 +59,7 @@ void setExtent(const BodySpec& spec, BodyModel& body) {
   body.bounding_radius = contact::boundingRadius(spec.shape) + body.X_BI.p.norm();
   body.inner_radius = innerRadius(spec.shape);
   const bool is_round = isSupportOnly(spec.shape) || std::holds_alternative<contact::Sphere>(spec.shape);
+  body.may_be_hollow = std::holds_alternative<contact::Mesh>(spec.shape) || std::holds_alternative<contact::Dish>(spec.shape);
   body.corner_reach = is_round ? 0 : std::max(body.bounding_radius - body.inner_radius, 0.0);
 }
 

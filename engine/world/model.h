@@ -48,6 +48,7 @@ struct BodyModel {
   double bounding_radius = 0;  // about the centre of mass [m]; infinite for half-spaces
   double inner_radius = 0;     // about half its least thickness [m]; infinite for half-spaces and dishes
   double corner_reach = 0;     // how much further than that it reaches; 0 where turning doesn't change its outline [m]
+  bool may_be_hollow = false;  // its surface may curve inwards: a mesh, a dish
   int joint_group = -1;        // that binds it to others or to the world, -1: none
   bool may_touch = false;      // some pair or point can touch it; the others move in closed form alone
 };

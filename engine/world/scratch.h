@@ -95,7 +95,7 @@ struct PointScratch : MoverScratch {
   Vec3 inverse_mass = Vec3::Zero();  // effective, per axis of A, of the implicit spring-damper [1/kg]
   Vec3 root_inverse_mass = Vec3::Zero();
   Vec3 share_of_end = Vec3::Ones();  // theta, per axis of A: p+ = p + h ((1 - theta) v + theta v+)
-  double mobility_h = 0;  // the length of a part of a tick that these hold for [s], 0: none; and whether the point touched
+  double mobility_h = 0;             // the length of a part of a tick that these hold for [s], 0: none; and whether the point touched
   bool mobility_touching = false;
   bool turned = false;  // A isn't W
   Mat3 R_WA = Mat3::Identity();
