@@ -95,14 +95,13 @@ void fillContacts(const WorldModel& model, const WorldState& state, WorldScratch
   const Rates rates(model, state, scratch.h);
   std::span<const ContactMemory> memories(state.contacts.data(), static_cast<std::size_t>(state.contact_count));
   scratch.first_row[0] = 0;
-  const bool has_points = !model.points.empty();
-  if (has_points) {
+  if (model.has_hollows) {
     for (Contact& c : scratch.contacts) recallContact(memories, scratch, c);
     steadyInHollows(model, state, scratch);
     loosenWedges(scratch);
   }
   for (int i = 0; i < n; ++i) {
-    if (!has_points) recallContact(memories, scratch, scratch.contacts[i]);
+    if (!model.has_hollows) recallContact(memories, scratch, scratch.contacts[i]);
     scratch.first_row[i + 1] = scratch.first_row[i] + rowsOf(scratch.contacts[i].material);
     fillContact(model, rates, scratch, i);
   }

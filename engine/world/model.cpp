@@ -258,6 +258,10 @@ WorldModel WorldBuilder::build() const {
   }
   const int n = static_cast<int>(model.bodies.size());
   model.has_broad_phase = n > kAllPairsBodies;
+  const auto has_corners = [](const BodyModel& body) { return body.dynamic && body.corner_reach > 0; };
+  model.has_corners = std::any_of(model.bodies.begin(), model.bodies.end(), has_corners);
+  const auto may_be_hollow = [](const BodyModel& body) { return body.may_be_hollow; };
+  model.has_hollows = !model.points.empty() && std::any_of(model.bodies.begin(), model.bodies.end(), may_be_hollow);
   std::vector<std::pair<int, int>> excluded = excluded_;
   std::sort(excluded.begin(), excluded.end());
   for (int a = 0; a < n; ++a) {

@@ -130,6 +130,8 @@ struct WorldModel {
   std::vector<BodyModel> bodies;
   std::vector<DrivenPointModel> points;
   std::vector<std::array<AxisForm, 3>> point_forms;
+  bool has_corners = false;      // of dynamic bodies: some corner_reach isn't 0
+  bool has_hollows = false;      // that points may touch: there are points, and bodies that may be hollow
   std::vector<PairModel> pairs;  // only those that can touch: at least one dynamic, shapes supported; none with a broad phase
   bool has_broad_phase = false;  // of more than kAllPairsBodies bodies: pairs are found tick by tick (broad_phase.h)
   std::vector<std::pair<int, int>> excluded_pairs;  // sorted; only with a broad phase

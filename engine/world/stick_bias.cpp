@@ -161,8 +161,11 @@ void alignStickBiases(double h, double offset_rate, WorldScratch& scratch) {
   for (std::size_t first = 0; first < contacts.size();) {
     std::size_t end = first + 1;
     while (end < contacts.size() && isOfSamePair(contacts[first], contacts[end])) ++end;
-    const auto align = isOfPoint(contacts[first]) ? alignPoint : alignPair;
-    if (end > first + 1) align(contacts.subspan(first, end - first), static_cast<int>(first), h, offset_rate, scratch);
+    if (end > first + 1) {
+      const std::span<Contact> pair = contacts.subspan(first, end - first);
+      isOfPoint(pair.front()) ? alignPoint(pair, static_cast<int>(first), h, offset_rate, scratch)
+                              : alignPair(pair, static_cast<int>(first), h, offset_rate, scratch);
+    }
     first = end;
   }
 }

@@ -138,7 +138,7 @@ class Tick {
     attempt(h);
     turns_far_ = somethingTurnsFar(h);
     for (; turns_far_ && !isSpent() && h > model_.options.h / kMostTurningParts; turns_far_ = somethingTurnsFar(h)) attempt(h *= 0.5);
-    if (!isSpent() && flingsCorners(h)) attempt(h);
+    if (model_.has_corners && !isSpent() && flingsCorners(h)) attempt(h);
     part_ = h;
     if (mayHit()) notePushedPairs(model_, state_, scratch_);
     if (isSpent() && !scratch_.impact_pairs.empty()) attempt(h);  // which holds nothing back any more
