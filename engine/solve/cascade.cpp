@@ -7,6 +7,7 @@
 #include "engine/solve/interior_point.h"
 #include "engine/solve/large_problem.h"
 #include "engine/solve/newton.h"
+#include "engine/solve/point_wedge.h"
 #include "engine/solve/residual.h"
 #include "engine/solve/small_problem.h"
 
@@ -264,6 +265,23 @@ SolveResult solveByForm(const ContactProblem& problem, const SolverOptions& opti
   return withoutAddedEnergy(problem, result, scratch, r, u);
 }
 
+// A point between two walls that nothing else solved: where it slides on both, that is a root in one unknown.
+void slideInWedge(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch, VectorMap r, VectorMap u,
+                  SolveResult& result) {
+  double before[2 * kTorsionRow];
+  std::copy(r.begin(), r.end(), before);
+  if (!slideInWedge(problem, r)) return;
+  const double residual = weighedResidual(problem, r.data(), scratch, u.data());
+  if (residual <= std::max(options.tolerance, contentResidual(options, referenceSpeed(problem)))) {
+    result.method = SolveMethod::kGaussSeidel;
+    result.converged = true;
+    result.residual = residual;
+    return;
+  }
+  std::copy(std::begin(before), std::end(before), r.begin());
+  weighedResidual(problem, r.data(), scratch, u.data());
+}
+
 }  // namespace
 
 void solveContacts(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch, double* r, double* u,
@@ -274,7 +292,9 @@ void solveContacts(const ContactProblem& problem, const SolverOptions& options, 
   const bool is_solved = solveSmallProblem(problem, options, r, u, result);
   spend(kPerSmallStep * (1 + result.iterations), scratch);
   if (is_solved) return;
-  result = solveByForm(problem, options, scratch, VectorMap(r, problem.rowCount()), VectorMap(u, problem.rowCount()));
+  const VectorMap r_all(r, problem.rowCount()), u_all(u, problem.rowCount());
+  result = solveByForm(problem, options, scratch, r_all, u_all);
+  if (!result.converged && isPointWedge(problem)) slideInWedge(problem, options, scratch, r_all, u_all, result);
 }
 
 void stopBySweeps(const ContactProblem& problem, int sweeps, SolverScratch& scratch, VectorMap r, VectorMap u) {

@@ -75,11 +75,11 @@ double implicitMomentum(const AxisInput& a, double theta) {
 }
 
 // theta: second order where that leaves no more than a third of what the velocity was off by to the next tick, with the sign turned. Of a tip without
-// mass nor damping all of it is left at one half, for ever, and in a hollow it grows: such a tip is first order (decision 17).
+// mass nor damping all of it is left at one half, for ever, and in a hollow it grows: where there are hollows such a tip is first order (decision 17).
 //   (m - h^2 k (1 - theta)) / (m + h d + h^2 k theta) >= -1/3
-double shareOfEnd(const AxisInput& a, bool touching) {
+double shareOfEnd(const AxisInput& a, bool touching, bool has_hollows) {
   const double stiff = a.h * a.h * a.k;
-  if (!touching || !(stiff > 0)) return touching ? 0.5 : 1.0;
+  if (!touching || !has_hollows || !(stiff > 0)) return touching ? 0.5 : 1.0;
   return std::max(0.5, 0.75 - (a.m + 0.25 * a.h * a.d) / stiff);
 }
 
@@ -114,7 +114,7 @@ void findMobility(const DrivenPointModel& point, const std::array<AxisForm, 3>& 
   out.mobility_touching = touching;
   for (int i = 0; i < 3; ++i) {
     const AxisInput a{point.mass, point.stiffness[i], point.damping[i], 0, 0, 0, 0, 0, 0, h};
-    out.share_of_end[i] = forms[i] == AxisForm::kFourthOrder ? 0.5 : shareOfEnd(a, touching);
+    out.share_of_end[i] = forms[i] == AxisForm::kFourthOrder ? 0.5 : shareOfEnd(a, touching, out.has_hollows);
     if (forms[i] == AxisForm::kLocked) out.inverse_mass[i] = 0;
     if (forms[i] == AxisForm::kFourthOrder) out.inverse_mass[i] = 1 / fourthOrderMass(a);
     if (forms[i] == AxisForm::kImplicit) out.inverse_mass[i] = 1 / implicitMass(a, out.share_of_end[i]);

@@ -18,6 +18,7 @@ WorldScratch::WorldScratch(const WorldModel& model) : h(model.options.h), patche
   const std::size_t row_count = contact_count * kMaxContactRows;
   bodies.resize(model.bodies.size());
   points.resize(model.points.size());
+  for (PointScratch& point : points) point.has_hollows = model.has_hollows;
   contacts.reserve(contact_count);
   fast_pairs.reserve(contact_count);
   pushed_pairs.reserve(contact_count);

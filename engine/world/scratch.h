@@ -97,7 +97,8 @@ struct PointScratch : MoverScratch {
   Vec3 share_of_end = Vec3::Ones();  // theta, per axis of A: p+ = p + h ((1 - theta) v + theta v+)
   double mobility_h = 0;             // the length of a part of a tick that these hold for [s], 0: none; and whether the point touched
   bool mobility_touching = false;
-  bool turned = false;  // A isn't W
+  bool has_hollows = false;  // the model's
+  bool turned = false;       // A isn't W
   Mat3 R_WA = Mat3::Identity();
   double inverse_twist = 0;                                   // effective inverse inertia about A's third axis [1/(kg m^2)]
   double twist_share_of_end = 1;                              // likewise

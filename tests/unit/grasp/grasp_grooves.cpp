@@ -158,8 +158,10 @@ struct Undamped {
     options.gravity_W = Vec3::Zero();
     engine::WorldBuilder builder(options);
     builder.addBody({"body", std::move(shape), false, 0, {mu, mu}});
+    const auto far_away = contact::SmoothMesh::build(contact::geodesicSphere(0.01, 2));  // may be hollow, for all that the engine knows
+    builder.addBody({"mesh", contact::Mesh{far_away}, false, 0, {}});
     model = buildGrasp(builder, {tests::softFinger("finger", kStiffness, 0)});
-    state = makeState(model, {tests::startAt(Vec3::Zero())}, {start});
+    state = makeState(model, {tests::startAt(Vec3::Zero()), tests::startAt(Vec3(0, 0, 100))}, {start});
     scratch = std::make_unique<GraspScratch>(model);
   }
   const FingerReport& moveTo(const Vec3& p_WF) {
