@@ -3,7 +3,7 @@
 //   J_i x >= want_i,   lambda_i >= 0,   x = M^-1 J^T lambda        (one of the first two with equality, per contact)
 //   want_i = min(max(gamma s d_i, d_i - e_i), v_max h max(s, d_i / e_i))  of contacts deeper than kDeep, d_i the overlap after this part of the tick,
 //            e_i about half the thinner body's thickness: what is buried could tip over to the wrong side on its way
-//            -(phi_i + kDeep)  of the others, which stay as they are
+//            -(phi_i + kDeep)  of the others, phi_i their gap then: they stay as they are
 //
 //   x  ways and turns of the bodies [m, rad];  lambda [kg m];  s  share of this part in the tick, of length h;  J normal rows only: friction is for what moves
 //   gamma, v_max  kNormalCorrection, kLargestCorrection (contact_rows.h)

@@ -17,21 +17,31 @@ constexpr double kStiffness = 1000;  // [N/m]
 constexpr double kDamping = 0.05;    // [N s/m] a tip without mass nor damping swings about its place for ever; this ends it within 20 ticks
 constexpr double kWay = 1e-6;        // of the device per tick [m]: 1 mm/s
 
-// A fixed mesh without friction and one finger with a massless tip on a spring, at rest at `start`.
-struct Pressed {
-  Pressed(const contact::TriangleMesh& mesh, const Vec3& start) : device(start) {
-    engine::WorldBuilder builder{engine::WorldOptions{}};
-    builder.addBody({"block", contact::Mesh{contact::SmoothMesh::build(mesh)}, false, 0, {0, 0, 0, 0}});
-    model = buildGrasp(builder, {tests::softFinger("finger", kStiffness, kDamping)});
-    state = makeState(model, {tests::startAt(Vec3::Zero())}, {start});
-    scratch = std::make_unique<GraspScratch>(model);
-  }
+// A world with one finger, led by its device.
+struct Led {
+  explicit Led(const Vec3& start) : device(start) {}
   const FingerReport& moveTo(const Vec3& p_WF) {
     FingerInput input;
     input.v_WF = (p_WF - device) / model.world.options.h;
     input.p_WF = device = p_WF;
     step(model, state, *scratch, std::span(&input, 1));
     return scratch->fingers[0];
+  }
+
+  GraspModel model;
+  GraspState state;
+  std::unique_ptr<GraspScratch> scratch;
+  Vec3 device;  // p_WF
+};
+
+// A fixed mesh without friction and one finger with a massless tip on a spring, at rest at `start`.
+struct Pressed : Led {
+  Pressed(const contact::TriangleMesh& mesh, const Vec3& start) : Led(start) {
+    engine::WorldBuilder builder{engine::WorldOptions{}};
+    builder.addBody({"block", contact::Mesh{contact::SmoothMesh::build(mesh)}, false, 0, {0, 0, 0, 0}});
+    model = buildGrasp(builder, {tests::softFinger("finger", kStiffness, kDamping)});
+    state = makeState(model, {tests::startAt(Vec3::Zero())}, {start});
+    scratch = std::make_unique<GraspScratch>(model);
   }
   void leadTo(const Vec3& p_WF) {
     const Vec3 from = device;
@@ -43,11 +53,6 @@ struct Pressed {
     for (const engine::Contact& c : scratch->world.contacts) n += c.active();
     return n;
   }
-
-  GraspModel model;
-  GraspState state;
-  std::unique_ptr<GraspScratch> scratch;
-  Vec3 device;
 };
 
 // What changes in a tick, per way of the device in it.
@@ -152,8 +157,8 @@ TEST(GraspGrooves, AFingerWithoutDampingStaysWhereItLands) {
 }
 
 // One finger behind a spring alone, and a body that doesn't move.
-struct Undamped {
-  Undamped(contact::Shape shape, double mu, const Vec3& start) : device(start) {
+struct Undamped : Led {
+  Undamped(contact::Shape shape, double mu, const Vec3& start) : Led(start) {
     engine::WorldOptions options;
     options.gravity_W = Vec3::Zero();
     engine::WorldBuilder builder(options);
@@ -164,24 +169,12 @@ struct Undamped {
     state = makeState(model, {tests::startAt(Vec3::Zero()), tests::startAt(Vec3(0, 0, 100))}, {start});
     scratch = std::make_unique<GraspScratch>(model);
   }
-  const FingerReport& moveTo(const Vec3& p_WF) {
-    FingerInput input;
-    input.v_WF = (p_WF - device) / model.world.options.h;
-    input.p_WF = device = p_WF;
-    step(model, state, *scratch, std::span(&input, 1));
-    return scratch->fingers[0];
-  }
   const FingerReport& leadTo(const Vec3& p_WF, int ticks) {
     const Vec3 from = device;
     for (int i = 1; i <= ticks; ++i) moveTo(from + (p_WF - from) * i / ticks);
     return scratch->fingers[0];
   }
   const engine::PointState& tip() const { return state.world.points[0]; }
-
-  GraspModel model;
-  GraspState state;
-  std::unique_ptr<GraspScratch> scratch;
-  Vec3 device;
 };
 
 // Half of what its velocity changed by came back with the other sign in each tick, for ever.
