@@ -7,7 +7,7 @@
 #include "engine/solve/interior_point.h"
 #include "engine/solve/large_problem.h"
 #include "engine/solve/newton.h"
-#include "engine/solve/point_wedge.h"
+#include "engine/solve/point_problem.h"
 #include "engine/solve/residual.h"
 #include "engine/solve/small_problem.h"
 
@@ -19,7 +19,6 @@ constexpr double kConeRoundOff =
 constexpr int kPolishSteps = 2;
 constexpr std::int64_t kPerContactScaled = 300, kPerPairScaled = 40;  // multiplications
 constexpr std::int64_t kPerSmallStep = 1000;                          // of three contacts at most
-constexpr std::int64_t kPerWedge = 20000;                             // some 200 looks at a point between two walls
 constexpr double kNearSolution = 1e-8;                                // residual from which Newton's method needs a step or two
 constexpr double kShiftedGap = 1e-6;                                  // of a problem with frozen shift, itself an approximation
 constexpr int kSweepsPerRound = 15;                                   // enough to leave the basin in which Newton's method failed
@@ -266,22 +265,13 @@ SolveResult solveByForm(const ContactProblem& problem, const SolverOptions& opti
   return withoutAddedEnergy(problem, result, scratch, r, u);
 }
 
-// A point between two walls that nothing else solved: `r`, `u` and `result` are as they were unless it slides on both.
-void trySlidingInWedge(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch, VectorMap r, VectorMap u,
-                       SolveResult& result) {
-  double before[2 * kTorsionRow];
-  std::copy(r.begin(), r.end(), before);
-  spend(kPerWedge, scratch);
-  if (!slideInWedge(problem, r)) return;
-  const double residual = weighedResidual(problem, r.data(), scratch, u.data());
-  if (residual <= std::max(options.tolerance, contentResidual(options, referenceSpeed(problem)))) {
-    result.method = SolveMethod::kGaussSeidel;
-    result.converged = true;
-    result.residual = residual;
-    return;
-  }
-  std::copy(std::begin(before), std::end(before), r.begin());
-  weighedResidual(problem, r.data(), scratch, u.data());
+// A point between walls that nothing else solved: `r`, `u` and `result` are as they were unless this does.
+void tryPointProblem(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch, double* r, double* u,
+                     SolveResult& result) {
+  const double enough = std::max(options.tolerance, contentResidual(options, referenceSpeed(problem)));
+  if (!solvePointProblem(problem, enough, scratch, r, u, result.residual)) return;
+  result.method = SolveMethod::kGaussSeidel;
+  result.converged = true;
 }
 
 }  // namespace
@@ -296,7 +286,7 @@ void solveContacts(const ContactProblem& problem, const SolverOptions& options, 
   if (is_solved) return;
   const VectorMap r_all(r, problem.rowCount()), u_all(u, problem.rowCount());
   result = solveByForm(problem, options, scratch, r_all, u_all);
-  if (!result.converged && isPointWedge(problem)) trySlidingInWedge(problem, options, scratch, r_all, u_all, result);
+  if (!result.converged && isPointProblem(problem)) tryPointProblem(problem, options, scratch, r, u, result);
 }
 
 void stopBySweeps(const ContactProblem& problem, int sweeps, SolverScratch& scratch, VectorMap r, VectorMap u) {

@@ -2,7 +2,7 @@
 //
 //   warm start's residual -> semi-smooth Newton (Alart-Curnier) -> the same with a proximal term -> interior point -> interior point with frozen shift, updated ->
 //   projected Gauss-Seidel with exact local solves -> best iterate, flagged.     Newton's method finishes what the others begin.
-// Few contacts go to small_problem.h, heaps of hundreds to large_problem.h; a point that slides on two walls, if all else failed, to point_wedge.h
+// Few contacts go to small_problem.h, heaps of hundreds to large_problem.h; a point between walls, if all else failed, to point_problem.h
 // (it counts as kGaussSeidel: an exact local solution).
 //
 // A body that has come to rest under impulses that are off by less than the tolerance drifts until they aren't, then is put right, in a cycle

@@ -111,10 +111,12 @@ class BiasFit {
 
   // Of the contacts that push: stuck ones with all rows, sliding ones along the normal.
   bool takesPart(const Contact& c) const {
+    if (pushing_ == PushingBy::kWedged) return true;
     if (pushing_ == PushingBy::kLastTick && c.closing) return false;
     return !(c.bias_C[kNormalRow] > kLargestCorrection);  // far from touching: it may land, and asks for nothing
   }
   bool sticks(const Contact& c, int i) const {
+    if (pushing_ == PushingBy::kWedged) return true;
     if (pushing_ == PushingBy::kLastTick) return c.stuck;
     return isInCone(r_ + problem_.firstRow(i), problem_.rows(i), problem_.friction(i), kInside);
   }

@@ -19,6 +19,7 @@ namespace pincer::engine {
 enum class PushingBy : std::uint8_t {
   kLastTick,  // those that did in the last tick, but for what closes in this one
   kImpulses,  // those that `r` has in their cones
+  kWedged,    // those that `r` has in their cones, all of them as if they stuck: of a point in a groove that locks (wedge.h)
 };
 
 // Whether the problem's contacts may contradict each other around a loop of bodies.

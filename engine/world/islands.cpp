@@ -12,6 +12,7 @@
 #include "engine/world/island_bias.h"
 #include "engine/world/island_threads.h"
 #include "engine/world/scratch.h"
+#include "engine/world/wedge.h"
 
 namespace pincer::engine {
 namespace {
@@ -292,27 +293,35 @@ void solveIsland(const WorldModel& model, int k, int thread, WorldScratch& scrat
   SolverScratch& memory = *s.solvers[thread];
   const bool is_heap = island.contacts > kHeapContacts, is_entangled = is_heap && chooseForm(problem, memory) == EquationForm::kTooLarge;
   const bool contradicts = scratch.h > 0 && mayContradict(problem);
+  const SolverOptions& whole = model.options.solver;
   const auto fit = [&](PushingBy pushing) {
-    if (contradicts && (!is_heap || is_entangled))
-      fitIslandBiases(pushing, scratch.h, kTangentCorrection / model.options.h, problem, island.r, island.q,
-                      {s.order.data() + island.place, n}, scratch.contacts, memory);
+    fitIslandBiases(pushing, scratch.h, kTangentCorrection / model.options.h, problem, island.r, island.q,
+                    {s.order.data() + island.place, n}, scratch.contacts, memory);
+  };
+  const auto solve = [&](const SolverOptions& options) { solveContacts(problem, options, memory, island.r, island.u, island.result); };
+  const auto solveAgain = [&](const SolverOptions& options) {
+    const SolveResult first = island.result;
+    solve(options);
+    island.result = again(first, island.result);
   };
   const bool is_limited = scratch.operations_left < kNoLimit;
   const std::int64_t share = is_limited ? std::max<std::int64_t>(scratch.operations_left, 0) * island.rows / s.rows : kNoLimit;
   const std::int64_t reserve = is_limited ? reserveFor(island) : 0;
   memory.operations_left = share - reserve;
-  fit(PushingBy::kLastTick);
+  if (contradicts && (!is_heap || is_entangled)) fit(PushingBy::kLastTick);
   if (contradicts && !is_heap) {
-    solveContacts(problem, withoutCostly(model.options.solver), memory, island.r, island.u, island.result);
+    solve(withoutCostly(whole));
     if (!island.result.converged) {
       fit(PushingBy::kImpulses);
-      const SolverOptions& whole = model.options.solver;
-      const SolveResult first = island.result;
-      solveContacts(problem, n < kLoopContacts ? whole : asOfLoops(whole), memory, island.r, island.u, island.result);
-      island.result = again(first, island.result);
+      solveAgain(n < kLoopContacts ? whole : asOfLoops(whole));
     }
   } else {
-    solveContacts(problem, model.options.solver, memory, island.r, island.u, island.result);
+    solve(whole);
+    if (scratch.h > 0 && memory.operations_left >= 0 && isWedged(problem, island.r, island.result)) {
+      fit(PushingBy::kWedged);
+      std::fill(island.r, island.r + island.rows, 0.0);  // or the squeeze would stay
+      solveAgain(whole);
+    }
   }
   std::int64_t spent = share - reserve - memory.operations_left;
   if (isLost(island.result, is_heap)) {

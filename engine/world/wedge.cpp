@@ -3,11 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/solve/mobility.h"
+#include "engine/solve/point_problem.h"
+#include "engine/solve/residual.h"
+
 namespace pincer::engine {
 namespace {
 
 constexpr double kPressedIn = 0.1;  // of 2 sin(alpha) S: far below what presses a point in, far above round-off of a squeeze
 constexpr double kLoose = 0.5;      // of tan(alpha): what is let go comes out without much of a squeeze
+
+constexpr double kLargestSqueeze = 1e3;  // w r_n of the problem's speeds: 1 / sin(alpha) where the groove opens by 0.1 degrees
 
 bool isPressedPoint(const Contact& c) {
   const bool is_point = c.a.kind == SideKind::kPoint || c.b.kind == SideKind::kPoint;
@@ -28,7 +34,24 @@ void loosen(Contact& x, Contact& y) {
   y.mu = std::min(y.mu, mu);
 }
 
+// w r_n [m/s]
+double responseOf(const ContactProblem& problem, int i, const double* r) {
+  double w = 0;
+  for (const ContactSide& side : problem.sides[static_cast<std::size_t>(i)]) {
+    if (side.mover >= 0) w += dot6(side.A[kNormalRow], side.A[kNormalRow]);
+  }
+  return w * r[problem.firstRow(i) + kNormalRow];
+}
+
 }  // namespace
+
+bool isWedged(const ContactProblem& problem, const double* r, const SolveResult& result) {
+  if (!isPointProblem(problem)) return false;
+  const double most = kLargestSqueeze * referenceSpeed(problem);
+  bool is_squeezed = false;
+  for (int i = 0; i < problem.contactCount(); ++i) is_squeezed = is_squeezed || responseOf(problem, i, r) > most;
+  return is_squeezed || !result.converged;
+}
 
 void loosenWedges(WorldScratch& scratch) {
   std::vector<Contact>& contacts = scratch.contacts;
