@@ -1,9 +1,10 @@
-// From impulses to momenta, from momenta to poses, and what each contact remembers of it.
+// From impulses to momenta, from momenta to poses.
 #include <algorithm>
 
 #include "engine/world/contact_rows.h"
 #include "engine/world/held_body.h"
 #include "engine/world/impact.h"
+#include "engine/world/island_sleep.h"
 #include "engine/world/joints.h"
 #include "engine/world/rest.h"
 #include "engine/world/step.h"
@@ -61,12 +62,19 @@ void spreadClosing(const WorldModel& model, WorldScratch& scratch) {
   }
 }
 
-void advanceDriven(const BodyScratch& scratch, BodyState& s) { s = {scratch.X_WB_end, scratch.free.v_W, scratch.free.w_W}; }
+void advanceDriven(BodyScratch& scratch, BodyState& s) {
+  const BodyState end{scratch.X_WB_end, scratch.free.v_W, scratch.free.w_W};
+  scratch.still = s.v_W.isZero(0) && s.L_W.isZero(0) && same(end, s);
+  s = end;
+}
 
 }  // namespace
 
 void gatherImpulses(const WorldModel& model, WorldScratch& scratch) {
-  for (BodyScratch& body : scratch.bodies) {
+  const bool something_sleeps = isSomethingAsleep(scratch);
+  for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+    if (something_sleeps && model.bodies[i].dynamic && scratch.sleep.idle[i]) continue;
+    BodyScratch& body = scratch.bodies[i];
     rest(body);
     body.angular_impulse_W.setZero();
   }
@@ -101,10 +109,12 @@ void advanceBody(const BodyModel& body, double h, BodyScratch& scratch, BodyStat
   const Vec3 v_old = s.v_W, L_old = s.L_W;
   s.v_W = scratch.free.v_W + body.inverse_mass * scratch.impulse_W;
   s.L_W += scratch.angular_impulse_W;
+  scratch.still = false;
   if (comesToRest(body, scratch, s.v_W, s.L_W)) {
     s.v_W.setZero();
     s.L_W.setZero();
     scratch.end = {s.v_W, s.L_W};
+    scratch.still = v_old.isZero(0) && L_old.isZero(0) && scratch.flung == 0;
     return;
   }
   s.X_WI.p += scratch.closing ? Vec3(h * s.v_W) : Vec3((0.5 * h) * (v_old + s.v_W));
@@ -157,96 +167,19 @@ void advancePoint(const std::array<AxisForm, 3>& forms, double h, PointScratch& 
   s.touching = scratch.touched && !scratch.closing;
 }
 
-void remember(const Contact& c, double h, ContactMemory& m) {
-  m.id = c.id;
-  m.r = c.r;
-  m.t1_W = c.R_WC.col(0);
-  m.n_W = c.n_W();
-  m.arm_a_W = c.arm_a_W;
-  m.arm_b_W = c.arm_b_W;
-  m.offset_C.setZero();
-  m.active = c.active();
-  m.sliding = c.sliding;
-  m.closing = c.closing;
-  m.settling = c.settling;
-  if (!m.active || m.sliding) return;
-  withRows(rowsOf(c.material), [&](auto rows) {
-    double v_end_C[kMaxContactRows];
-    relativeVelocity(c, c.mover_a->end, c.mover_b->end, rows, v_end_C);
-    for (int k = 0; k < rows; ++k) {
-      const double v_mean = c.closing ? v_end_C[k] : 0.5 * (c.v_start_C[k] + v_end_C[k]);
-      m.offset_C[k] = k == kNormalRow ? 0 : c.offset_C[k] + h * v_mean;
-    }
-  });
-}
-
-constexpr double kAligned = 1e-12;  // of the offsets: round-off
-
-bool isStuckAlike(const ContactMemory& x, const ContactMemory& y) {
-  constexpr double kSamePlane = 0.9999;  // cosine of the angle between the normals
-  return x.id >> 32 == y.id >> 32 && y.active && !y.sliding && x.n_W.dot(y.n_W) > kSamePlane;
-}
-
-// Makes the offsets of one face's contacts those of one rigid motion in its plane, d + theta n x rho: what no motion can undo would wedge
-// the body against its own friction, and the solver against the round-off of it. Least squares, all points alike.
-void alignOffsets(std::span<ContactMemory> face) {
-  Vec3 centre = Vec3::Zero(), d = Vec3::Zero();
-  const auto offset_W = [](const ContactMemory& m) { return Vec3(m.t1_W * m.offset_C[0] + m.n_W.cross(m.t1_W) * m.offset_C[1]); };
-  const auto count = static_cast<double>(face.size());
-  for (const ContactMemory& m : face) {
-    centre += m.arm_a_W / count;
-    d += offset_W(m) / count;
-  }
-  double turn = 0, spread = 0;
-  for (const ContactMemory& m : face) {
-    const Vec3 rho = m.arm_a_W - centre;
-    turn += m.n_W.dot(rho.cross(offset_W(m)));
-    spread += rho.squaredNorm();
-  }
-  const double theta = spread > 0 ? turn / spread : 0;
-  const auto fitted_W = [&](const ContactMemory& m) { return Vec3(d + theta * m.n_W.cross(m.arm_a_W - centre)); };
-  double largest = 0, change = 0;
-  for (const ContactMemory& m : face) {
-    largest = std::max(largest, offset_W(m).squaredNorm());
-    change = std::max(change, (fitted_W(m) - offset_W(m)).squaredNorm());
-  }
-  if (change <= kAligned * kAligned * largest) return;  // so that what rests does so to the bit
-  for (ContactMemory& m : face) {
-    const Vec3 offset = fitted_W(m);
-    m.offset_C[0] = m.t1_W.dot(offset);
-    m.offset_C[1] = m.n_W.cross(m.t1_W).dot(offset);
-  }
-}
-
-// Contacts of one pair follow each other, sorted by id; a face is a run of them that stick in one plane.
-void alignFaces(std::span<ContactMemory> contacts) {
-  for (std::size_t first = 0; first < contacts.size();) {
-    std::size_t end = first + 1;
-    const bool stuck = contacts[first].active && !contacts[first].sliding;
-    while (stuck && end < contacts.size() && isStuckAlike(contacts[first], contacts[end])) ++end;
-    if (end > first + 1) alignOffsets(contacts.subspan(first, end - first));
-    first = end;
-  }
-}
-
-void rememberContacts(const WorldScratch& scratch, double h, WorldState& state) {
-  ContactMemory* memory = state.contacts.data();
-  for (const Contact& c : scratch.contacts) remember(c, h, *memory++);
-  state.contact_count = static_cast<int>(scratch.contacts.size());
-  alignFaces({state.contacts.data(), static_cast<std::size_t>(state.contact_count)});
-}
-
 }  // namespace
 
 void advance(const WorldModel& model, WorldState& state, WorldScratch& scratch) {
   const double h = scratch.h;
+  scratch.sleep.still_bodies = 0;
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
     const BodyModel& body = model.bodies[i];
     if (isHeldBody(model, body)) {
       const int n = body.joint_group;
       advanceHeldBody(model, model.joint_groups[n], scratch.joint_groups[n], h, scratch.bodies[i], state.bodies[i]);
-    } else if (body.dynamic) {
+    } else if (body.dynamic && !isIdle(scratch, static_cast<int>(i))) {
       advanceBody(body, h, scratch.bodies[i], state.bodies[i]);
+      scratch.sleep.still_bodies += scratch.bodies[i].still;
     }
     if (body.driven) advanceDriven(scratch.bodies[i], state.bodies[i]);
   }
@@ -255,7 +188,7 @@ void advance(const WorldModel& model, WorldState& state, WorldScratch& scratch) 
     scratch.points[i].tick_impulse_W += scratch.points[i].impulse_W;
   }
   if (!model.joints.empty()) settleJoints(model, state, scratch);
-  rememberContacts(scratch, h, state);
+  rememberContacts(model, scratch, state);
   state.h_last = h;
 }
 

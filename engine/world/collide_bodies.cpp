@@ -3,6 +3,7 @@
 #include "contact/shape/pair_query.h"
 #include "engine/world/budget.h"
 #include "engine/world/impact.h"
+#include "engine/world/island_sleep.h"
 
 namespace pincer::engine {
 namespace {
@@ -38,6 +39,7 @@ Vec3 lastNormal(const WorldModel& model, const WorldState& state, const BodyPair
 // material  of the pair, null where it is combined once they touch;   found  working memory
 void collidePair(const WorldModel& model, const WorldState& state, const BodyPair& pair, const Material* material, double h,
                  contact::PairPoints& found, WorldScratch& scratch) {
+  if (isIdle(scratch, pair.a) && isIdle(scratch, pair.b)) return;
   const BodyModel &a = model.bodies[pair.a], &b = model.bodies[pair.b];
   const BodyScratch &sa = scratch.bodies[pair.a], &sb = scratch.bodies[pair.b];
   // What closes within the tick must be seen at its middle: the far end of a sheet that slaps down as well.

@@ -38,4 +38,7 @@ void recallContact(std::span<const ContactMemory>& memories, const WorldScratch&
 // Recalls the contacts, which are sorted, and fills first_row, q, mu and the warm start r, in their order.
 void fillContacts(const WorldModel& model, const WorldState& state, WorldScratch& scratch);
 
+// Writes what the contacts are to remember, and puts what sleeping ones remember among it (island_sleep.h); notes which of them a tick changed nothing of.
+void rememberContacts(const WorldModel& model, WorldScratch& scratch, WorldState& state);
+
 }  // namespace pincer::engine

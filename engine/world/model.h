@@ -121,7 +121,7 @@ struct WorldOptions {
   // Position error per tick that is allowed [m], 0 or 1e-12 .. 1; 0: every tick is one part. Costs three times a plain tick, or more.
   double position_tolerance = 0;
   int max_parts = 16;  // that a tick may be cut into for that, 2 .. 1024; rounded down to a power of two
-  bool sleep = true;   // a tick that would repeat the last one to the bit isn't computed (rest.h)
+  bool sleep = true;   // what would repeat its last tick to the bit isn't computed: the world (rest.h), islands (island_sleep.h)
   SolverOptions solver;
 };
 

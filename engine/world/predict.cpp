@@ -1,5 +1,6 @@
 // Where everything would be in the middle of the tick, and how fast at its end, if nothing touched.
 #include "engine/world/held_body.h"
+#include "engine/world/island_sleep.h"
 #include "engine/world/joints.h"
 #include "engine/world/step.h"
 
@@ -135,8 +136,8 @@ void predictAxes(const DrivenPointModel& point, const std::array<AxisForm, 3>& f
   }
 }
 
-void predictPoint(const DrivenPointModel& point, const std::array<AxisForm, 3>& forms, const PointState& s, const PointInput& in, double h,
-                  PointScratch& out) {
+[[gnu::always_inline]] inline void predictPoint(const DrivenPointModel& point, const std::array<AxisForm, 3>& forms, const PointState& s,
+                                                const PointInput& in, double h, PointScratch& out) {
   out.p_target_W = out.input_ok ? in.p_target_W : s.p_target_W;
   out.v_target_W = out.input_ok ? in.v_target_W : Vec3::Zero();
   out.start.v_W = s.v_W;
@@ -155,16 +156,14 @@ void predictPoint(const DrivenPointModel& point, const std::array<AxisForm, 3>& 
   predictTwist(point, s, in, h, out);
 }
 
-}  // namespace
-
-void predict(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
+void predictBodies(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
   const double h = scratch.h;
   const Vec3 dv_gravity_W = h * model.options.gravity_W;
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
     if (isHeldBody(model, model.bodies[i])) {
       predictHeld(model, state, static_cast<int>(i), scratch);
     } else if (model.bodies[i].dynamic) {
-      predictBody(model.bodies[i], state.bodies[i], dv_gravity_W, h, scratch.bodies[i]);
+      if (!isIdle(scratch, static_cast<int>(i))) predictBody(model.bodies[i], state.bodies[i], dv_gravity_W, h, scratch.bodies[i]);
     } else {
       BodyScratch& body = scratch.bodies[i];
       body.X_WI_mid = state.bodies[i].X_WI;
@@ -172,8 +171,14 @@ void predict(const WorldModel& model, const WorldState& state, WorldScratch& scr
       place(model.bodies[i], scratch.bodies[i]);
     }
   }
+}
+
+}  // namespace
+
+void predict(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
+  predictBodies(model, state, scratch);
   for (std::size_t i = 0; i < model.points.size(); ++i) {
-    predictPoint(model.points[i], model.point_forms[i], state.points[i], scratch.point_inputs[i], h, scratch.points[i]);
+    predictPoint(model.points[i], model.point_forms[i], state.points[i], scratch.point_inputs[i], scratch.h, scratch.points[i]);
   }
   if (!model.joints.empty()) predictJoints(model, scratch);
   scratch.contacts.clear();

@@ -6,23 +6,29 @@ namespace pincer::engine {
 namespace {
 
 bool same(const Quat& a, const Quat& b) { return a.coeffs() == b.coeffs(); }
+
+}  // namespace
+
 bool same(const BodyState& a, const BodyState& b) {
   return a.X_WI.p == b.X_WI.p && same(a.X_WI.q, b.X_WI.q) && a.v_W == b.v_W && a.L_W == b.L_W;
-}
-bool same(const PointState& a, const PointState& b) {
-  return a.p_W == b.p_W && a.v_W == b.v_W && a.p_target_W == b.p_target_W && a.v_target_W == b.v_target_W && a.touching == b.touching &&
-         a.twist == b.twist && a.twist_rate == b.twist_rate;
 }
 bool same(const ContactMemory& a, const ContactMemory& b) {
   return a.id == b.id && a.r == b.r && a.offset_C == b.offset_C && a.t1_W == b.t1_W && a.n_W == b.n_W && a.arm_a_W == b.arm_a_W &&
          a.arm_b_W == b.arm_b_W && a.active == b.active && a.sliding == b.sliding && a.closing == b.closing && a.settling == b.settling;
 }
+bool same(const MotionInput& a, const MotionInput& b) {
+  return a.X_WB.p == b.X_WB.p && same(a.X_WB.q, b.X_WB.q) && a.motion.v_W == b.motion.v_W && a.motion.w_W == b.motion.w_W;
+}
+
+namespace {
+
+bool same(const PointState& a, const PointState& b) {
+  return a.p_W == b.p_W && a.v_W == b.v_W && a.p_target_W == b.p_target_W && a.v_target_W == b.v_target_W && a.touching == b.touching &&
+         a.twist == b.twist && a.twist_rate == b.twist_rate;
+}
 bool same(const PointInput& a, const PointInput& b) {
   return a.p_target_W == b.p_target_W && a.v_target_W == b.v_target_W && a.f_W == b.f_W && a.w_W == b.w_W && a.turned == b.turned &&
          a.n_W == b.n_W;
-}
-bool same(const MotionInput& a, const MotionInput& b) {
-  return a.X_WB.p == b.X_WB.p && same(a.X_WB.q, b.X_WB.q) && a.motion.v_W == b.motion.v_W && a.motion.w_W == b.motion.w_W;
 }
 
 template <class Range>

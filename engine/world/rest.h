@@ -6,13 +6,19 @@
 //
 // Sleep is exact, no heuristic: a tick is a function of state and inputs. Where it ended in the state that it started from, bit by bit, the next one
 // from the same state with the same inputs does so too. Any change of either (a finger, a target, a force, a driven body, a state set from outside)
-// is a difference, and the tick is computed. Costs a comparison of the state; all of the world sleeps, or nothing.
+// is a difference, and the tick is computed. Costs a comparison of the
+// state. Of a world that isn't at rest as a whole, islands sleep (island_sleep.h).
 #pragma once
 #include "engine/world/step.h"
 
 namespace pincer::engine {
 
 constexpr double kRestSpeed = 1e-13;  // 3 um in a year [m/s]
+
+// To the bit, but for the sign of zeros.
+bool same(const BodyState& a, const BodyState& b);
+bool same(const ContactMemory& a, const ContactMemory& b);
+bool same(const MotionInput& a, const MotionInput& b);
 
 // Whether the tick from `state` with these inputs ends where it starts.
 bool repeatsItself(const WorldState& state, const WorldScratch& scratch, const StepInputs& inputs);

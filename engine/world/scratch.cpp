@@ -11,12 +11,24 @@ int patchesFor(const WorldModel& model) {
   return std::any_of(model.bodies.begin(), model.bodies.end(), is_mesh) ? 1024 : 1;
 }
 
+void sizeForSleep(const WorldModel& model, SleepScratch& sleep) {
+  const std::size_t bodies = model.bodies.size();
+  sleep.room = static_cast<std::size_t>(model.options.max_contacts);
+  sleep.idle.resize(bodies);
+  sleep.group.resize(bodies);
+  sleep.states.resize(bodies);
+  if (!model.options.sleep) return;
+  sleep.contacts.reserve(static_cast<std::size_t>(model.options.max_contacts));
+  sleep.kept.reserve(static_cast<std::size_t>(model.options.max_contacts));
+}
+
 }  // namespace
 
 WorldScratch::WorldScratch(const WorldModel& model) : h(model.options.h), patches(patchesFor(model)), islands(model) {
   const auto contact_count = static_cast<std::size_t>(model.options.max_contacts);
   const std::size_t row_count = contact_count * kMaxContactRows;
   bodies.resize(model.bodies.size());
+  for (std::size_t i = 0; i < bodies.size(); ++i) bodies[i].still = !model.bodies[i].dynamic;
   points.resize(model.points.size());
   for (PointScratch& point : points) point.has_hollows = model.has_hollows;
   contacts.reserve(contact_count);
@@ -46,6 +58,7 @@ WorldScratch::WorldScratch(const WorldModel& model) : h(model.options.h), patche
   rest.state.contacts.resize(contact_count);
   rest.points.resize(model.points.size());
   rest.motions.resize(static_cast<std::size_t>(model.driven_count));
+  sizeForSleep(model, sleep);
   point_inputs.resize(model.points.size());
   motion_inputs.resize(static_cast<std::size_t>(model.driven_count));
   first_row.resize(contact_count + 1);
@@ -63,7 +76,7 @@ std::uint64_t contactId(int kind, int a, int b, std::uint32_t feature) {
 
 Contact* addContact(WorldScratch& scratch, double phi) {
   std::vector<Contact>& contacts = scratch.contacts;
-  if (contacts.size() < contacts.capacity()) {
+  if (contacts.size() < scratch.sleep.room) {
     contacts.emplace_back().phi = phi;
     return &contacts.back();
   }

@@ -52,6 +52,7 @@ struct Contact {
   bool sliding = false;
   int settling = 0;    // see ContactMemory; of the last tick before the solve, of this one after it
   bool quiet = false;  // the last tick's impulses still fit
+  bool still = false;  // and nothing of it or of its bodies changed in this tick, where that was asked
 
   Contact() {}  // NOLINT(modernize-use-equals-default): a defaulted one would clear all of a new contact
   Vec3 n_W() const { return R_WC.col(2); }
@@ -75,10 +76,11 @@ struct PointInput {
 // What a body or point went through in this part of the tick.
 struct MoverScratch {
   Motion start, free, end;        // at the start of the tick; at its end, were there no contact; at its end (of bodies: if touched)
-  Vec3 impulse_W = Vec3::Zero();  // of all contacts [N s]
+  Vec3 impulse_W = Vec3::Zero();  // of all contacts [N s]; of what doesn't move, of those of awake bodies
   bool touched = false;           // some contact pushes on it
   bool quiet = false;             // and the last tick's impulses still fit for all that do
   bool closing = false;           // and one of those closes in this tick
+  bool still = false;             // of bodies: nothing of its state changed in this tick
 };
 struct BodyScratch : MoverScratch {
   Pose X_WI_mid, X_WB_mid;
@@ -161,6 +163,33 @@ struct RestScratch {
   bool holds = false;      // and how it started, with these inputs
 };
 
+// A contact of an island that sleeps, as it was in the last tick that was computed.
+struct SleepingContact {
+  Contact contact;
+  ContactMemory memory;
+  int place;  // of that in WorldState::contacts
+};
+
+// What was remembered of a contact before this tick, and where.
+struct KeptMemory {
+  Contact* contact;
+  const ContactMemory* place;
+  ContactMemory memory;
+};
+
+// See island_sleep.h.
+struct SleepScratch {
+  int bodies = 0;                         // that sleep
+  int still_bodies = 0;                   // awake ones that could: nothing of their state changed in this tick
+  int last_group = 0;                     // number of the island that fell asleep last
+  std::size_t room = 0;                   // for contacts of what is awake
+  std::vector<char> idle;                 // per body: it sleeps, or is static or driven and stands; only where `bodies` isn't 0
+  std::vector<int> group;                 // per body: which island it sleeps with, 0: none
+  std::vector<BodyState> states;          // of those that are idle
+  std::vector<SleepingContact> contacts;  // sorted by id
+  std::vector<KeptMemory> kept;           // working memory
+};
+
 struct WorldScratch {
   explicit WorldScratch(const WorldModel& model);
 
@@ -168,7 +197,7 @@ struct WorldScratch {
   double h;                                 // length of this part of the tick [s]; 0 in an impact, which takes no time
   std::vector<BodyScratch> bodies;
   std::vector<PointScratch> points;
-  std::vector<Contact> contacts;  // capacity options.max_contacts
+  std::vector<Contact> contacts;  // of what is awake, see forEachContact; capacity options.max_contacts
   bool contacts_dropped = false;
   std::vector<ImpactPair> fast_pairs;    // move so fast that the middle of the tick doesn't show whether they meet; capacity as contacts
   std::vector<ImpactPair> pushed_pairs;  // get that fast in this tick (notePushedPairs); capacity as contacts
@@ -187,8 +216,17 @@ struct WorldScratch {
   IslandScratch islands;
   std::unique_ptr<BroadPhase> broad_phase;  // null where every pair is looked at
   SolveResult solve;
+  SleepScratch sleep;
   StageClock* clock = nullptr;  // set it to have the stages timed; null costs nothing
 };
+
+// f(contact) for all contacts of the last tick, those of islands that sleep after the others.
+template <class F>
+void forEachContact(const WorldScratch& scratch, F f) {
+  for (const Contact& c : scratch.contacts) f(c);
+  for (const SleepingContact& c : scratch.sleep.contacts) f(c.contact);
+}
+inline int contactCount(const WorldScratch& scratch) { return static_cast<int>(scratch.contacts.size() + scratch.sleep.contacts.size()); }
 
 inline const MoverScratch& mover(const WorldScratch& scratch, const Side& side) {
   if (side.kind == SideKind::kPoint) return scratch.points[side.index];

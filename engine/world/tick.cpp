@@ -4,6 +4,7 @@
 
 #include "engine/world/budget.h"
 #include "engine/world/impact.h"
+#include "engine/world/island_sleep.h"
 #include "engine/world/push_out.h"
 #include "engine/world/rest.h"
 #include "engine/world/step.h"
@@ -55,6 +56,7 @@ class Tick {
     scratch_.contacts_dropped = false;
     const double budget = model_.options.solver.budget;
     scratch_.operations_left = budget > 0 ? static_cast<std::int64_t>(budget * kOperationsPerSecond) : kNoLimit;
+    if (isSomethingAsleep(scratch_)) wakeChanged(model_, state_, inputs_, scratch_);
     for (std::size_t i = 0; i < state_.points.size(); ++i) scratch_.points[i].v_tick_W = state_.points[i].v_W;
     if (model_.options.position_tolerance > 0) {
       runToTolerance();
@@ -63,21 +65,28 @@ class Tick {
     }
     ++state_.tick;
     state_.time = static_cast<double>(state_.tick) * model_.options.h;
-    report_.contacts = static_cast<int>(scratch_.contacts.size());
+    report_.contacts = contactCount(scratch_);
     report_.solve = scratch_.solve;
     if (scratch_.contacts_dropped) report_.status |= kContactsDropped;
     if (isSpent()) report_.status |= kBudgetSpent;
     if (!isFinite(state_)) report_.status |= kStateNotFinite;
-    if (model_.options.sleep) noteRest(state_, inputs_, report_.status == kStepOk && impacts_ == 0, scratch_);
+    if (model_.options.sleep) noteSleep();
     return report_;
   }
 
  private:
+  // All of the world, as soon as all of it rests; before that what does.
+  void noteSleep() {
+    noteRest(state_, inputs_, report_.status == kStepOk && impacts_ == 0, scratch_);
+    const bool is_whole = report_.parts == 1 && impacts_ == 0 && model_.options.position_tolerance == 0;
+    if (is_whole && !scratch_.rest.candidate) fallAsleep(model_, state_, scratch_);
+  }
+
   // The contacts of the last tick are those of this one.
   StepReport sleep() {
     ++state_.tick;
     state_.time = static_cast<double>(state_.tick) * model_.options.h;
-    report_.contacts = static_cast<int>(scratch_.contacts.size());
+    report_.contacts = contactCount(scratch_);
     report_.solve = scratch_.solve;
     report_.parts = state_.parts;
     report_.asleep = true;
@@ -156,6 +165,7 @@ class Tick {
     }
     landings_ += somethingLands();
     const double energy = isLimited(scratch_) ? energyOf(model_, state_) : 0;
+    wakeAll(scratch_);
     applyImpacts(model_, state_, scratch_, source_);
     chargeSurroundings();
     if (isSpent()) limitEnergy(model_, scratch_, energy, state_);
@@ -241,11 +251,14 @@ class Tick {
   void attempt(double h, bool landings = true) {
     scratch_.h = h;
     setInputs(h);
-    predict(model_, state_, scratch_);
-    mark(scratch_, Stage::kPredict);
-    collideBodies(model_, state_, scratch_);
-    mark(scratch_, Stage::kCollideBodies);
-    if (source_) source_->addContacts(scratch_);
+    if (isSomethingAsleep(scratch_) && h != model_.options.h) wakeAll(scratch_);
+    do {
+      predict(model_, state_, scratch_);
+      mark(scratch_, Stage::kPredict);
+      collideBodies(model_, state_, scratch_);
+      mark(scratch_, Stage::kCollideBodies);
+      if (source_) source_->addContacts(scratch_);
+    } while (isSomethingAsleep(scratch_) && wakeTouched(scratch_));
     if (mayHit()) {
       holdBackImpacts(model_, state_, landings && !model_.has_broad_phase && landings_ < kMostLandings, scratch_);
     } else {

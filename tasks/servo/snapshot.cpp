@@ -41,10 +41,10 @@ void captureGrasp(const grasp::GraspModel& model, const grasp::GraspState& state
     seen.place_L = finger.touching ? std::optional(grasp::placeOnPad(model.fingers[i], finger.touch)) : std::nullopt;
   }
   snapshot.contact_count = 0;
-  for (const engine::Contact& c : scratch.world.contacts) {
-    if (!c.active() || snapshot.contact_count == static_cast<int>(snapshot.contacts.size())) continue;
+  engine::forEachContact(scratch.world, [&](const engine::Contact& c) {
+    if (!c.active() || snapshot.contact_count == static_cast<int>(snapshot.contacts.size())) return;
     snapshot.contacts[static_cast<std::size_t>(snapshot.contact_count++)] = seenContact(c, scratch.world.h);
-  }
+  });
 }
 
 }  // namespace pincer::tasks

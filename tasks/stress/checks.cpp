@@ -42,13 +42,14 @@ std::string faultOfState(const engine::WorldModel& model, const engine::WorldSta
 std::string faultOfCones(const engine::WorldScratch& scratch) {
   constexpr double kTolerance = 1e-9;    // relative; the projection rounds to 1e-15
   constexpr double kUnderflow = 1e-150;  // squares of less aren't normal numbers any more [N s]
-  for (const engine::Contact& c : scratch.contacts) {
+  std::string fault;
+  engine::forEachContact(scratch, [&](const engine::Contact& c) {
     const double friction = std::sqrt(c.r.head<2>().squaredNorm() + c.r.tail<3>().squaredNorm());
-    if (!(c.r[2] >= 0)) return fmt::format("a contact pulls with {:.3g} N s", -c.r[2]);
+    if (!(c.r[2] >= 0)) fault = fmt::format("a contact pulls with {:.3g} N s", -c.r[2]);
     if (!(friction <= c.mu * c.r[2] * (1 + kTolerance) + kUnderflow))
-      return fmt::format("friction {:.17g} over mu r_n = {:.17g} N s", friction, c.mu * c.r[2]);
-  }
-  return {};
+      fault = fmt::format("friction {:.17g} over mu r_n = {:.17g} N s", friction, c.mu * c.r[2]);
+  });
+  return fault;
 }
 
 // Contacts with torsion or rolling have more rows, which u_C doesn't hold; they are left to the solver's own tests.
@@ -56,19 +57,19 @@ std::string faultOfLaw(const engine::WorldModel& model, const engine::WorldScrat
   constexpr double kTolerance = 1e-6;
   constexpr double kContent = 2e-8;  // [m/s] twice what the solver is content with (SolverOptions::content_speed), for w is another here
   double speed = 1e-6, worst = 0;
-  for (const engine::Contact& c : scratch.contacts) {
+  engine::forEachContact(scratch, [&](const engine::Contact& c) {
     engine::ContactVector u_free_C = engine::ContactVector::Zero();
     engine::relativeVelocity(c, engine::mover(scratch, c.a).free, engine::mover(scratch, c.b).free, engine::rowsOf(c.material),
                              u_free_C.data());
     speed = std::max({speed, c.u_C.norm(), u_free_C.norm()});
-  }
-  for (const engine::Contact& c : scratch.contacts) {
-    if (engine::rowsOf(c.material) > 3) continue;
+  });
+  engine::forEachContact(scratch, [&](const engine::Contact& c) {
+    if (engine::rowsOf(c.material) > 3) return;
     const double w = inverseMass(model, c.a) + inverseMass(model, c.b);
     const Vec3 u = c.u_C + Vec3(0, 0, c.mu * c.u_C.head<2>().norm());
     speed = std::max(speed, w * c.r.head<3>().norm());
     worst = std::max(worst, w * (c.r.head<3>() - ontoCone(c.r.head<3>() - u / w, c.mu)).norm());
-  }
+  });
   return worst <= kTolerance * speed + kContent ? std::string() : fmt::format("contact law missed by {:.3g} of {:.3g} m/s", worst, speed);
 }
 

@@ -84,7 +84,8 @@ std::vector<Record> massRatio(MeasureContext& context) {
       sunk = std::max(sunk, std::abs(sim.bodyPose(static_cast<int>(i)).p.z() - sim.scene().starts[i].X_WB.p.z()));
     if (sim.time() < 1) return;
     std::map<int, double> carried;  // by the upper body of a face: its lower body pushes it up
-    for (const engine::Contact& c : sim.scratch().world.contacts) carried[std::max(c.a.index, c.b.index)] += std::abs(c.impulse_W.z());
+    engine::forEachContact(sim.scratch().world,
+                           [&](const engine::Contact& c) { carried[std::max(c.a.index, c.b.index)] += std::abs(c.impulse_W.z()); });
     double weight = 0;
     for (int i = static_cast<int>(bodies.size()) - 1; i > 0; --i) {
       weight += bodies[static_cast<std::size_t>(i)].mass * kVerifyG * sim.scene().options.h;

@@ -87,6 +87,7 @@ std::vector<Measurement> engineMeasurements(const EngineBenchOptions& options) {
   }
   measurements.push_back(stepLatencyMeasurement(contestants));
   measurements.push_back(solveLatencyMeasurement(options.race.rounds));
+  measurements.push_back(sleepMeasurement(options.race.rounds));
   return measurements;
 }
 

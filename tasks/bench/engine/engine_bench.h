@@ -25,6 +25,9 @@ Measurement stepLatencyMeasurement(std::vector<Contestant> contestants);
 // What contacts cost to solve, 2 to 32 of them, warm; of each tick the least of so many rounds.
 Measurement solveLatencyMeasurement(int rounds);
 
+// What bodies at rest cost beside one that moves; the least of so many rounds.
+Measurement sleepMeasurement(int rounds);
+
 // The records of a scene: pincer's runs against its bounds, the others' beside them, and the ratios to the best of them.
 std::vector<Record> recordsOfRace(const BenchScene& scene, const std::vector<Contestant>& contestants, const std::vector<RaceRun>& runs);
 

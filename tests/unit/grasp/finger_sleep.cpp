@@ -32,5 +32,40 @@ TEST(FingerSleep, HoldsAPinchAndWakesAtATouch) {
   EXPECT_FALSE(tick());
 }
 
+// Three boxes on a floor, of which a finger pushes the first to the others, and goes back.
+tests::GraspWorld pushedBoxes(bool sleep) {
+  engine::WorldOptions options;
+  options.sleep = sleep;
+  engine::WorldBuilder builder(options);
+  builder.addBody({"floor", contact::HalfSpace{}, false, 0, {}});
+  std::vector<engine::BodyStart> starts{tests::startAt(Vec3::Zero())};
+  for (int k = 0; k < 3; ++k) {
+    builder.addBody({"box", contact::Box{{0.01, 0.02, 0.01}}, true, 0.05, {}});
+    starts.push_back(tests::startAt({0.04 * k, 0, 0.01}));
+  }
+  tests::GraspWorld w{buildGrasp(builder, {tests::softFinger("finger")}), {}};
+  w.state = makeState(w.model, starts, {Vec3(-0.03, 0, 0.01)});
+  return w;
+}
+
+TEST(FingerSleep, WhatItDoesntTouchSleepsWithTheSameBits) {
+  tests::GraspWorld w = pushedBoxes(true), other = pushedBoxes(false);
+  GraspScratch scratch(w.model), other_scratch(other.model);
+  FingerInput input;
+  std::array<int, 4> asleep{};
+  for (int i = 0; i < 1200; ++i) {
+    const double x = i < 600 ? 1e-4 * i : 1e-4 * (1200 - i);
+    input.p_WF = Vec3(-0.03 + x, 0, 0.01);
+    step(w.model, w.state, scratch, {&input, 1});
+    step(other.model, other.state, other_scratch, {&input, 1});
+    ASSERT_EQ(engine::hashOf(w.state.world), engine::hashOf(other.state.world)) << i;
+    ASSERT_EQ(scratch.fingers[0].f_contact_W, other_scratch.fingers[0].f_contact_W) << i;
+    ++asleep[static_cast<std::size_t>(scratch.world.sleep.bodies)];
+  }
+  EXPECT_GT(asleep[3], 300);  // before the touch and after it
+  EXPECT_GT(asleep[2], 100);  // one is pushed
+  EXPECT_GT(asleep[1], 100);  // against another
+}
+
 }  // namespace
 }  // namespace pincer::grasp

@@ -1,0 +1,156 @@
+#include "engine/world/island_sleep.h"
+
+#include <algorithm>
+
+#include "engine/world/rest.h"
+
+namespace pincer::engine {
+namespace {
+
+template <class F>
+void forBodiesOf(const Contact& c, F f) {
+  for (const Side& side : {c.a, c.b}) {
+    if (side.kind == SideKind::kBody) f(static_cast<std::size_t>(side.index));
+  }
+}
+
+bool isStill(const WorldScratch& scratch, const Island& island) {
+  if (!island.result.converged) return false;
+  const int* const order = scratch.islands.order.data() + island.place;
+  return std::all_of(order, order + island.contacts, [&](int i) { return scratch.contacts[static_cast<std::size_t>(i)].still; });
+}
+
+void putToSleep(const WorldModel& model, const WorldState& state, const Island& island, WorldScratch& scratch) {
+  SleepScratch& sleep = scratch.sleep;
+  ++sleep.last_group;
+  for (int n = 0; n < island.contacts; ++n) {
+    const int i = scratch.islands.order[static_cast<std::size_t>(island.place + n)];
+    forBodiesOf(scratch.contacts[static_cast<std::size_t>(i)], [&](std::size_t body) {
+      if (!model.bodies[body].dynamic || sleep.idle[body]) return;
+      sleep.idle[body] = true;
+      sleep.group[body] = sleep.last_group;
+      sleep.states[body] = state.bodies[body];
+      ++sleep.bodies;
+    });
+  }
+}
+
+bool isAsleep(const SleepScratch& sleep, const Contact& c) {
+  bool asleep = false;
+  forBodiesOf(c, [&](std::size_t body) { asleep = asleep || sleep.group[body] > 0; });
+  return asleep;
+}
+
+// Contacts of those that fell asleep are put aside, with what they remember.
+void putContactsAside(const WorldState& state, WorldScratch& scratch) {
+  SleepScratch& sleep = scratch.sleep;
+  const auto first_awake =
+      std::stable_partition(scratch.contacts.begin(), scratch.contacts.end(), [&](const Contact& c) { return !isAsleep(sleep, c); });
+  for (auto c = first_awake; c != scratch.contacts.end(); ++c) sleep.contacts.push_back({*c, {}, 0});
+  scratch.contacts.erase(first_awake, scratch.contacts.end());
+  std::sort(sleep.contacts.begin(), sleep.contacts.end(),
+            [](const SleepingContact& x, const SleepingContact& y) { return x.contact.id < y.contact.id; });
+  sleep.room = scratch.contacts.capacity() - sleep.contacts.size();
+  int place = 0;
+  for (SleepingContact& c : sleep.contacts) {
+    while (state.contacts[static_cast<std::size_t>(place)].id != c.contact.id) ++place;
+    c.place = place;
+    c.memory = state.contacts[static_cast<std::size_t>(place)];
+  }
+}
+
+// What doesn't move by contacts is idle while it stands.
+void noteStanding(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
+  for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+    if (model.bodies[i].dynamic) continue;
+    scratch.sleep.idle[i] = scratch.bodies[i].still;
+    scratch.sleep.states[i] = state.bodies[i];
+  }
+}
+
+// Whether the driven body is where its input leads it, and stays there.
+bool stands(const WorldModel& model, std::size_t body, const WorldState& state, const StepInputs& inputs) {
+  const BodyState& s = state.bodies[body];
+  if (!s.v_W.isZero(0) || !s.L_W.isZero(0)) return false;
+  const auto motion = static_cast<std::size_t>(model.bodies[body].motion);
+  return motion >= inputs.motions.size() || same(inputs.motions[motion], MotionInput{s.X_WI, {}});
+}
+
+bool sameMemories(const WorldState& state, const SleepScratch& sleep) {
+  return std::all_of(sleep.contacts.begin(), sleep.contacts.end(), [&](const SleepingContact& c) {
+    return c.place < state.contact_count && same(state.contacts[static_cast<std::size_t>(c.place)], c.memory);
+  });
+}
+
+void wake(int group, WorldScratch& scratch) {
+  SleepScratch& sleep = scratch.sleep;
+  std::erase_if(sleep.contacts, [&](const SleepingContact& c) {
+    bool is_of_group = false;
+    forBodiesOf(c.contact, [&](std::size_t body) { is_of_group = is_of_group || sleep.group[body] == group; });
+    return is_of_group;
+  });
+  sleep.room = scratch.contacts.capacity() - sleep.contacts.size();
+  for (std::size_t i = 0; i < sleep.group.size(); ++i) {
+    if (sleep.group[i] != group) continue;
+    sleep.group[i] = 0;
+    sleep.idle[i] = false;
+    --sleep.bodies;
+  }
+}
+
+}  // namespace
+
+void wakeChanged(const WorldModel& model, const WorldState& state, const StepInputs& inputs, WorldScratch& scratch) {
+  SleepScratch& sleep = scratch.sleep;
+  if (state.h_last != model.options.h || !sameMemories(state, sleep)) return wakeAll(scratch);
+  for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+    const BodyModel& body = model.bodies[i];
+    const bool is_idle = body.dynamic ? sleep.idle[i] : !body.driven || stands(model, i, state, inputs);
+    if (sleep.idle[i] && is_idle && !same(state.bodies[i], sleep.states[i])) return wakeAll(scratch);
+    if (body.dynamic) continue;
+    sleep.idle[i] = is_idle;
+    sleep.states[i] = state.bodies[i];
+  }
+}
+
+bool wakeTouched(WorldScratch& scratch) {
+  SleepScratch& sleep = scratch.sleep;
+  const int before = sleep.bodies;
+  if (scratch.contacts_dropped) {
+    scratch.contacts_dropped = false;
+    wakeAll(scratch);
+  }
+  const auto touch = [&](std::size_t body) {
+    if (sleep.group[body] > 0) wake(sleep.group[body], scratch);
+  };
+  for (const Contact& c : scratch.contacts) forBodiesOf(c, touch);
+  for (const ImpactPair& pair : scratch.fast_pairs) {
+    touch(static_cast<std::size_t>(pair.a));
+    touch(static_cast<std::size_t>(pair.b));
+  }
+  return sleep.bodies < before;
+}
+
+void wakeAll(WorldScratch& scratch) {
+  SleepScratch& sleep = scratch.sleep;
+  if (sleep.bodies == 0) return;
+  sleep.bodies = 0;
+  sleep.contacts.clear();
+  sleep.room = scratch.contacts.capacity();
+  std::fill(sleep.group.begin(), sleep.group.end(), 0);
+  std::fill(sleep.idle.begin(), sleep.idle.end(), false);
+}
+
+void fallAsleep(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
+  SleepScratch& sleep = scratch.sleep;
+  if (sleep.still_bodies == 0) return;
+  const int before = sleep.bodies;
+  for (const Island& island : scratch.islands.islands) {
+    if (isStill(scratch, island)) putToSleep(model, state, island, scratch);
+  }
+  if (sleep.bodies == before) return;
+  if (before == 0) noteStanding(model, state, scratch);
+  putContactsAside(state, scratch);
+}
+
+}  // namespace pincer::engine

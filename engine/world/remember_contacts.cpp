@@ -1,0 +1,136 @@
+// What each contact remembers of a tick.
+#include "engine/world/contact_rows.h"
+#include "engine/world/rest.h"
+
+namespace pincer::engine {
+namespace {
+
+void remember(const Contact& c, double h, ContactMemory& m) {
+  m.id = c.id;
+  m.r = c.r;
+  m.t1_W = c.R_WC.col(0);
+  m.n_W = c.n_W();
+  m.arm_a_W = c.arm_a_W;
+  m.arm_b_W = c.arm_b_W;
+  m.offset_C.setZero();
+  m.active = c.active();
+  m.sliding = c.sliding;
+  m.closing = c.closing;
+  m.settling = c.settling;
+  if (!m.active || m.sliding) return;
+  withRows(rowsOf(c.material), [&](auto rows) {
+    double v_end_C[kMaxContactRows];
+    relativeVelocity(c, c.mover_a->end, c.mover_b->end, rows, v_end_C);
+    for (int k = 0; k < rows; ++k) {
+      const double v_mean = c.closing ? v_end_C[k] : 0.5 * (c.v_start_C[k] + v_end_C[k]);
+      m.offset_C[k] = k == kNormalRow ? 0 : c.offset_C[k] + h * v_mean;
+    }
+  });
+}
+
+constexpr double kAligned = 1e-12;  // of the offsets: round-off
+
+bool isStuckAlike(const ContactMemory& x, const ContactMemory& y) {
+  constexpr double kSamePlane = 0.9999;  // cosine of the angle between the normals
+  return x.id >> 32 == y.id >> 32 && y.active && !y.sliding && x.n_W.dot(y.n_W) > kSamePlane;
+}
+
+// Makes the offsets of one face's contacts those of one rigid motion in its plane, d + theta n x rho: what no motion can undo would wedge
+// the body against its own friction, and the solver against the round-off of it. Least squares, all points alike.
+void alignOffsets(std::span<ContactMemory> face) {
+  Vec3 centre = Vec3::Zero(), d = Vec3::Zero();
+  const auto offset_W = [](const ContactMemory& m) { return Vec3(m.t1_W * m.offset_C[0] + m.n_W.cross(m.t1_W) * m.offset_C[1]); };
+  const auto count = static_cast<double>(face.size());
+  for (const ContactMemory& m : face) {
+    centre += m.arm_a_W / count;
+    d += offset_W(m) / count;
+  }
+  double turn = 0, spread = 0;
+  for (const ContactMemory& m : face) {
+    const Vec3 rho = m.arm_a_W - centre;
+    turn += m.n_W.dot(rho.cross(offset_W(m)));
+    spread += rho.squaredNorm();
+  }
+  const double theta = spread > 0 ? turn / spread : 0;
+  const auto fitted_W = [&](const ContactMemory& m) { return Vec3(d + theta * m.n_W.cross(m.arm_a_W - centre)); };
+  double largest = 0, change = 0;
+  for (const ContactMemory& m : face) {
+    largest = std::max(largest, offset_W(m).squaredNorm());
+    change = std::max(change, (fitted_W(m) - offset_W(m)).squaredNorm());
+  }
+  if (change <= kAligned * kAligned * largest) return;  // so that what rests does so to the bit
+  for (ContactMemory& m : face) {
+    const Vec3 offset = fitted_W(m);
+    m.offset_C[0] = m.t1_W.dot(offset);
+    m.offset_C[1] = m.n_W.cross(m.t1_W).dot(offset);
+  }
+}
+
+// Contacts of one pair follow each other, sorted by id; a face is a run of them that stick in one plane. Those that sleep stay as they are.
+void alignFaces(std::span<ContactMemory> contacts, std::span<const SleepingContact> sleeping) {
+  for (std::size_t first = 0; first < contacts.size();) {
+    if (!sleeping.empty() && sleeping.front().place == static_cast<int>(first)) {
+      sleeping = sleeping.subspan(1);
+      ++first;
+      continue;
+    }
+    std::size_t end = first + 1;
+    const bool stuck = contacts[first].active && !contacts[first].sliding;
+    while (stuck && end < contacts.size() && isStuckAlike(contacts[first], contacts[end])) ++end;
+    if (end > first + 1) alignOffsets(contacts.subspan(first, end - first));
+    first = end;
+  }
+}
+
+// Of both bodies nothing changed in this tick: nor may anything of what the contact remembers.
+bool standsStill(const WorldScratch& scratch, const Contact& c) {
+  const auto is_still = [&](const Side& side) {
+    return side.kind == SideKind::kBody && scratch.bodies[static_cast<std::size_t>(side.index)].still;
+  };
+  return !c.closing && is_still(c.a) && is_still(c.b);
+}
+
+// Notes what was remembered of contacts that stand still, which is about to be written over, to compare.
+void keepOld(const WorldScratch& scratch, Contact& c, ContactMemory* place, std::vector<KeptMemory>& kept) {
+  c.still = false;
+  if (c.memory == place && standsStill(scratch, c)) kept.push_back({&c, place, *place});
+}
+
+// Puts what sleeping contacts of ids below `id` remember where it belongs, from `place` on. Returns the place behind it.
+ContactMemory* putSleeping(std::span<SleepingContact>& sleeping, std::uint64_t id, ContactMemory* first, ContactMemory* place) {
+  for (; !sleeping.empty() && sleeping.front().contact.id < id; sleeping = sleeping.subspan(1), ++place) {
+    const auto now = static_cast<int>(place - first);
+    if (sleeping.front().place != now) *place = sleeping.front().memory;
+    sleeping.front().place = now;
+  }
+  return place;
+}
+
+std::uint64_t nextId(std::span<const SleepingContact> sleeping) {
+  return sleeping.empty() ? ~std::uint64_t{0} : sleeping.front().contact.id;
+}
+
+}  // namespace
+
+void rememberContacts(const WorldModel& model, WorldScratch& scratch, WorldState& state) {
+  const double h = scratch.h;
+  const bool may_sleep = model.options.sleep && scratch.sleep.still_bodies > 0;
+  std::span<SleepingContact> sleeping = scratch.sleep.contacts;
+  std::uint64_t next_id = nextId(sleeping);
+  ContactMemory *const first = state.contacts.data(), *place = first;
+  scratch.sleep.kept.clear();
+  for (Contact& c : scratch.contacts) {
+    if (next_id < c.id) {
+      place = putSleeping(sleeping, c.id, first, place);
+      next_id = nextId(sleeping);
+    }
+    if (may_sleep) keepOld(scratch, c, place, scratch.sleep.kept);
+    remember(c, h, *place++);
+  }
+  if (!sleeping.empty()) place = putSleeping(sleeping, ~std::uint64_t{0}, first, place);
+  state.contact_count = static_cast<int>(place - first);
+  alignFaces({first, place}, scratch.sleep.contacts);
+  for (const KeptMemory& kept : scratch.sleep.kept) kept.contact->still = same(*kept.place, kept.memory);
+}
+
+}  // namespace pincer::engine
