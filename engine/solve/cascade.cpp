@@ -22,12 +22,13 @@ constexpr std::int64_t kPerSmallStep = 1000;                          // of thre
 constexpr double kNearSolution = 1e-8;                                // residual from which Newton's method needs a step or two
 constexpr double kShiftedGap = 1e-6;                                  // of a problem with frozen shift, itself an approximation
 constexpr int kSweepsPerRound = 15;                                   // enough to leave the basin in which Newton's method failed
-constexpr int kFewestStops = 4;                                       // sweeps, whatever is left of the budget
-constexpr int kSweepsPerLook = 5;                                     // a look at the residual costs as much as a sweep
-constexpr int kAffordableContacts = 20;                               // beyond, only one attempt from the interior
-constexpr int kCostlyContacts = 80;  // beyond, an interior point costs milliseconds; the next tick begins where this one gives up
-constexpr int kDenseContacts = 40;   // beyond, a dense matrix costs more than any graph of movers that fits
-constexpr int kBlocksPerMover = 40;  // of the sparse matrix: enough for dense graphs of 40 movers, and for long stacks
+constexpr int kGivingRounds = 12;
+constexpr int kFewestStops = 4;          // sweeps, whatever is left of the budget
+constexpr int kSweepsPerLook = 5;        // a look at the residual costs as much as a sweep
+constexpr int kAffordableContacts = 20;  // beyond, only one attempt from the interior
+constexpr int kCostlyContacts = 80;      // beyond, an interior point costs milliseconds; the next tick begins where this one gives up
+constexpr int kDenseContacts = 40;       // beyond, a dense matrix costs more than any graph of movers that fits
+constexpr int kBlocksPerMover = 40;      // of the sparse matrix: enough for dense graphs of 40 movers, and for long stacks
 
 // The residual that is enough when the tolerance is out of reach, for a problem of speeds of order `reference_speed` [m/s].
 double contentResidual(const SolverOptions& options, double reference_speed) {
@@ -81,7 +82,7 @@ class Search {
     evaluate(problem_, current_);
     iterations_ += iterateProximally(problem_, 0.5 * options.tolerance, options.proximal_rounds, equations_, scratch_, current_, trial_);
     keepBest();
-    if (isEnough(options)) return SolveMethod::kProximalNewton;
+    if (isEnough(options) || giveWay(options)) return SolveMethod::kProximalNewton;
     if (problem_.contactCount() > kCostlyContacts || isSpent()) return sweep(options);
     if (options.interior_point_iterations > 0) {
       iterations_ += followCentralPath(problem_, nullptr, kNearSolution, options.interior_point_iterations, equations_, scratch_, current_);
@@ -136,6 +137,7 @@ class Search {
       }
   }
   double residual() const { return best_.residual; }
+  double give() const { return give_; }
   int iterations() const { return iterations_; }
 
  private:
@@ -151,6 +153,20 @@ class Search {
   }
   bool isEnough(const SolverOptions& options) const {
     return best_.residual <= std::max(0.5 * options.tolerance, contentResidual(options, problem_.speed));
+  }
+
+  // Whether contacts that contradict each other have an answer if they give way a little.
+  bool giveWay(const SolverOptions& options) {
+    if (!(options.largest_give > 0)) return false;
+    restartFromBest();
+    evaluate(problem_, current_);
+    double give = options.largest_give;
+    iterations_ += iterateGiving(problem_, 0.5 * options.tolerance, kGivingRounds, equations_, scratch_, current_, trial_, give);
+    if (!(give <= options.largest_give)) return false;
+    give_ = give;
+    best_.residual = std::numeric_limits<double>::infinity();
+    keepBest();
+    return true;
   }
 
   bool iterateOnShift(const SolverOptions& options) {
@@ -185,6 +201,7 @@ class Search {
   SolverScratch& scratch_;
   Iterate current_{}, trial_{}, best_{};
   int iterations_ = 0;
+  double give_ = 0;
 };
 
 // Scales r so that  E(r) = r . (q + W r / 2),  the energy that it brings in, isn't positive: to the minimum of E on its ray.
@@ -221,7 +238,7 @@ SolverScratch::SolverScratch(int contacts, int movers)
   const auto n = static_cast<std::size_t>(contacts), dense = static_cast<std::size_t>(dense_contacts);
   const std::size_t m = kMaxContactRows * n, rows = kMaxContactRows * dense;
   for (std::vector<double>* matrix : {&W, &jacobian}) matrix->resize(rows * rows);
-  for (std::vector<double>* vector : {&q, &step, &response, &shift_centre}) vector->resize(m);
+  for (std::vector<double>* vector : {&q, &step, &response, &shift_centre, &give}) vector->resize(m);
   for (std::vector<double>& vector : impulses) vector.resize(m);
   for (std::vector<double>& vector : velocities) vector.resize(m);
   y.resize(kMoverFreedoms * static_cast<std::size_t>(movers));
@@ -254,8 +271,10 @@ SolveResult solveByForm(const ContactProblem& problem, const SolverOptions& opti
     return large.converged ? large : withoutAddedEnergy(problem, large, scratch, r, u);
   }
   Search search(problem, form, scratch, r.data(), u.data(), start);
-  SolveResult result{is_close ? search.polish(options) : search.run(options), search.iterations(), search.residual(), start, true};
+  const SolveMethod method = is_close ? search.polish(options) : search.run(options);
+  SolveResult result{method, search.iterations(), search.residual(), start, true, search.give()};
   search.write(r.data(), u.data());
+  if (result.give > 0) return result;
   if (!project(problem, r.data()) || result.method == SolveMethod::kNotConverged)
     result.residual = weighedResidual(problem, r.data(), scratch, u.data());
   if (result.residual <= std::max(options.tolerance, contentResidual(options, referenceSpeed(problem)))) {

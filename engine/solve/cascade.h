@@ -27,6 +27,8 @@ struct SolverOptions {
   // other by the round-off of their gaps (a mesh at rest in a dish) have no better answer, and 10 nm/s is far below anything felt.
   double contentment = 1e-8;
   double content_speed = 1e-8;
+  double largest_give =
+      0;  // by how much contacts that contradict each other may give way once Newton's method has failed, see SolveResult [m/s]
   int newton_iterations = 12;          // each time that Newton's method is tried
   int proximal_rounds = 12;            // of Newton's method with a proximal term
   int interior_point_iterations = 30;  // each time that the interior-point method is tried
@@ -52,6 +54,7 @@ struct SolveResult {
   double start = 0;     // residual of the warm start [-]
   bool converged =
       true;  // to the tolerance, or to contentment by the costlier methods; false: the returned r is the best iterate in the cones, scaled so that it adds no energy
+  double give = 0;  // not 0: r and u are the answer for q + SolverScratch::give, of which this is the largest row [m/s]
 };
 
 // How a contact takes part in the linear equations of contact_equations.h; blocks row-major with stride kMaxContactRows.
@@ -74,8 +77,8 @@ struct SolverScratch {
   std::vector<double> W, q, scale, y;
   std::vector<double> weight;  // w_i, mean of W_ii's diagonal [1/kg]
   std::vector<double> shift;   // |u_T| at which interior_point.h freezes it
-  std::vector<double> jacobian, step, rhs, response, interior,
-      shift_centre;                                         // linear equations and vectors of newton.h and interior_point.h
+  std::vector<double> jacobian, step, rhs, response, interior, shift_centre,
+      give;                                                 // linear equations and vectors of newton.h and interior_point.h
   std::array<std::vector<double>, 3> impulses, velocities;  // current, trial and best iterate
   std::vector<int> active, pivots;                          // contacts in the dense equations; row swaps
   std::vector<ContactTerms> terms;                          // contact_equations.h

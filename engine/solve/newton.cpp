@@ -1,6 +1,7 @@
 #include "engine/solve/newton.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "engine/solve/cone.h"
@@ -15,6 +16,9 @@ constexpr int kMostCorrections = 3;
 constexpr double kProximalEpsilon = 1e-3;  // small enough that a few rounds do, large enough for the equations to be tame
 constexpr double kRoundDecrease = 1e-8;    // of |Phi|^2 in a round
 constexpr int kStepsPerRound = 8;
+constexpr double kGivingEpsilon = 1e-2, kMoreEpsilon = 10;  // of contacts that give way: as long as a round isn't solved, more
+constexpr int kStepsPerGivingRound = 12;
+constexpr double kStillFading = 0.5;          // of the give of the round before
 constexpr int kPatience = 5;                  // steps without a residual half as large as the best before, after which it won't come
 constexpr int kTrials = 6;                    // step lengths 1, 1/2, .. 1/32
 constexpr double kSufficientDecrease = 1e-4;  // Armijo's, on |Phi|^2
@@ -227,6 +231,75 @@ int iterateProximally(const ScaledProblem& problem, double tolerance, int rounds
       return steps;
     }
   }
+  return steps;
+}
+
+namespace {
+
+// Whether `current` is the answer with u + epsilon (r - r_c); `u` is working memory.
+bool isSolved(const ScaledProblem& problem, const Centre& centre, double tolerance, const Iterate& current, double* u) {
+  Iterate given{current.r, u};
+  for (int row = 0; row < problem.rowCount(); ++row) u[row] = current.u[row] + centre.epsilon * (current.r[row] - centre.r[row]);
+  judge(problem, given);
+  return given.residual <= tolerance;
+}
+
+bool solveRound(const ScaledProblem& problem, const Centre& centre, double tolerance, ContactEquations& equations, SolverScratch& scratch,
+                Iterate& current, Iterate& trial, int& steps) {
+  for (int n = 0; n < kStepsPerGivingRound; ++n, ++steps) {
+    NewtonStep newton(problem, current, centre, equations, scratch);
+    if (!newton.solve()) return false;
+    searchLine(problem, centre, newton, tolerance, scratch, current, trial);
+    std::swap(current, trial);
+    if (isSolved(problem, centre, tolerance, current, trial.u)) return true;
+  }
+  return false;
+}
+
+// Fills scratch.give; returns the largest.
+double keepGive(const ScaledProblem& problem, const Centre& centre, const Iterate& current, SolverScratch& scratch) {
+  double largest = 0;
+  for (int i = 0; i < problem.contactCount(); ++i) {
+    for (int row = problem.firstRow(i); row < problem.firstRow(i + 1); ++row) {
+      const double give = problem.scale[i] * centre.epsilon * (current.r[row] - centre.r[row]);
+      scratch.give[static_cast<std::size_t>(row)] = give;
+      largest = std::max(largest, std::abs(give));
+    }
+  }
+  return largest;
+}
+
+void addGive(const ScaledProblem& problem, const SolverScratch& scratch, Iterate& it) {
+  for (int i = 0; i < problem.contactCount(); ++i) {
+    for (int row = problem.firstRow(i); row < problem.firstRow(i + 1); ++row)
+      it.u[row] += scratch.give[static_cast<std::size_t>(row)] / problem.scale[i];
+  }
+  judge(problem, it);
+}
+
+}  // namespace
+
+int iterateGiving(const ScaledProblem& problem, double tolerance, int rounds, ContactEquations& equations, SolverScratch& scratch,
+                  Iterate& current, Iterate& trial, double& largest) {
+  double* const r_c = scratch.shift_centre.data();
+  double epsilon = kGivingEpsilon, give = std::numeric_limits<double>::infinity();
+  int steps = 0;
+  for (int round = 0; round < rounds && scratch.operations_left >= 0; ++round) {
+    std::copy(current.r, current.r + problem.rowCount(), r_c);
+    const Centre centre{r_c, epsilon};
+    if (solveRound(problem, centre, tolerance, equations, scratch, current, trial, steps)) {
+      const double before = give;
+      give = keepGive(problem, centre, current, scratch);
+      if (give <= largest && !(give < kStillFading * before)) break;
+    } else {
+      std::copy(r_c, r_c + problem.rowCount(), current.r);
+      evaluate(problem, current);
+      if (std::isfinite(give)) break;
+      epsilon *= kMoreEpsilon;
+    }
+  }
+  largest = give;
+  if (std::isfinite(give)) addGive(problem, scratch, current);
   return steps;
 }
 

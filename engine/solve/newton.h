@@ -25,4 +25,10 @@ int iterateNewton(const ScaledProblem& problem, double tolerance, int iterations
 int iterateProximally(const ScaledProblem& problem, double tolerance, int rounds, ContactEquations& equations, SolverScratch& scratch,
                       Iterate& current, Iterate& trial);
 
+// The same for contacts that contradict each other, which have no answer: the answer for q + give, give = epsilon (r - r_c) of the last round that was
+// solved. It tends to the least that they have to give way by; rounds go on until it is at most `largest` [m/s] and no longer fades. scratch.give holds
+// it, unscaled [m/s]; `current`, its u with it, is that round's. `largest` becomes the largest of it; infinite, and `current` as before, if no round was solved.
+int iterateGiving(const ScaledProblem& problem, double tolerance, int rounds, ContactEquations& equations, SolverScratch& scratch,
+                  Iterate& current, Iterate& trial, double& largest);
+
 }  // namespace pincer::engine

@@ -28,6 +28,12 @@ double dot(const double* a, const double* b, int n) {
   return sum;
 }
 
+// The stick offset follows.
+void changeBias(double h, double offset_rate, double change, int k, Contact& c) {
+  c.bias_C[k] += change;
+  if (k != kNormalRow && c.stuck && offset_rate > 0) c.offset_C[k] = c.bias_C[k] / offset_rate - 0.5 * h * c.v_start_C[k];
+}
+
 class BiasFit {
  public:
   BiasFit(PushingBy pushing, const ContactProblem& problem, const double* r, std::span<const int> order, std::vector<Contact>& contacts,
@@ -100,8 +106,7 @@ class BiasFit {
         if (!(w * unitOfRow(c, k) > 0)) continue;
         const double change = -b_[problem_.firstRow(i) + k] / w;
         q[problem_.firstRow(i) + k] += change;
-        c.bias_C[k] += change / unitOfRow(c, k);
-        if (k != kNormalRow && c.stuck && offset_rate > 0) c.offset_C[k] = c.bias_C[k] / offset_rate - 0.5 * h * c.v_start_C[k];
+        changeBias(h, offset_rate, change / unitOfRow(c, k), k, c);
       }
     }
   }
@@ -176,6 +181,18 @@ void fitIslandBiases(PushingBy pushing, double h, double offset_rate, const Cont
   if (memory.operations_left < 0 || fit.gather() <= kNegligible) return;
   fit.minimise();
   fit.apply(h, offset_rate, q);
+}
+
+void giveWay(double h, double offset_rate, const ContactProblem& problem, const double* give, double* q, std::span<const int> order,
+             std::vector<Contact>& contacts) {
+  for (int i = 0; i < problem.contactCount(); ++i) {
+    Contact& c = contacts[static_cast<std::size_t>(order[static_cast<std::size_t>(i)])];
+    for (int k = 0; k < problem.rows(i); ++k) {
+      const int row = problem.firstRow(i) + k;
+      q[row] += give[row];
+      if (unitOfRow(c, k) > 0) changeBias(h, offset_rate, give[row] / unitOfRow(c, k), k, c);
+    }
+  }
 }
 
 }  // namespace pincer::engine

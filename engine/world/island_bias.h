@@ -32,4 +32,8 @@ bool mayContradict(const ContactProblem& problem);
 void fitIslandBiases(PushingBy pushing, double h, double offset_rate, const ContactProblem& problem, const double* r, double* q,
                      std::span<const int> order, std::vector<Contact>& contacts, SolverScratch& memory);
 
+// Where the solver found an answer only for q + `give`: what the contacts ask for, and q, become what they get.
+void giveWay(double h, double offset_rate, const ContactProblem& problem, const double* give, double* q, std::span<const int> order,
+             std::vector<Contact>& contacts);
+
 }  // namespace pincer::engine

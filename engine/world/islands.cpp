@@ -7,6 +7,7 @@
 
 #include "engine/solve/contact_equations.h"
 #include "engine/solve/gauss_seidel.h"
+#include "engine/solve/large_problem.h"
 #include "engine/world/contact_rows.h"
 #include "engine/world/contact_sides.h"
 #include "engine/world/island_bias.h"
@@ -219,6 +220,7 @@ void addResult(const SolveResult& island, SolveResult& all) {
   all.iterations += island.iterations;
   all.residual = std::max(all.residual, island.residual);
   all.converged = all.converged && island.converged;
+  all.give = std::max(all.give, island.give);
 }
 
 }  // namespace
@@ -268,11 +270,9 @@ SolverOptions withoutCostly(SolverOptions options) {
   return options;
 }
 
-// Around loops of bodies that are held more than six-fold, what sticks here and slips there can't be told apart to the last digits: a contact
-// that slips by some 10 nm/s has its friction's direction from that.
+// Around loops of bodies that are held more than six-fold contacts give way where they contradict each other.
 SolverOptions asOfLoops(SolverOptions options) {
-  constexpr double kEnough = 5e-7;  // residual [-]
-  options.contentment = std::max(options.contentment, kEnough);
+  options.largest_give = kLargeSpeed;
   return options;
 }
 
@@ -292,11 +292,13 @@ void solveIsland(const WorldModel& model, int k, int thread, WorldScratch& scrat
                                VectorMap(island.q, island.rows), island.movers,  island.settling > 0};
   SolverScratch& memory = *s.solvers[thread];
   const bool is_heap = island.contacts > kHeapContacts, is_entangled = is_heap && chooseForm(problem, memory) == EquationForm::kTooLarge;
-  const bool contradicts = scratch.h > 0 && mayContradict(problem);
+  const bool is_loop = mayContradict(problem), contradicts = scratch.h > 0 && is_loop;
   const SolverOptions& whole = model.options.solver;
+  const SolverOptions last = is_loop && n >= kLoopContacts && !is_heap ? asOfLoops(whole) : whole;
+  const double offset_rate = scratch.h > 0 ? kTangentCorrection / model.options.h : 0;
+  const std::span<const int> order(s.order.data() + island.place, n);
   const auto fit = [&](PushingBy pushing) {
-    fitIslandBiases(pushing, scratch.h, kTangentCorrection / model.options.h, problem, island.r, island.q,
-                    {s.order.data() + island.place, n}, scratch.contacts, memory);
+    fitIslandBiases(pushing, scratch.h, offset_rate, problem, island.r, island.q, order, scratch.contacts, memory);
   };
   const auto solve = [&](const SolverOptions& options) { solveContacts(problem, options, memory, island.r, island.u, island.result); };
   const auto solveAgain = [&](const SolverOptions& options) {
@@ -313,16 +315,18 @@ void solveIsland(const WorldModel& model, int k, int thread, WorldScratch& scrat
     solve(withoutCostly(whole));
     if (!island.result.converged) {
       fit(PushingBy::kImpulses);
-      solveAgain(n < kLoopContacts ? whole : asOfLoops(whole));
+      solveAgain(last);
     }
+    if (!island.result.converged && n < kLoopContacts) solveAgain(asOfLoops(whole));
   } else {
-    solve(whole);
+    solve(last);
     if (scratch.h > 0 && memory.operations_left >= 0 && isWedged(problem, island.r, island.result)) {
       fit(PushingBy::kWedged);
       std::fill(island.r, island.r + island.rows, 0.0);  // or the squeeze would stay
       solveAgain(whole);
     }
   }
+  if (island.result.give > 0) giveWay(scratch.h, offset_rate, problem, memory.give.data(), island.q, order, scratch.contacts);
   std::int64_t spent = share - reserve - memory.operations_left;
   if (isLost(island.result, is_heap)) {
     const std::int64_t for_stops = reserve + std::max<std::int64_t>(memory.operations_left, 0);
