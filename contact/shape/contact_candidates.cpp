@@ -38,15 +38,22 @@ struct Group {
       }
     }
   }
-  // Distance of `p` from what the group has: from its point, its line, or the outline of more.
+  // Distance of `p` from what the group has: from its point, the line between two, or the outline of more.
   double outside(const Vec3& p) const {
     if (count == 1) return flat(p - point(0)).norm();
-    double most = count == 2 ? 0 : -1;
+    if (count == 2) return outsideLine(flat(p - point(0)), flat(point(1) - point(0)));
+    double most = -1;
     for (int i = 0; i < side_count; ++i) {
       const Side& side = sides[static_cast<std::size_t>(i)];
       most = std::max(most, side.right.dot(p - side.from));
     }
     return most;
+  }
+
+ private:
+  static double outsideLine(const Vec3& p, const Vec3& line) {
+    const double share = std::clamp(p.dot(line) / line.squaredNorm(), 0.0, 1.0);
+    return (p - share * line).norm();
   }
 };
 

@@ -7,6 +7,7 @@
 
 #include "contact/mesh/generated_meshes.h"
 #include "contact/shape/closed_forms.h"
+#include "contact/shape/contact_candidates.h"
 #include "contact/shape/pair_query.h"
 #include "contact/shape/polytope.h"
 #include "contact/surface/smooth_mesh.h"
@@ -152,6 +153,46 @@ TEST(Manifolds, HowAFaceIsCutMakesNoDifference) {
         EXPECT_NEAR(Outline(q, Vec2::Zero()).area, of_whole.area, 1e-9 * of_whole.area) << a.name << " " << i;  // round-off
       }
     }
+  }
+}
+
+// A capsule or cylinder that lies on a table is held at both of its ends, however many of the table's edges it lies across.
+TEST(Manifolds, WhatLiesAlongALineIsHeldAtItsEnds) {
+  const Vec3 half(0.08, 0.08, 0.02);
+  const double radius = 0.012, half_length = 0.03;
+  RandomNumbers random(7);
+  for (const int cuts : {1, 7, 40}) {
+    const Mesh table{SmoothMesh::build(gridBox(half, cuts))};
+    for (const Shape& lying : {Shape(Capsule{radius, half_length}), Shape(Cylinder{radius, half_length})}) {
+      for (int i = 0; i < 20; ++i) {
+        const Quat q = about(Vec3::UnitZ(), random.uniform(-3, 3)) * about(Vec3::UnitY(), tests::kPi / 2);
+        const Vec3 beside(random.uniform(-0.03, 0.03), random.uniform(-0.03, 0.03), half.z() + radius - 1e-6);
+        const PairPoints p = askPair(lying, {q, beside}, table);
+        double low = 0, high = 0;
+        for (int k = 0; k < p.count; ++k) {
+          const double along = (q * Vec3::UnitZ()).dot(p.points[static_cast<std::size_t>(k)].p_W - beside);
+          low = std::min(low, along);
+          high = std::max(high, along);
+        }
+        EXPECT_NEAR(low, -half_length, 1e-9) << cuts << " " << i << " " << lying.index();
+        EXPECT_NEAR(high, half_length, 1e-9) << cuts << " " << i << " " << lying.index();
+      }
+    }
+  }
+}
+
+// Of points in a line the deepest, somewhere between the others, doesn't hide one of the two ends.
+TEST(Manifolds, ALineWhoseMiddleIsDeepestKeepsBothEnds) {
+  for (const double middle : {-0.004, 0.0, 0.007}) {
+    ContactCandidates candidates;
+    std::uint32_t feature = 0;
+    for (const double x : {-0.01, -0.005, middle, 0.005, 0.01})
+      candidates.add({Vec3(x, 0, 0), Vec3::UnitZ(), x == middle ? -5e-6 : -1e-6, ++feature});
+    PairPoints out;
+    candidates.keepBest(Pose{}, out);
+    std::set<double> kept;
+    for (int k = 0; k < out.count; ++k) kept.insert(out.points[static_cast<std::size_t>(k)].p_W.x());
+    EXPECT_EQ(kept, (std::set<double>{-0.01, middle, 0.01})) << middle;
   }
 }
 
