@@ -42,7 +42,7 @@ class MeshOnMesh {
     const Vec3 low = other.features.tree().low(), high = other.features.tree().high();
     const Vec3 centre = other.R.transpose() * (0.5 * (low + high) - other.p);
     const Vec3 half = other.R.transpose().cwiseAbs() * (0.5 * (high - low)) + Vec3::Constant(scale_.margin);
-    mesh.visitBox(centre - half, centre + half, kMostTriangles, [&](std::int32_t t) {
+    mesh.visitBox(centre - half, centre + half, [&](std::int32_t t) {
       const FlatTriangle triangle = mesh.triangle(t);
       const Vec3 q0 = other.place(triangle.p[0]), q1 = other.place(triangle.p[1]), q2 = other.place(triangle.p[2]);
       const Vec3 reach = Vec3::Constant(scale_.margin);
@@ -73,7 +73,7 @@ class MeshOnMesh {
     double phi = -kInfinity;
     if (s.distance < scale_.slack()) {
       const Vec3 reach = Vec3::Constant(4 * std::max(-s.distance, 0.0) + MeshScale::kLonger * scale_.size);
-      other.features.visitBox(q - reach, q + reach, kMostTriangles, [&](std::int32_t t) {
+      other.features.visitBox(q - reach, q + reach, [&](std::int32_t t) {
         const FlatTriangle face = other.features.triangle(t);
         const double height = face.n.dot(q - face.p[0]);
         if (!(std::abs(height) < std::abs(phi)) || height > scale_.slack()) return;
@@ -117,7 +117,7 @@ class MeshOnMesh {
     const Vec3 low = q0.cwiseMin(q1) - reach, high = q0.cwiseMax(q1) + reach;
     const Vec3 e = (a1 - a0).normalized();
     const EdgeSides sides(ta, i, e);
-    b_.visitBox(low, high, kMostTriangles, [&](std::int32_t t) {
+    b_.visitBox(low, high, [&](std::int32_t t) {
       if (!b_.meetsBox(t, low, high)) return;
       const FlatTriangle tb = b_.triangle(t);
       for (int j = 0; j < 3; ++j) {

@@ -7,7 +7,7 @@
 // is one of mesh_pairs.h, with the same rules for depth, for what is behind the surface and for which points are kept. (Smooth shading isn't
 // felt between meshes: two round bodies roll on each other's facets.)
 // Corners and edges are looked for where the boxes of one tree meet those of the other.
-// Cost: about 1 us per corner or edge that is near the other's surface; at most kMostTriangles of each are looked at.
+// Cost: about 1 us per corner or edge that is near the other's surface, however many.
 #pragma once
 #include "contact/shape/pair_query.h"
 

@@ -28,7 +28,7 @@ class MeshOnSolid {
       low[k] = solid_.support(-Vec3::Unit(k))[k] - reach;
       high[k] = solid_.support(Vec3::Unit(k))[k] + reach;
     }
-    features_.visitBox(low, high, kMostTriangles, [&](std::int32_t t) { look(t, low, high); });
+    features_.visitBox(low, high, [&](std::int32_t t) { look(t, low, high); });
   }
   ContactCandidates& candidates() { return candidates_; }
 

@@ -16,7 +16,7 @@
 //
 // Of all candidates up to eight are kept: those of like normal (within kLike) form a group; the deepest of each group first, then within
 // groups in turn the one that is furthest from what the group has, by point_choice.h's d^2 / (g + s).
-// Cost: about 0.1 us per triangle near the other body; at most kMostTriangles are looked at.
+// Cost: about 0.1 us per triangle near the other body, however many.
 #pragma once
 #include "contact/shape/pair_query.h"
 

@@ -9,8 +9,6 @@ namespace pincer::contact {
 
 using FlatTriangle = MeshFeatures::Triangle;
 
-constexpr int kMostTriangles = 20000;
-
 // Lengths that tell apart what touches from what is on the far side.
 //   size     [m] radius of the smaller body
 //   deepest  [m] what is deeper than a quarter of it isn't looked at

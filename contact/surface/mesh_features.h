@@ -11,6 +11,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -62,10 +63,10 @@ class MeshFeatures {
   const AabbTree& tree() const { return tree_; }
   std::size_t memoryBytes() const;
 
-  // Calls visit(t) on every triangle whose leaf's box meets [low, high]; at most `most` of them. Allocates nothing.
+  // Calls visit(t) on every triangle whose leaf's box meets [low, high]. Allocates nothing.
   template <class Visit>
-  void visitBox(const Vec3& low, const Vec3& high, int most, Visit&& visit) const {
-    tree_.visitBox(low, high, most, [&](std::int32_t place) { visit(tree_.order()[static_cast<std::size_t>(place)]); });
+  void visitBox(const Vec3& low, const Vec3& high, Visit&& visit) const {
+    tree_.visitBox(low, high, std::numeric_limits<int>::max(), [&](std::int32_t place) { visit(tree_.order()[static_cast<std::size_t>(place)]); });
   }
 
  private:

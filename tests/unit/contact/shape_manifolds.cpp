@@ -156,6 +156,20 @@ TEST(Manifolds, HowAFaceIsCutMakesNoDifference) {
   }
 }
 
+// A box and its mesh, as what is touched.
+std::vector<Shape> boxAndItsMesh(const Vec3& half) { return {Box{half}, Mesh{SmoothMesh::build(contact::box(half))}}; }
+
+// However many triangles are beneath it: those that come last in the mesh aren't forgotten.
+TEST(Manifolds, FortyFiveThousandTrianglesBeneathABoxAreAllSeen) {
+  const Vec3 half(0.08, 0.06, 0.01);
+  const Mesh table{SmoothMesh::build(gridBox(half, 150))};
+  for (const Shape& above : boxAndItsMesh({0.079, 0.059, 0.02})) {
+    const PairPoints p = askPair(above, {Quat::Identity(), {0, 0, 0.03 - 1e-6}}, table);
+    ASSERT_EQ(p.count, 4);
+    EXPECT_NEAR(Outline(p, Vec2::Zero()).area, 4 * 0.079 * 0.059, 1e-12);
+  }
+}
+
 // A capsule or cylinder that lies on a table is held at both of its ends, however many of the table's edges it lies across.
 TEST(Manifolds, WhatLiesAlongALineIsHeldAtItsEnds) {
   const Vec3 half(0.08, 0.08, 0.02);
@@ -195,9 +209,6 @@ TEST(Manifolds, ALineWhoseMiddleIsDeepestKeepsBothEnds) {
     EXPECT_EQ(kept, (std::set<double>{-0.01, middle, 0.01})) << middle;
   }
 }
-
-// A box and its mesh, as what is touched.
-std::vector<Shape> boxAndItsMesh(const Vec3& half) { return {Box{half}, Mesh{SmoothMesh::build(contact::box(half))}}; }
 
 TEST(Manifolds, CylinderStandsOnItsRim) {
   const Cylinder cylinder{0.024, 0.019};
