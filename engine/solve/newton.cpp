@@ -246,9 +246,10 @@ bool isSolved(const ScaledProblem& problem, const Centre& centre, double toleran
 
 bool solveRound(const ScaledProblem& problem, const Centre& centre, double tolerance, ContactEquations& equations, SolverScratch& scratch,
                 Iterate& current, Iterate& trial, int& steps) {
-  for (int n = 0; n < kStepsPerGivingRound; ++n, ++steps) {
+  for (int n = 0; n < kStepsPerGivingRound; ++n) {
     NewtonStep newton(problem, current, centre, equations, scratch);
     if (!newton.solve()) return false;
+    ++steps;
     searchLine(problem, centre, newton, tolerance, scratch, current, trial);
     std::swap(current, trial);
     if (isSolved(problem, centre, tolerance, current, trial.u)) return true;
