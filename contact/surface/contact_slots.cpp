@@ -220,18 +220,21 @@ void SurfaceTouch::write(SurfaceContacts& found) {
   std::sort(list_.begin(), list_.end(), [](const FollowedContact& a, const FollowedContact& b) {
     return a.shown() < b.shown() || (a.shown() == b.shown() && a.slot < b.slot);
   });
+  ShortList<int, kMaxSurfaceContacts> kept;
   for (const FollowedContact& f : list_) {
-    if (found.count > 0 && f.shown() >= reach_) continue;
+    if (!kept.empty() && f.shown() >= reach_) continue;
     const ShellContact& c = f.contact;
+    kept.push_back(f.slot);
     tracker_.slots[at(f.slot)] = {c.foot.triangle, f.fades, c.foot.b[1], c.foot.b[2], f.ease, placeOf(c), c.n, c.motion.du, c.motion.dv};
-    found.points[at(found.count++)] = {placeOf(c), c.n, f.shown() - r_, static_cast<std::uint32_t>(f.slot)};
+    if (found.count == 0 || f.shown() < shown_)
+      found.points[at(found.count++)] = {placeOf(c), c.n, f.shown() - r_, static_cast<std::uint32_t>(f.slot)};
     if (f.ease > 0) status_ |= kQueryEased;
   }
   for (int slot = 0; slot < kMaxSurfaceContacts; ++slot) {
-    const auto is_shown = [&](const SurfaceContact& c) { return c.feature == static_cast<std::uint32_t>(slot); };
-    if (keptIn(slot).triangle >= 0 && std::none_of(found.points.begin(), found.points.begin() + found.count, is_shown))
-      tracker_.slots[at(slot)] = {};
+    if (keptIn(slot).triangle >= 0 && std::find(kept.begin(), kept.end(), slot) == kept.end()) tracker_.slots[at(slot)] = {};
   }
+  constexpr double kTold = 2;  // turns: what was left out has its next one meanwhile
+  if (list_.isFull() && gone_ - tracker_.full_at <= kTold * turn_) status_ |= kQueryContactsDropped;
   keepCentre(list_.front().contact);
   found.cost = cost_;
 }

@@ -5,14 +5,19 @@
 //   C  finger's centre, S_i, n_i  place and unit normal of contact i [m, -], frame B;  r  finger's radius [m];  e_i >= 0  its ease [m]
 //
 // A tick:  follow what the tracker's slots hold;  in free space take the nearest place instead;  look for further places that face the
-// centre with h < r + margin;  keep the three that matter;  ease what came or went in overlap;  write the slots back.
+// centre with h < r + margin + w;  keep the three that matter;  ease what came or went in overlap;  write the slots back, and report those
+// with h < r + margin.   w = r / 16: the centre's way within which each place is tried once, in turns (turns.h)
 //
 // - A contact is followed for as long as the equation has a solution that way, so the tracked side of a thin wall never changes. A further
 //   one is added where the finger comes to touch it, at phi near 0, and dropped once it is out of the margin: no force jumps.
 // - A new contact is one that the finger could come to from outside: its place faces where the centre was at the last query and faces it
 //   now, and no other part of the surface hides it. A centre that has been pressed under the surface counts as being where the finger would
 //   be on that surface, so the far side of a wall stays out of reach however long the finger is pressed.
-// - Where more than three places are near, one that isn't touched yields to one that is clearly nearer; those that are touched stay.
+// - Where more than three places are near, one that isn't touched yields to one that is clearly nearer; those that are touched stay, and
+//   while they do none is looked for within w / 2 after one was left out.
+// - Late by w, mostly: what comes from outside is known by the time it is reported, unless all slots are taken and one touches. What begins
+//   in overlap begins at phi = 0 (below) whenever it is found; the places that lead to it may be there for less than w, and then it is missed
+//   until others do (decision 7 has how often).
 // - Two that have moved to one place are one. A contact whose overlap changes by more than it can (d / h of the way around an edge, d its
 //   depth; by less on anything rounder and in hollows that the finger fits into) hasn't moved but slid down to another place: it is lost, and
 //   that place is another contact's, or a new one.

@@ -75,16 +75,18 @@ FlatPoint closestOnFacet(const SurfaceNet& net, std::int32_t triangle, const Vec
   const std::array<Vec3, 4> corners = {net.vertex(t, 0), net.vertex(t, 1), net.vertex(t, 2), net.vertex(t, 0)};
   const Vec3 n = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
   std::array<Vec3, 3> along, side;  // unit; p from the edge's line, turned across it
-  std::array<double, 3> over_edge;  // as far as this triangle tells
-  double least = 0;                 // over the inside, then over the edges too
+  std::array<double, 3> over_edge, over_corner{};  // as far as this triangle tells
+  double least = 0;                                // over the inside, then over the edges too
   for (std::size_t i = 0; i < 3; ++i) {
     const Vec3 edge = corners[i + 1] - corners[i], R = p - corners[i];
     const double length = edge.norm();
-    along[i] = edge / length;
+    along[i] = 1 / length * edge;
     side[i] = R.cross(along[i]);
     const double across = side[i].dot(n), passed = R.dot(along[i]);
     least = std::max(least, across);
     over_edge[i] = std::max({-across, -passed, passed - length, 0.0});
+    over_corner[i] = std::max(over_corner[i], passed);
+    over_corner[(i + 1) % 3] = std::max(over_corner[(i + 1) % 3], length - passed);
   }
   for (std::size_t i = 0; i < 3; ++i) {
     if (!(over_edge[i] < least)) continue;  // most: their neighbours needn't be fetched
@@ -94,7 +96,9 @@ FlatPoint closestOnFacet(const SurfaceNet& net, std::int32_t triangle, const Vec
     }
     least = std::min(least, over_edge[i]);
   }
-  for (int i = 0; i < 3 && least > 0; ++i) least = std::min(least, wayToMinimumAtVertex(net, {t, i}, p, least));
+  for (int i = 0; i < 3; ++i) {
+    if (over_corner[static_cast<std::size_t>(i)] < least) least = std::min(least, wayToMinimumAtVertex(net, {t, i}, p, least));
+  }
   return least;
 }
 

@@ -43,24 +43,46 @@ void SurfaceTouch::addFurther() {
     lookAhead();
   }
   NearParts& near = nearParts();
-  if (!(near.due > gone_)) examineDue(near);
+  if (!(near.due > gone_) || isEveryonesTurn()) examineDue(near);
 }
 
-// Those that are due, nearest first, until so many have been tried as a query may try; the next one goes on from there.
+// Those that are due and have their turn, until so much has been tried as a query may try; the next one goes on from there.
 void SurfaceTouch::examineDue(NearParts& near) {
-  const std::size_t size = near.parts.size(), first = std::min(at(tracker_.tried), size);
-  tracker_.tried = 0;
+  bool are_all = isEveryonesTurn();
+  examineTurns(near, are_all);
+  if (!are_all && isEveryonesTurn()) examineTurns(near, true);
+}
+
+void SurfaceTouch::examineTurns(NearParts& near, bool are_all) {
+  if (hasTriedEnough()) return;
+  std::array<std::uint16_t, kMostParts> due;
+  std::size_t count = 0, first = 0;
   near.due = kInfinity;
-  for (std::size_t k = 0; k < size; ++k) {
-    const std::size_t i = first + k < size ? first + k : first + k - size;
+  for (std::size_t i = 0; i < near.parts.size(); ++i) {
+    const NearPart& part = near.parts[i];
+    const double when = are_all ? part.due : std::max(part.due, part.turn);
+    const bool is_due = when <= gone_;
+    due[count] = static_cast<std::uint16_t>(i);
+    count += is_due;
+    first += is_due && i < at(tracker_.tried);
+    near.due = std::min(near.due, is_due ? kInfinity : when);
+  }
+  const Turns turns(tracker_.gone, gone_, turn_);
+  tracker_.tried = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t i = due[first + k < count ? first + k : first + k - count];
     NearPart& part = near.parts[i];
-    if (part.due <= gone_ && !seen_.isFull()) {
-      examine(part);
-      if (seen_.isFull()) tracker_.tried = static_cast<std::int32_t>(i + 1);
+    if (part.turn == 0) part.turn = tracker_.gone + turns.wayToFirst(part.place);
+    if ((part.turn <= gone_ || are_all) && !hasTriedEnough()) {
+      examine(turns, part);
+      if (hasTriedEnough()) tracker_.tried = static_cast<std::int32_t>(i + 1);
     }
-    near.due = std::min(near.due, part.due);
+    near.due = std::min(near.due, std::max(part.due, part.turn));
   }
 }
+
+// What is left waits for the next query; not where everyone has a turn, but for the places that can be remembered.
+bool SurfaceTouch::hasTriedEnough() const { return seen_.isFull() || (walked_ >= kMostWalked && !isEveryonesTurn()); }
 
 // Whether what the last look found is still all that there can be: near enough, and what it left out still belongs to the same contacts.
 bool SurfaceTouch::isLookGood() const {
@@ -76,10 +98,10 @@ bool SurfaceTouch::isLookGood() const {
   return true;
 }
 
-// The same where all that is followed is the contact with the normal `n` in that slot.
+// The same where all that is followed is the contact with the normal `n` in that slot, and won't be over soon.
 bool SurfaceTouch::isLookGoodFor(int slot, const Vec3& n) const {
   const SurfaceLook& look = tracker_.look;
-  if (!(wayFromLook() < look.horizon)) return false;
+  if (!(wayFromLook() < look.horizon) || hasTurnedHalf(slot, n)) return false;
   for (int i = 0; i < kMaxSurfaceContacts; ++i) {
     if (!isUnset(look.n[at(i)]) && (i != slot || !staysOn(look, slot, n))) return false;
   }
@@ -121,7 +143,16 @@ bool SurfaceTouch::isNothingDue() {
 // Time to work on the next one.
 bool SurfaceTouch::isLookEnding() const {
   constexpr double kEnding = 0.5;  // of the horizon
-  return !tracker_.look.is_alone && wayFromLook() > kEnding * tracker_.look.horizon;
+  if (tracker_.look.is_alone) return false;
+  return wayFromLook() > kEnding * tracker_.look.horizon ||
+         std::any_of(list_.begin(), list_.end(), [&](const FollowedContact& f) { return hasTurnedHalf(f.slot, f.contact.n); });
+}
+
+// Whether a contact's normal has turned by half of what it may until the look ends.
+bool SurfaceTouch::hasTurnedHalf(int slot, const Vec3& n) const {
+  constexpr double kQuarterApart = 0.999876;  // cosine of half of kHalfApart's angle
+  const SurfaceLook& look = tracker_.look;
+  return !look.is_alone && !isUnset(look.n[at(slot)]) && n.dot(look.n[at(slot)]) < kQuarterApart;
 }
 
 SurfaceLook SurfaceTouch::lookFrom(const Vec3& p_BC) const {
@@ -145,18 +176,20 @@ void SurfaceTouch::lookAround() {
 // Begins the next look from where the centre will be when this one ends, or carries it on.
 void SurfaceTouch::lookAhead() {
   constexpr int kVisits = 64;  // per query: some 3 us
-  if (!(tracker_.ahead.horizon > 0)) tracker_.ahead = lookFrom(placeAhead());
+  if (!(tracker_.ahead.horizon > 0)) tracker_.ahead = lookAtEnd();
   NearParts& ahead = lookParts().ahead;
   if (!areOf(ahead, s_.net.fingerprint(), tracker_.ahead)) beginNearParts(s_.net, tracker_.ahead, ahead);
   continueNearParts(s_.net, s_.search, goneAt(tracker_.ahead), kVisits, ahead);
 }
 
-// Straight on from the last look, as far as it holds.
-Vec3 SurfaceTouch::placeAhead() const {
-  const SurfaceLook& look = tracker_.look;
-  const Vec3 way = C_ - look.p_BC;
-  const double length = way.norm();
-  return length > 0 ? Vec3(look.p_BC + look.horizon / length * way) : C_;
+// From where the centre will be when the look that is half over ends, with the normals that the contacts will have.
+SurfaceLook SurfaceTouch::lookAtEnd() const {
+  const SurfaceLook& now = tracker_.look;
+  SurfaceLook look = lookFrom(C_ + (C_ - now.p_BC));
+  for (std::size_t slot = 0; slot < look.n.size(); ++slot) {
+    if (!isUnset(look.n[slot]) && !isUnset(now.n[slot])) look.n[slot] = (2 * look.n[slot] - now.n[slot]).normalized();
+  }
+  return look;
 }
 
 // Whether the look ahead can take over, and does.
@@ -211,17 +244,17 @@ double SurfaceTouch::wayTo(std::int32_t place, const PatchBounds& part) const {
   return approach > 0 ? approach : std::max<double>(0, s_.search.wayToMinimumOn(s_.net, place, C_, reach_));
 }
 
-void SurfaceTouch::examine(NearPart& near) {
+void SurfaceTouch::examine(const Turns& turns, NearPart& near) {
   const PatchBounds part = s_.search.part(near.place);
   const std::int32_t triangle = s_.search.triangleAt(near.place);
-  const bool held_one = near.due == tracker_.gone;
-  near.due = gone_;
-  if (held_one && isFollowed(triangle, part)) return;
+  near.turn = gone_ + turns.wayToNext(near.place);
+  const double reach = reachOfTry(turns.isOf(near.place));
+  if (reach < reach_ && !(reach > 0 && part.mayHold(C_, reach, Facing::front))) return;
   const double way = wayTo(near.place, part);
   near.due = gone_ + way;
-  if (way > 0 || !part.mayHold(C_, reach_, Facing::front)) return;
+  if (way > 0 || !part.mayHold(C_, reach, Facing::front)) return;
   if (isFollowed(triangle, part) || wasSeen(triangle, part)) return;
-  if (const auto foot = s_.search.minimumOn(s_.net, near.place, C_, reach_)) tryPlace(*foot);
+  if (const auto foot = s_.search.minimumOn(s_.net, near.place, C_, reach)) tryPlace(*foot);
 }
 
 // Whether a contact stands for this patch: beside it, with a normal that the patch's could be. (Not any of its cone's: along a groove that
@@ -244,15 +277,29 @@ bool SurfaceTouch::wasSeen(std::int32_t triangle, const PatchBounds& part) const
 }
 
 // As far as into a triangle in which a followed contact is: that one.
-ShellContact SurfaceTouch::followUntilKnown(const Foot& foot) const {
+ShellContact SurfaceTouch::followUntilKnown(const Foot& foot) {
   ShortList<std::int32_t, kMaxSurfaceContacts> known;
   for (const FollowedContact& f : list_) {
     if (!f.fades) known.push_back(f.contact.foot.triangle);
   }
   const ShellContact found = solveShell(s_.net, cache_, C_, foot, {known.begin(), known.end()});
+  walked_ += found.cost.steps + found.cost.crossings;
   if (!found.has_met) return found;
   const auto isThere = [&](const FollowedContact& f) { return !f.fades && f.contact.foot.triangle == found.foot.triangle; };
   return std::find_if(list_.begin(), list_.end(), isThere)->contact;
+}
+
+// Without anything to go by, and in free space with all slots taken, where the nearest is the answer.
+bool SurfaceTouch::isEveryonesTurn() const { return !was_used_ || !follows() || (list_.isFull() && !touches()); }
+
+// How near a place has to be to be tried now [m]; 0: none is. Where all slots are taken it has to be nearer than what may yield.
+double SurfaceTouch::reachOfTry(bool has_turn) const {
+  const bool is_free = !was_used_ || !follows() || has_turn;
+  if (!list_.isFull()) return is_free ? reach_ : 0;
+  double furthest = 0;
+  for (const FollowedContact& f : list_) furthest = mayYield(f) ? std::max(furthest, f.contact.h) : furthest;
+  if (!(furthest > 0)) return is_free && gone_ - tracker_.full_at > 0.5 * turn_ ? reach_ : 0;  // only to see whether it is left out
+  return is_free ? furthest : touches() ? 0 : std::min(furthest, nearestHeight());
 }
 
 void SurfaceTouch::tryPlace(const Foot& foot) {
@@ -278,11 +325,10 @@ bool SurfaceTouch::isNew(const ShellContact& candidate) const {
 // its floor. Of what may go the furthest does.
 void SurfaceTouch::keepDeepestFurther(const ShellContact& candidate) {
   if (!list_.isFull()) return addNew(candidate);
-  status_ |= kQueryContactsDropped;
+  tracker_.full_at = gone_;
   FollowedContact* furthest = nullptr;
   for (FollowedContact& other : list_) {
-    const bool is_free = !other.fades && other.shown() > r_ && other.contact.h > candidate.h + kOnePlace * r_;
-    const bool may_go = is_free || (other.is_new && other.contact.h > candidate.h);
+    const bool may_go = mayYield(other) && other.contact.h > candidate.h + (other.is_new ? 0 : kOnePlace * r_);
     if (may_go && (!furthest || other.contact.h > furthest->contact.h)) furthest = &other;
   }
   if (furthest) *furthest = {candidate, furthest->slot, true, false, easeOfNew(candidate)};

@@ -9,8 +9,9 @@
 // branches of the tree: while those normals have turned by no more than the other half, it can't hold another contact. So on a smooth surface
 // the list is short or empty, however fine the mesh is.
 //
-// Each part has its own `due`: the flat mesh can have no minimum of the distance on it before, so a tick looks at those only that are due. The
-// list of the next look is made while this one still holds, a bounded part of it per tick, and takes over what is known of the parts.
+// Each part has its own `due`: the flat mesh can have no minimum of the distance on it before, so a tick looks at those only that are due and
+// have their turn (turns.h). The list of the next look is made while this one still holds, a bounded part of it per tick, and takes over what
+// is known of the parts.
 //
 // All of this is scratch: the parts are a function of mesh and look, and what isn't due would be found not to matter. So no answer depends
 // on how far a list has come, on what is due when, nor on whether it had to be made anew.
@@ -27,19 +28,20 @@ namespace pincer::contact {
 constexpr double kApart = 0.998;  // cosine of 3.6 degrees: two contacts differ by more in their normals
 constexpr double kHalfApart = ConesAlong::kHalfApart;
 constexpr double kLookHorizon = 1.0 / 8;  // the way for which a look holds, of its reach
-constexpr std::size_t kMostParts = 256;
+constexpr std::size_t kMostParts = 512;
 
 struct NearPart {
   std::int32_t place;  // in the search's order
   float approach;      // [m], rounded down
   double due;          // SurfaceTracker::gone at which it may matter, no later [m]
+  double turn = 0;     // at which it may be tried for another contact, no later [m]
 };
 
 struct NearParts {
   std::uint64_t net = 0;        // the mesh's fingerprint; 0: of none
   SurfaceLook look;             // its centre, reach and normals; the horizon is shorter than asked for where more than kMostParts are near
-  std::vector<NearPart> parts;  // once `is_whole`: by approach
-  double due = 0;               // no later than any of them is [m]
+  std::vector<NearPart> parts;  // by place, as the tree has them
+  double due = 0;               // no later than any of them is and has its turn [m]
   TreeWalk walk;                // to those that aren't listed yet
   bool is_whole = false;
 };

@@ -73,11 +73,12 @@ struct SurfaceTracker {
   Vec3 p_BC_last = Vec3::Zero();  // where it was
   bool has_centre = false;        // whether it has been outside
   SurfaceLook look;
-  SurfaceLook ahead;         // that takes over where `look` will end, and is worked out meanwhile (near_parts.h); horizon 0: none
-  std::int32_t tried = 0;    // parts of the look's list whose turn to be tried has passed; the next query goes on behind them
-  double gone = 0;           // the length of the centre's way so far, and of what the reach has grown by [m]
-  double reach = 0;          // of the last query: r + margin [m]
-  std::uint32_t status = 0;  // bits of QueryStatus of the last query
+  SurfaceLook ahead;            // that takes over where `look` will end, and is worked out meanwhile (near_parts.h); horizon 0: none
+  std::int32_t tried = 0;       // parts of the look's list whose turn to be tried has passed; the next query goes on behind them
+  double gone = 0;              // the length of the centre's way so far, and of what the reach has grown by [m]
+  double full_at = -kInfinity;  // `gone` where a further contact last found no slot [m]
+  double reach = 0;             // how far from the centre contacts were followed in the last query [m]
+  std::uint32_t status = 0;     // bits of QueryStatus of the last query
 };
 
 enum QueryStatus : std::uint32_t {

@@ -8,11 +8,14 @@
 #include "contact/short_list.h"
 #include "contact/surface/contact_slots.h"
 #include "contact/surface/surface_variant.h"
+#include "contact/surface/turns.h"
 
 namespace pincer::contact {
 
 constexpr int kMaxTries = 16;       // places from which a further contact is looked for, per query; the others' turn comes in the next
+constexpr int kMostWalked = 32;     // steps and crossings of their walks, likewise; the last walk is ended whatever it takes
 constexpr double kOnePlace = 1e-3;  // of r: contacts nearer than this are one
+constexpr double kTurn = 1.0 / 16;  // of r: the way within which each place is tried once
 constexpr double kLeap = 0.5;       // of r per query, 4 m/s of a finger of 8 mm at 1 kHz: the centre was put there, not led
 
 // Where a try has led.
@@ -37,7 +40,9 @@ class SurfaceTouch {
       : s_(surface),
         C_(C),
         r_(r),
-        reach_(r + margin),
+        turn_(surface.variant == SurfaceVariant::smooth ? kTurn * r : 0),
+        shown_(r + margin),
+        reach_(shown_ + turn_),
         moved_((C - tracker.p_BC_last).norm()),
         gone_(tracker.gone + moved_ + std::max(0.0, reach_ - tracker.reach)),
         eases_(surface.variant == SurfaceVariant::smooth && !(moved_ > kLeap * r)),
@@ -71,7 +76,7 @@ class SurfaceTouch {
   ShellContact straightTo(const SurfaceSeed& seed) const;
   void addFurther();
   void tryPlace(const Foot& foot);
-  ShellContact followUntilKnown(const Foot& foot) const;
+  ShellContact followUntilKnown(const Foot& foot);
   bool isNew(const ShellContact& candidate) const;
   bool stands(const Foot& foot, const Vec3& S, const Vec3& n, std::int32_t triangle, const PatchBounds& part) const;
   bool isFollowed(std::int32_t triangle, const PatchBounds& part) const;
@@ -91,13 +96,18 @@ class SurfaceTouch {
   LookParts& lookParts();
   bool takeAhead();
   SurfaceLook lookFrom(const Vec3& p_BC) const;
-  Vec3 placeAhead() const;
+  SurfaceLook lookAtEnd() const;
   bool turnsSlowly(const ShellContact& contact) const;
   NearParts& nearParts();
   double goneAt(const SurfaceLook& look) const { return gone_ - wayFrom(look); }
   double wayTo(std::int32_t place, const PatchBounds& part) const;
   void examineDue(NearParts& near);
-  void examine(NearPart& part);
+  void examineTurns(NearParts& near, bool are_all);
+  bool hasTriedEnough() const;
+  void examine(const Turns& turns, NearPart& part);
+  bool isEveryonesTurn() const;
+  double reachOfTry(bool has_turn) const;
+  bool hasTurnedHalf(int slot, const Vec3& n) const;
   void keepDeepestFurther(const ShellContact& candidate);
   void write(SurfaceContacts& found);
   void keepCentre(const ShellContact& main);
@@ -132,6 +142,11 @@ class SurfaceTouch {
   // How high the centre was over it at the last query [m].
   double heightBefore(const SurfaceSlot& kept) const { return (tracker_.p_BC_last - kept.p_BS).dot(kept.n_B); }
   static std::size_t at(int i) { return static_cast<std::size_t>(i); }
+  // Whether a contact leaves its slot to a nearer one.
+  bool mayYield(const FollowedContact& f) const { return f.is_new || (!f.fades && f.shown() > r_); }
+  bool follows() const {
+    return std::any_of(list_.begin(), list_.end(), [](const FollowedContact& f) { return !f.fades; });
+  }
   bool isListed(const ShellContact& contact) const {
     return std::any_of(list_.begin(), list_.end(), [&](const FollowedContact& other) {
       return !other.fades && (placeOf(other.contact) - placeOf(contact)).norm() < kOnePlace * r_;
@@ -157,7 +172,10 @@ class SurfaceTouch {
 
   const TouchedSurface& s_;
   const Vec3 C_;
-  const double r_, reach_;
+  const double r_;
+  const double turn_;   // the centre's way within which each place is tried [m]
+  const double shown_;  // how near contacts have to be to be reported [m]
+  const double reach_;  // and to be followed: by a turn further, so that what comes from outside is known by then [m]
   const double moved_;  // the centre since the last query [m]
   const double gone_;   // SurfaceTracker::gone here
   const bool eases_;  // the other variants show what they do at edges: jump; after a leap of the centre there is nothing to be steady with
@@ -171,6 +189,7 @@ class SurfaceTouch {
   QueryCost cost_;
 
   ShortList<TriedPlace, kMaxTries> seen_;  // where tries have led
+  int walked_ = 0;                         // steps and crossings on the way
 };
 
 }  // namespace pincer::contact

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "contact/mesh/generated_meshes.h"
+#include "contact/surface/outward_float.h"
 #include "tests/support/constants.h"
 #include "tests/support/random_numbers.h"
 
@@ -206,6 +207,24 @@ TEST(NormalCone, FacingIsNeverMissed) {
     const FacingTest test(NormalCone{axis, cosine});
     ASSERT_TRUE(test.mayFace(axis.cast<float>().cast<double>().dot(D), D.squaredNorm(), R * (1 + 1e-12)));
   }
+}
+
+void expectNextFloats(double x) {
+  constexpr float kInf = std::numeric_limits<float>::infinity();
+  const auto f = static_cast<float>(x);
+  EXPECT_EQ(std::bit_cast<std::uint32_t>(contact::above(x)), std::bit_cast<std::uint32_t>(std::nextafter(f, kInf))) << x;
+  EXPECT_EQ(std::bit_cast<std::uint32_t>(contact::below(x)), std::bit_cast<std::uint32_t>(std::nextafter(f, -kInf))) << x;
+}
+
+TEST(OutwardFloat, IsTheStandardLibrarysNextOne) {
+  RandomNumbers random(4);
+  for (int i = 0; i < 10000; ++i) expectNextFloats(random.uniform(-1, 1) * std::exp2(random.uniform(-150, 120)));
+  using Limits = std::numeric_limits<float>;
+  for (const float f : {0.0f, Limits::denorm_min(), Limits::min(), 1.0f, Limits::max(), Limits::infinity()}) {
+    expectNextFloats(f);
+    expectNextFloats(-f);
+  }
+  EXPECT_TRUE(std::isnan(contact::above(Limits::quiet_NaN())) && std::isnan(contact::below(Limits::quiet_NaN())));
 }
 
 }  // namespace
