@@ -74,7 +74,7 @@ FlatPoint closestOnFacet(const SurfaceNet& net, std::int32_t triangle, const Vec
 [[gnu::flatten]] double wayToFlatMinimum(const SurfaceNet& net, std::int32_t t, const Vec3& p) {
   const std::array<Vec3, 4> corners = {net.vertex(t, 0), net.vertex(t, 1), net.vertex(t, 2), net.vertex(t, 0)};
   const Vec3 n = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
-  std::array<Vec3, 3> along, side;  // unit; p from the edge's line, turned across it
+  std::array<Vec3, 3> along, side;                 // unit; p from the edge's line, turned across it
   std::array<double, 3> over_edge, over_corner{};  // as far as this triangle tells
   double least = 0;                                // over the inside, then over the edges too
   for (std::size_t i = 0; i < 3; ++i) {

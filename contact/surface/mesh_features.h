@@ -66,7 +66,8 @@ class MeshFeatures {
   // Calls visit(t) on every triangle whose leaf's box meets [low, high]. Allocates nothing.
   template <class Visit>
   void visitBox(const Vec3& low, const Vec3& high, Visit&& visit) const {
-    tree_.visitBox(low, high, std::numeric_limits<int>::max(), [&](std::int32_t place) { visit(tree_.order()[static_cast<std::size_t>(place)]); });
+    tree_.visitBox(low, high, std::numeric_limits<int>::max(),
+                   [&](std::int32_t place) { visit(tree_.order()[static_cast<std::size_t>(place)]); });
   }
 
  private:

@@ -85,19 +85,21 @@ struct SlideDerivative {
   return d;
 }
 
+template <class Rows>
+[[gnu::always_inline]] inline double naturalMap2Of(Rows rows, const double* r, const double* u, double mu, double w) {
+  double y[kMaxContactRows] = {}, p[kMaxContactRows], sum = 0;
+  for (int k = 0; k < rows; ++k) y[k] = w * r[k] - u[k];
+  y[kNormalRow] -= mu * std::sqrt(tangentNorm2(u, rows));
+  projectOntoCone(y, rows, mu, p);
+  for (int k = 0; k < rows; ++k) sum += (w * r[k] - p[k]) * (w * r[k] - p[k]);
+  return sum;
+}
+
 // Squared natural map |w r - P_K(w r - u~)|^2 of the frictional contact law, u~ = u + mu |u_T| e_n; 0 iff r and u obey it [(m/s)^2].
 //   w  > 0: scale that turns impulses into velocities [1/kg]. K is a cone, so w P_K(y) = P_K(w y): no division.
 inline double naturalMap2(const double* r, const double* u, int rows, double mu, double w) {
-  double sum = 0;
-  withRows(rows, [&](auto count) {
-    double y[kMaxContactRows] = {};
-    double p[kMaxContactRows];
-    for (int k = 0; k < count; ++k) y[k] = w * r[k] - u[k];
-    y[kNormalRow] -= mu * std::sqrt(tangentNorm2(u, count));
-    projectOntoCone(y, count, mu, p);
-    for (int k = 0; k < count; ++k) sum += (w * r[k] - p[k]) * (w * r[k] - p[k]);
-  });
-  return sum;
+  if (rows != kTorsionRow) return naturalMap2Of(rows, r, u, mu, w);
+  return naturalMap2Of(std::integral_constant<int, kTorsionRow>(), r, u, mu, w);
 }
 
 }  // namespace pincer::engine

@@ -5,25 +5,16 @@
 #include <numeric>
 #include <span>
 
-#include "engine/solve/contact_equations.h"
-#include "engine/solve/gauss_seidel.h"
-#include "engine/solve/large_problem.h"
 #include "engine/world/contact_rows.h"
 #include "engine/world/contact_sides.h"
-#include "engine/world/island_bias.h"
 #include "engine/world/island_threads.h"
 #include "engine/world/scratch.h"
-#include "engine/world/wedge.h"
+#include "engine/world/solve_island.h"
 
 namespace pincer::engine {
 namespace {
 
-constexpr double kLost = 1e-2;       // residual that is no answer
-constexpr int kStoppingSweeps = 30;  // instead
-constexpr int kLoopContacts = 12;    // fewer are solved to the end: bodies that are pinched must not creep
-constexpr int kHeapContacts = 200;   // beyond, sweeps go on in the next tick from what they reached in this one
-constexpr double kHeapLost = 0.3;    // their residual that is no answer: impulses were scaled down to add no energy
-constexpr int kSettlingTicks = 24;   // stick offsets halve per tick: from the tolerance to round-off
+constexpr int kSettlingTicks = 24;  // stick offsets halve per tick: from the tolerance to round-off
 
 // The number of what moves there in IslandScratch's arrays per mover; -1 for what doesn't.
 int moverOf(const WorldModel& model, const WorldScratch& scratch, const Side& side) {
@@ -244,100 +235,6 @@ IslandScratch::IslandScratch(const WorldModel& model) {
 
 IslandScratch::~IslandScratch() = default;
 IslandScratch::IslandScratch(IslandScratch&&) noexcept = default;
-
-namespace {
-
-// What is kept of the budget for stopOnly: support doesn't depend on it.
-std::int64_t reserveFor(const Island& island) { return kStoppingSweeps * kPerContactSwept * island.contacts; }
-
-// Contacts that contradict each other have no answer: what overlaps in all directions can't be pushed apart. Then they only stop what closes:
-// biases that push are left out, and sweeps begin with no impulse at all. Support is better than falling through the floor.
-void stopOnly(const ContactProblem& problem, Island& island, SolverScratch& memory, WorldScratch& scratch) {
-  double* const q = island.q;
-  for (int n = 0; n < island.contacts; ++n) {
-    const Contact& c = scratch.contacts[scratch.islands.order[island.place + n]];
-    const int first = problem.firstRow(n);
-    for (int k = 0; k < problem.rows(n); ++k) {
-      if (k != kNormalRow || c.bias_C[k] < 0) q[first + k] -= (k >= kTorsionRow ? radiusOf(c, k) : 1) * c.bias_C[k];
-    }
-  }
-  stopBySweeps(problem, kStoppingSweeps, memory, VectorMap(island.r, island.rows), VectorMap(island.u, island.rows));
-}
-
-// What is tried before what contacts ask for is fitted to what was found.
-SolverOptions withoutCostly(SolverOptions options) {
-  options.interior_point_iterations = options.shift_updates = options.gauss_seidel_sweeps = 0;
-  return options;
-}
-
-// Around loops of bodies that are held more than six-fold contacts give way where they contradict each other.
-SolverOptions asOfLoops(SolverOptions options) {
-  options.largest_give = kLargeSpeed;
-  return options;
-}
-
-SolveResult again(const SolveResult& first, SolveResult second) {
-  second.iterations += first.iterations;
-  second.start = first.start;
-  return second;
-}
-
-bool isLost(const SolveResult& result, bool is_heap) { return !result.converged && result.residual > (is_heap ? kHeapLost : kLost); }
-
-void solveIsland(const WorldModel& model, int k, int thread, WorldScratch& scratch) {
-  IslandScratch& s = scratch.islands;
-  Island& island = s.islands[k];
-  const auto n = static_cast<std::size_t>(island.contacts);
-  const ContactProblem problem{{island.first_row, n + 1},        {island.mu, n}, {s.sides.data() + island.place, n},
-                               VectorMap(island.q, island.rows), island.movers,  island.settling > 0};
-  SolverScratch& memory = *s.solvers[thread];
-  const bool is_heap = island.contacts > kHeapContacts, is_entangled = is_heap && chooseForm(problem, memory) == EquationForm::kTooLarge;
-  const bool is_loop = mayContradict(problem), contradicts = scratch.h > 0 && is_loop;
-  const SolverOptions& whole = model.options.solver;
-  const SolverOptions last = is_loop && n >= kLoopContacts && !is_heap ? asOfLoops(whole) : whole;
-  const double offset_rate = scratch.h > 0 ? kTangentCorrection / model.options.h : 0;
-  const std::span<const int> order(s.order.data() + island.place, n);
-  const auto fit = [&](PushingBy pushing) {
-    fitIslandBiases(pushing, scratch.h, offset_rate, problem, island.r, island.q, order, scratch.contacts, memory);
-  };
-  const auto solve = [&](const SolverOptions& options) { solveContacts(problem, options, memory, island.r, island.u, island.result); };
-  const auto solveAgain = [&](const SolverOptions& options) {
-    const SolveResult first = island.result;
-    solve(options);
-    island.result = again(first, island.result);
-  };
-  const bool is_limited = scratch.operations_left < kNoLimit;
-  const std::int64_t share = is_limited ? std::max<std::int64_t>(scratch.operations_left, 0) * island.rows / s.rows : kNoLimit;
-  const std::int64_t reserve = is_limited ? reserveFor(island) : 0;
-  memory.operations_left = share - reserve;
-  if (contradicts && (!is_heap || is_entangled)) fit(PushingBy::kLastTick);
-  if (contradicts && !is_heap) {
-    solve(withoutCostly(whole));
-    if (!island.result.converged) {
-      fit(PushingBy::kImpulses);
-      solveAgain(last);
-    }
-    if (!island.result.converged && n < kLoopContacts) solveAgain(asOfLoops(whole));
-  } else {
-    solve(last);
-    if (scratch.h > 0 && memory.operations_left >= 0 && isWedged(problem, island.r, island.result)) {
-      fit(PushingBy::kWedged);
-      std::fill(island.r, island.r + island.rows, 0.0);  // or the squeeze would stay
-      solveAgain(whole);
-    }
-  }
-  if (island.result.give > 0) giveWay(scratch.h, offset_rate, problem, memory.give.data(), island.q, order, scratch.contacts);
-  std::int64_t spent = share - reserve - memory.operations_left;
-  if (isLost(island.result, is_heap)) {
-    const std::int64_t for_stops = reserve + std::max<std::int64_t>(memory.operations_left, 0);
-    memory.operations_left = for_stops;
-    stopOnly(problem, island, memory, scratch);
-    spent += for_stops - memory.operations_left;
-  }
-  island.operations = is_limited ? spent : 0;
-}
-
-}  // namespace
 
 void solveIslands(const WorldModel& model, WorldScratch& scratch) {
   IslandScratch& s = scratch.islands;

@@ -1,0 +1,135 @@
+#include "engine/world/solve_island.h"
+
+#include <algorithm>
+
+#include "engine/solve/contact_equations.h"
+#include "engine/solve/gauss_seidel.h"
+#include "engine/solve/large_problem.h"
+#include "engine/world/contact_rows.h"
+#include "engine/world/island_bias.h"
+#include "engine/world/scratch.h"
+#include "engine/world/wedge.h"
+
+namespace pincer::engine {
+namespace {
+
+constexpr double kLost = 1e-2;       // residual that is no answer
+constexpr int kStoppingSweeps = 30;  // instead
+constexpr int kLoopContacts = 12;    // fewer are solved to the end: bodies that are pinched must not creep
+constexpr int kHeapContacts = 200;   // beyond, sweeps go on in the next tick from what they reached in this one
+constexpr double kHeapLost = 0.3;    // their residual that is no answer: impulses were scaled down to add no energy
+
+// What is tried before what contacts ask for is fitted to what was found.
+SolverOptions withoutCostly(SolverOptions options) {
+  options.interior_point_iterations = options.shift_updates = options.gauss_seidel_sweeps = 0;
+  return options;
+}
+
+// Around loops of bodies that are held more than six-fold contacts give way where they contradict each other.
+SolverOptions asOfLoops(SolverOptions options) {
+  options.largest_give = kLargeSpeed;
+  return options;
+}
+
+class IslandSolve {
+ public:
+  IslandSolve(const WorldModel& model, int k, int thread, WorldScratch& scratch)
+      : options_(model.options.solver),
+        scratch_(scratch),
+        island_(scratch.islands.islands[k]),
+        memory_(*scratch.islands.solvers[thread]),
+        problem_(problemOf(island_, scratch.islands)),
+        order_(scratch.islands.order.data() + island_.place, static_cast<std::size_t>(island_.contacts)),
+        is_heap_(island_.contacts > kHeapContacts),
+        is_loop_(mayContradict(problem_)),
+        offset_rate_(scratch.h > 0 ? kTangentCorrection / model.options.h : 0) {}
+
+  void run() {
+    const bool is_limited = scratch_.operations_left < kNoLimit;
+    const std::int64_t share =
+        is_limited ? std::max<std::int64_t>(scratch_.operations_left, 0) * island_.rows / scratch_.islands.rows : kNoLimit;
+    const std::int64_t reserve = is_limited ? reserveForStops() : 0;
+    memory_.operations_left = share - reserve;
+    const bool contradicts = is_loop_ && scratch_.h > 0;
+    if (contradicts && (!is_heap_ || isEntangled())) fit(PushingBy::kLastTick);
+    contradicts && !is_heap_ ? solveLoop() : solveOther();
+    if (island_.result.give > 0) giveWay(scratch_.h, offset_rate_, problem_, memory_.give.data(), island_.q, order_, scratch_.contacts);
+    std::int64_t spent = share - reserve - memory_.operations_left;
+    if (isLost()) spent += stopOnly(reserve + std::max<std::int64_t>(memory_.operations_left, 0));
+    island_.operations = is_limited ? spent : 0;
+  }
+
+ private:
+  static ContactProblem problemOf(Island& island, IslandScratch& s) {
+    const auto n = static_cast<std::size_t>(island.contacts);
+    return {{island.first_row, n + 1},        {island.mu, n}, {s.sides.data() + island.place, n},
+            VectorMap(island.q, island.rows), island.movers,  island.settling > 0};
+  }
+
+  void solveLoop() {
+    const bool is_small = island_.contacts < kLoopContacts;
+    solve(withoutCostly(options_));
+    if (!island_.result.converged) {
+      fit(PushingBy::kImpulses);
+      solveAgain(is_small ? options_ : asOfLoops(options_));
+    }
+    if (!island_.result.converged && is_small) solveAgain(asOfLoops(options_));
+  }
+
+  void solveOther() {
+    solve(is_loop_ && island_.contacts >= kLoopContacts && !is_heap_ ? asOfLoops(options_) : options_);
+    if (!(scratch_.h > 0 && memory_.operations_left >= 0 && isWedged(problem_, island_.r, island_.result))) return;
+    fit(PushingBy::kWedged);
+    std::fill(island_.r, island_.r + island_.rows, 0.0);  // or the squeeze would stay
+    solveAgain(options_);
+  }
+
+  void fit(PushingBy pushing) {
+    fitIslandBiases(pushing, scratch_.h, offset_rate_, problem_, island_.r, island_.q, order_, scratch_.contacts, memory_);
+  }
+
+  void solve(const SolverOptions& options) { solveContacts(problem_, options, memory_, island_.r, island_.u, island_.result); }
+
+  void solveAgain(const SolverOptions& options) {
+    const SolveResult first = island_.result;
+    solve(options);
+    island_.result.iterations += first.iterations;
+    island_.result.start = first.start;
+  }
+
+  // Contacts that contradict each other have no answer: what overlaps in all directions can't be pushed apart. Then they only stop what closes:
+  // biases that push are left out, and sweeps begin with no impulse at all. Support is better than falling through the floor. Returns what it
+  // took of the operations.
+  std::int64_t stopOnly(std::int64_t operations) {
+    memory_.operations_left = operations;
+    for (int n = 0; n < island_.contacts; ++n) {
+      const Contact& c = scratch_.contacts[order_[n]];
+      double* const q = island_.q + problem_.firstRow(n);
+      for (int k = 0; k < problem_.rows(n); ++k) {
+        if (k != kNormalRow || c.bias_C[k] < 0) q[k] -= (k >= kTorsionRow ? radiusOf(c, k) : 1) * c.bias_C[k];
+      }
+    }
+    stopBySweeps(problem_, kStoppingSweeps, memory_, VectorMap(island_.r, island_.rows), VectorMap(island_.u, island_.rows));
+    return operations - memory_.operations_left;
+  }
+
+  // What is kept of the budget for stopOnly: support doesn't depend on it.
+  std::int64_t reserveForStops() const { return kStoppingSweeps * kPerContactSwept * island_.contacts; }
+  bool isEntangled() const { return chooseForm(problem_, memory_) == EquationForm::kTooLarge; }
+  bool isLost() const { return !island_.result.converged && island_.result.residual > (is_heap_ ? kHeapLost : kLost); }
+
+  const SolverOptions& options_;
+  WorldScratch& scratch_;
+  Island& island_;
+  SolverScratch& memory_;
+  const ContactProblem problem_;
+  const std::span<const int> order_;
+  const bool is_heap_, is_loop_;
+  const double offset_rate_;
+};
+
+}  // namespace
+
+void solveIsland(const WorldModel& model, int k, int thread, WorldScratch& scratch) { IslandSolve(model, k, thread, scratch).run(); }
+
+}  // namespace pincer::engine
