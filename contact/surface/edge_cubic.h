@@ -14,6 +14,7 @@
 #include <array>
 
 #include "contact/math.h"
+#include "contact/surface/vec_pair.h"
 
 namespace pincer::contact {
 
@@ -22,24 +23,28 @@ struct EdgeEnd {
   Vec3 left, right;  // unit normals of the two sides; equal on a smooth edge, and on an open border
 };
 
-struct EdgeHandles {
-  Vec3 first, second;  // V1, V2
+template <class Vec>
+struct Handles {
+  Vec first, second;  // V1, V2
 };
+using EdgeHandles = Handles<Vec3>;
 
 EdgeHandles edgeHandles(const EdgeEnd& from, const EdgeEnd& to);
 
-// Of a smooth edge.
-[[gnu::flatten]] inline EdgeHandles smoothHandles(const Vec3& p0, const Vec3& p1, const Vec3& n0, const Vec3& n1) {
-  const Vec3 chord = p1 - p0;
-  const double d = chord.norm();
-  const Vec3 g = (1 / d) * chord;
-  const double a = n0.dot(n1), a0 = n0.dot(g), a1 = n1.dot(g), six = 6 / (4 - a * a);
-  const double rho = six * (2 * a0 + a * a1), sigma = six * (2 * a1 + a * a0), part = (1.0 / 18) * d;
+// Of a smooth edge; of two, as VecPairs.
+template <class Vec>
+[[gnu::flatten]] inline Handles<Vec> smoothHandles(const Vec& p0, const Vec& p1, const Vec& n0, const Vec& n1) {
+  const Vec chord = p1 - p0;
+  const auto d = chord.norm();
+  const Vec g = (1 / d) * chord;
+  const auto a = n0.dot(n1), a0 = n0.dot(g), a1 = n1.dot(g), six = 6 / (4 - a * a);
+  const auto rho = six * (2 * a0 + a * a1), sigma = six * (2 * a1 + a * a0), part = (1.0 / 18) * d;
   return {p0 + part * (6 * g - 2 * rho * n0 + sigma * n1), p1 - part * (6 * g + rho * n0 - 2 * sigma * n1)};
 }
 
 // The quadratic normal's middle control point on an edge from `p0` to `p1`: the mean of the end normals, mirrored in the plane across the
 // edge's middle. Source: T. van Overveld, B. Wyvill, 1997; Vlachos et al., eq. 5. Changing the ends' roles gives the same bits.
 Vec3 middleNormal(const Vec3& p0, const Vec3& p1, const Vec3& n0, const Vec3& n1);
+VecPair middleNormal(const VecPair& p0, const VecPair& p1, const VecPair& n0, const VecPair& n1);
 
 }  // namespace pincer::contact

@@ -6,8 +6,6 @@ namespace pincer::contact {
 
 namespace {
 
-constexpr double kTanBeta = LoneContact::kSinBeta / LoneContact::kCosBeta;
-
 // Rounded up: what the lanes let through is shown one by one.
 Lanes atLeast(double x) { return LanesPoint::toLanes(x * (1 + LanesPoint::kShare)); }
 
@@ -32,24 +30,6 @@ void LoneContact::setWay(double way) {
   way_lanes_ = atLeast(way_);
   rho_lanes_ = atLeast(rho_);
   zone_lanes_ = atLeast(std::max(zone_, reach_ + way_));
-}
-
-LaneMask LoneContact::mayMatter(const std::array<Lanes, 3>& centre, Lanes radius, Lanes hollow, const LaneCones& cones) const {
-  constexpr auto cos_beta = static_cast<float>(kCosBeta), sin_beta = static_cast<float>(kSinBeta), tan_beta = static_cast<float>(kTanBeta);
-  Lanes distance2{}, along{}, up{}, lean{};
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Lanes D = x_.x[k] - centre[k];
-    distance2 += D * D;
-    along += cones.axis[k] * D;
-    up += along_.x[k] * D;
-    lean += along_.x[k] * cones.axis[k];
-  }
-  const Lanes R = radius + rounding_, rho = rho_lanes_ + R, zone = zone_lanes_ + R;
-  const LaneMask is_gentle = (hollow < hollowest_) & (cones.cosine >= cos_beta) &
-                             (lean >= cos_beta * cones.cosine + sin_beta * cones.sine + 2 * LanesPoint::kShare);
-  const LaneMask is_beside =
-      (distance2 - up * up <= rho * rho + LanesPoint::kShare * distance2) & (LanesPoint::toLanes(h_) - up + R + (rho + R) * tan_beta >= 0);
-  return ~is_gentle & (distance2 < zone * zone) & (is_beside | cones.mayFace(along, distance2, R + way_lanes_));
 }
 
 // Whether a ball may touch the graph within rho, or what is above it.

@@ -20,7 +20,7 @@ struct PatchBounds;
 
 class LoneContact {
  public:
-  static constexpr double kCosBeta = 0.8660254037844387, kSinBeta = 0.5;  // 30 degrees
+  static constexpr double kCosBeta = 0.8660254037844387, kSinBeta = 0.5, kTanBeta = kSinBeta / kCosBeta;  // 30 degrees
   static constexpr double kFits = 0.6;
 
   // `most` [m]: no longer way is asked for; it should be less than h. `rounding` is what single precision may move a distance by [m].
@@ -43,5 +43,23 @@ class LoneContact {
   const Lanes hollowest_, rounding_;
   Lanes way_lanes_, rho_lanes_, zone_lanes_;
 };
+
+inline LaneMask LoneContact::mayMatter(const std::array<Lanes, 3>& centre, Lanes radius, Lanes hollow, const LaneCones& cones) const {
+  constexpr auto cos_beta = static_cast<float>(kCosBeta), sin_beta = static_cast<float>(kSinBeta), tan_beta = static_cast<float>(kTanBeta);
+  Lanes distance2{}, along{}, up{}, lean{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Lanes D = x_.x[k] - centre[k];
+    distance2 += D * D;
+    along += cones.axis[k] * D;
+    up += along_.x[k] * D;
+    lean += along_.x[k] * cones.axis[k];
+  }
+  const Lanes R = radius + rounding_, rho = rho_lanes_ + R, zone = zone_lanes_ + R;
+  const LaneMask is_gentle = (hollow < hollowest_) & (cones.cosine >= cos_beta) &
+                             (lean >= cos_beta * cones.cosine + sin_beta * cones.sine + 2 * LanesPoint::kShare);
+  const LaneMask is_beside =
+      (distance2 - up * up <= rho * rho + LanesPoint::kShare * distance2) & (LanesPoint::toLanes(h_) - up + R + (rho + R) * tan_beta >= 0);
+  return ~is_gentle & (distance2 < zone * zone) & (is_beside | cones.mayFace(along, distance2, R + way_lanes_));
+}
 
 }  // namespace pincer::contact

@@ -7,9 +7,7 @@ namespace pincer::contact {
 
 namespace {
 
-constexpr double kLeastDeterminant = 0.1;  // of J
-constexpr double kLeastCosine = 0.2;       // between Newton's step and T
-constexpr double kLeastEigenvalue = 0.2;   // of J, so that no step is longer than 5 |T|
+constexpr double kLeastEigenvalue = 0.2;  // of J, so that no step is longer than 5 |T|
 
 struct Residual {
   Vec3 T, n;
@@ -89,21 +87,6 @@ Vec2 saddleFreeStep(const PatchPoint& x, const Residual& r) {
   return J.moves.solve(divideByEigenvalueSizes(J.p, J.q, J.s, {r.T.dot(J.e1), r.T.dot(J.e2)}));
 }
 
-// Newton's step for the residual T = C - S - hN N.
-[[gnu::flatten]] NewtonStep newtonStepFor(const PatchPoint& x, const Vec3& T, double hN) {
-  const Vec3 A = x.Su + hN * x.Nu, B = x.Sv + hN * x.Nv;
-  const Vec3 X = B.cross(x.N), Y = x.N.cross(A);
-  const double det = A.dot(X), flat = x.Su.dot(x.Sv.cross(x.N)), inverse = 1 / det;
-  NewtonStep step{X * inverse, Y * inverse, 0, 0, T.squaredNorm(), false};
-  step.u = T.dot(step.du);
-  step.v = T.dot(step.dv);
-  const Vec3 dS = x.Su * step.u + x.Sv * step.v;
-  const double along = T.dot(dS);
-  step.is_usable = flat > 0 && det > kLeastDeterminant * flat && along > 0 &&
-                   along * along >= kLeastCosine * kLeastCosine * step.residual2 * dS.squaredNorm();
-  return step;
-}
-
 }  // namespace
 
 bool isStable(const PatchPoint& x, const Vec3& C) {
@@ -111,16 +94,10 @@ bool isStable(const PatchPoint& x, const Vec3& C) {
   return !J.is_folded && J.p > 0 && J.p * J.s > J.q * J.q;
 }
 
-NewtonStep newtonStep(const PatchPoint& x, const Vec3& C) {
-  const Vec3 R = C - x.S;
-  const double hN = R.dot(x.N) / x.N.squaredNorm();
-  return newtonStepFor(x, R - hN * x.N, hN);
-}
-
 [[gnu::flatten]] FaceStep faceStep(const PatchPoint& x, const Vec3& C, StepKind kind) {
   const Residual r = residualOf(x, C);
   if (kind == StepKind::newton) {
-    const NewtonStep step = newtonStepFor(x, r.T, r.hN);
+    const NewtonStep step = newtonStep(x, r.T, r.hN);
     const Vec2 d = step.is_usable ? Vec2(step.u, step.v) : saddleFreeStep(x, r);
     return {r.n, r.h, r.T.norm(), {-d.x() - d.y(), d.x(), d.y()}, step.is_usable, step.du, step.dv};
   }

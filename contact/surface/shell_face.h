@@ -33,7 +33,30 @@ struct NewtonStep {
   double residual2;  // |T|^2 [m^2]
   bool is_usable;    // J is clearly positive, and the step leads along T
 };
-NewtonStep newtonStep(const PatchPoint& x, const Vec3& C);
+
+constexpr double kLeastDeterminant = 0.1;  // of J
+constexpr double kLeastCosine = 0.2;       // between Newton's step and T
+
+// For the residual T = C - S - hN N.
+[[gnu::flatten]] inline NewtonStep newtonStep(const PatchPoint& x, const Vec3& T, double hN) {
+  const Vec3 A = x.Su + hN * x.Nu, B = x.Sv + hN * x.Nv;
+  const Vec3 X = B.cross(x.N), Y = x.N.cross(A);
+  const double det = A.dot(X), flat = x.Su.dot(x.Sv.cross(x.N)), inverse = 1 / det;
+  NewtonStep step{X * inverse, Y * inverse, 0, 0, T.squaredNorm(), false};
+  step.u = T.dot(step.du);
+  step.v = T.dot(step.dv);
+  const Vec3 dS = x.Su * step.u + x.Sv * step.v;
+  const double along = T.dot(dS);
+  step.is_usable = flat > 0 && det > kLeastDeterminant * flat && along > 0 &&
+                   along * along >= kLeastCosine * kLeastCosine * step.residual2 * dS.squaredNorm();
+  return step;
+}
+
+[[gnu::flatten]] inline NewtonStep newtonStep(const PatchPoint& x, const Vec3& C) {
+  const Vec3 R = C - x.S;
+  const double hN = R.dot(x.N) / x.N.squaredNorm();
+  return newtonStep(x, R - hN * x.N, hN);
+}
 
 FaceStep faceStep(const PatchPoint& x, const Vec3& C, StepKind kind);
 

@@ -297,8 +297,8 @@ ShellContact solveShell(const SurfaceNet& net, PatchCache& cache, const Vec3& C,
   return ShellWalk(net, cache, C, start, ends).run();
 }
 
-ShellContact solveShellBeside(const SurfaceNet& net, PatchCache& cache, const Vec3& C, const Foot& start, const FootMotion& motion,
-                              const Vec3& dC) {
+[[gnu::flatten]] ShellContact solveShellBeside(const SurfaceNet& net, PatchCache& cache, const Vec3& C, const Foot& start,
+                                               const FootMotion& motion, const Vec3& dC) {
   ShellContact contact;
   const double du = motion.du.dot(dC), dv = motion.dv.dot(dC);
   contact.foot = {start.triangle, {start.b[0] - du - dv, start.b[1] + du, start.b[2] + dv}};

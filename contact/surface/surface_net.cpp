@@ -4,6 +4,7 @@
 #include <bit>
 
 #include "contact/surface/edge_cubic.h"
+#include "contact/surface/large_pages.h"
 
 namespace pincer::contact {
 
@@ -22,26 +23,62 @@ std::array<EdgeEnd, 2> edgeEnds(const SurfaceNet& net, std::int32_t t, int i) {
   return {EdgeEnd{p0, left0, right0}, EdgeEnd{p1, left1, right1}};
 }
 
-void setSmoothEdge(int i, bool is_first, Patch& p) {
+// Whether the triangle is the first of an edge's: as that one sees it the edge is computed, so that the two sides share it to the last bit.
+bool isFirst(std::int32_t triangle, const Neighbour& other) { return other.triangle < 0 || triangle < other.triangle; }
+
+// The ends of smooth edge i, as its first triangle sees it.
+struct SmoothEdge {
+  const Vec3 *p0, *p1, *n0, *n1;
+  Vec3 *first, *second;  // handles
+};
+SmoothEdge smoothEdge(Patch& p, int i, bool is_first) {
   const std::array<const Vec3*, 3> corners = {&p.b300, &p.b030, &p.b003}, normals = {&p.n200, &p.n020, &p.n002};
   const auto here = static_cast<std::size_t>(i), next = static_cast<std::size_t>((i + 1) % 3);
   const auto [from, to] = is_first ? std::pair(here, next) : std::pair(next, here);
-  const auto [first, second] = smoothHandles(*corners[from], *corners[to], *normals[from], *normals[to]);
-  firstHandle(p, i) = is_first ? first : second;
-  secondHandle(p, i) = is_first ? second : first;
+  Vec3 &first = firstHandle(p, i), &second = secondHandle(p, i);
+  return {corners[from], corners[to], normals[from], normals[to], is_first ? &first : &second, is_first ? &second : &first};
 }
 
-// Each edge is computed as its first triangle sees it: the two sides share it to the last bit.
-void setEdge(const SurfaceNet& net, std::int32_t triangle, int i, SurfaceCell& cell) {
+void setSmoothEdge(const SmoothEdge& e) {
+  const auto [first, second] = smoothHandles(*e.p0, *e.p1, *e.n0, *e.n1);
+  *e.first = first;
+  *e.second = second;
+}
+
+// Two side by side.
+void setSmoothEdges(const SmoothEdge& a, const SmoothEdge& b) {
+  const auto [first, second] = smoothHandles(VecPair(*a.p0, *b.p0), VecPair(*a.p1, *b.p1), VecPair(*a.n0, *b.n0), VecPair(*a.n1, *b.n1));
+  *a.first = first.first();
+  *b.first = first.second();
+  *a.second = second.first();
+  *b.second = second.second();
+}
+
+void setSharpEdge(const SurfaceNet& net, std::int32_t triangle, int i, SurfaceCell& cell) {
   const Neighbour other = cell.neighbours[static_cast<std::size_t>(i)];
-  const bool is_first = other.triangle < 0 || triangle < other.triangle;
-  bool& is_sharp = cell.sharp[static_cast<std::size_t>(i)];
-  is_sharp = net.isSharp(triangle, i);
-  if (!is_sharp) return setSmoothEdge(i, is_first, cell.patch);
+  const bool is_first = isFirst(triangle, other);
   const auto [from, to] = is_first ? edgeEnds(net, triangle, i) : edgeEnds(net, other.triangle, other.edge);
   const auto [first, second] = edgeHandles(from, to);
   firstHandle(cell.patch, i) = is_first ? first : second;
   secondHandle(cell.patch, i) = is_first ? second : first;
+}
+
+void setEdges(const SurfaceNet& net, std::int32_t triangle, SurfaceCell& cell) {
+  const auto smooth = [&](int i) { return smoothEdge(cell.patch, i, isFirst(triangle, cell.neighbours[static_cast<std::size_t>(i)])); };
+  const auto set = [&](int i) {
+    cell.sharp[static_cast<std::size_t>(i)] ? setSharpEdge(net, triangle, i, cell) : setSmoothEdge(smooth(i));
+  };
+  set(0);
+  if (!cell.sharp[1] && !cell.sharp[2]) return setSmoothEdges(smooth(1), smooth(2));
+  set(1);
+  set(2);
+}
+
+void setMiddleNormals(Patch& p) {
+  p.n110 = middleNormal(p.b300, p.b030, p.n200, p.n020);
+  const VecPair middles = middleNormal(VecPair(p.b030, p.b003), VecPair(p.b003, p.b300), VecPair(p.n020, p.n002), VecPair(p.n002, p.n200));
+  p.n011 = middles.first();
+  p.n101 = middles.second();
 }
 
 // A handle lies in its end's tangent plane, whatever the other side of the edge has there.
@@ -69,22 +106,30 @@ void setCentre(Patch& p) {
   p.b111 = handles + (handles - (p.b300 + p.b030 + p.b003) / 3) / 2;
 }
 
-// Where the smooth edge from corner i to the middle of the side across has come to after 2/3 of the way, over the triangle's middle.
-[[gnu::flatten]] Vec3 placeOnMedian(const Patch& p, int i) {
-  const auto side = edgeCurve(p, (i + 1) % 3);
-  const auto normals = edgeNormals(p, (i + 1) % 3);
-  const Vec3 P = edgeCurve(p, i)[0], n = edgeNormals(p, i)[0];
-  const Vec3 M = (side[0] + 3 * side[1] + 3 * side[2] + side[3]) / 8, n_M = (normals[0] + 2 * normals[1] + normals[2]).normalized();
+// Where the smooth edge from the corner `P` with normal `n` to the middle of the side across has come to after 2/3 of the way, over the
+// triangle's middle. `side` and `normals` are the control points across.
+template <class Vec>
+Vec placeOnMedian(const Vec& P, const Vec& n, const std::array<Vec, 4>& side, const std::array<Vec, 3>& normals) {
+  const Vec M = (side[0] + 3 * side[1] + 3 * side[2] + side[3]) / 8, n_M = (normals[0] + 2 * normals[1] + normals[2]).normalized();
   const auto [first, second] = smoothHandles(P, M, n, n_M);
   return (P + 6 * first + 12 * second + 8 * M) / 27;
 }
 
+template <std::size_t N>
+std::array<VecPair, N> sideBySide(const std::array<Vec3, N>& a, const std::array<Vec3, N>& b) {
+  return [&]<std::size_t... I>(std::index_sequence<I...>) { return std::array<VecPair, N>{VecPair(a[I], b[I])...}; }
+  (std::make_index_sequence<N>{});
+}
+
 // So that the patch's middle is the medians' mean: on spheres no further off than its edges; with Vlachos' centre it is the worst place.
-void setCentreByMedians(Patch& p) {
-  const Vec3 middle = (placeOnMedian(p, 0) + placeOnMedian(p, 1) + placeOnMedian(p, 2)) / 3;
+// Returns whether there is one: not where a side's normals are opposite.
+bool setCentreByMedians(Patch& p) {
+  const VecPair places = placeOnMedian(VecPair(p.b300, p.b030), VecPair(p.n200, p.n020), sideBySide(edgeCurve(p, 1), edgeCurve(p, 2)),
+                                       sideBySide(edgeNormals(p, 1), edgeNormals(p, 2)));
+  const Vec3 middle = (places.first() + places.second() + placeOnMedian(p.b003, p.n002, edgeCurve(p, 0), edgeNormals(p, 0))) / 3;
   const Vec3 corners = p.b300 + p.b030 + p.b003, handles = p.b210 + p.b120 + p.b021 + p.b012 + p.b102 + p.b201;
-  const Vec3 centre = (27 * middle - corners - 3 * handles) / 6;
-  if (centre.allFinite()) p.b111 = centre;  // not where a side's normals are opposite
+  p.b111 = (27 * middle - corners - 3 * handles) / 6;
+  return p.b111.allFinite();
 }
 
 // FNV-1a over what the patches depend on.
@@ -197,6 +242,11 @@ SurfaceNet::SurfaceNet(TriangleMesh mesh, double crease_angle, bool use_file_nor
   mesh_.vertices.shrink_to_fit();
   mesh_.triangles.shrink_to_fit();
   normals_.shrink_to_fit();
+  preferLargePages(mesh_.vertices);
+  preferLargePages(mesh_.triangles);
+  preferLargePages(neighbours_);
+  preferLargePages(normals_);
+  preferLargePages(corner_normals_);
   Fingerprint fingerprint;
   fingerprint.add(static_cast<std::uint64_t>(variant));
   for (const Vec3& v : mesh_.vertices) fingerprint.add(v);
@@ -222,8 +272,9 @@ bool SurfaceNet::haveOtherNormals(std::int32_t triangle, int edge) const {
   return numbers[at(edge)] != others[at(other_next)] || numbers[at(next)] != others[at(other.edge)];
 }
 
-[[gnu::flatten]] SurfaceCell SurfaceNet::build(std::int32_t triangle) const {
-  SurfaceCell cell{{}, {neighbour(triangle, 0), neighbour(triangle, 1), neighbour(triangle, 2)}, mesh_.triangles[at(triangle)], {}};
+[[gnu::flatten]] void SurfaceNet::build(std::int32_t triangle, SurfaceCell& cell) const {
+  cell.neighbours = {neighbour(triangle, 0), neighbour(triangle, 1), neighbour(triangle, 2)};
+  cell.vertices = mesh_.triangles[at(triangle)];
   Patch& p = cell.patch;
   p.b300 = vertex(triangle, 0);
   p.b030 = vertex(triangle, 1);
@@ -231,19 +282,16 @@ bool SurfaceNet::haveOtherNormals(std::int32_t triangle, int edge) const {
   p.n200 = normal(triangle, 0);
   p.n020 = normal(triangle, 1);
   p.n002 = normal(triangle, 2);
-  p.n110 = middleNormal(p.b300, p.b030, p.n200, p.n020);
-  p.n011 = middleNormal(p.b030, p.b003, p.n020, p.n002);
-  p.n101 = middleNormal(p.b003, p.b300, p.n002, p.n200);
+  setMiddleNormals(p);
   if (is_flat_) {
     cell.sharp = {true, true, true};
     setStraightEdges(p);
   } else {
-    for (int i = 0; i < 3; ++i) setEdge(*this, triangle, i, cell);
+    cell.sharp = {isSharp(triangle, 0), isSharp(triangle, 1), isSharp(triangle, 2)};
+    setEdges(*this, triangle, cell);
     if (variant_ == SurfaceVariant::smooth_published) setPublishedEdges(p);
   }
-  setCentre(p);
-  if (variant_ == SurfaceVariant::smooth) setCentreByMedians(p);
-  return cell;
+  if (variant_ != SurfaceVariant::smooth || !setCentreByMedians(p)) setCentre(p);
 }
 
 // Who comes here goes on to a neighbour: what that is built from is fetched from memory meanwhile, its numbers first, then what they lead to.
@@ -256,7 +304,9 @@ void SurfaceNet::fill(std::int32_t triangle, PatchCache::Place& place) const {
     __builtin_prefetch(&neighbours_[other]);
     if (!is_flat_) __builtin_prefetch(&corner_normals_[other]);
   }
-  place = {fingerprint_, triangle, build(triangle)};
+  place.net = fingerprint_;
+  place.triangle = triangle;
+  build(triangle, place.cell);
   for (const std::int32_t code : codes) {
     if (code < 0) continue;
     const std::size_t other = at(code / 8), across = at((code % 4 + 2) % 3);

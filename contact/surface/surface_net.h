@@ -43,7 +43,11 @@ class SurfaceNet {
     if (place.triangle != triangle || place.net != fingerprint_) fill(triangle, place);
     return place.cell;
   }
-  SurfaceCell build(std::int32_t triangle) const;
+  SurfaceCell build(std::int32_t triangle) const {
+    SurfaceCell cell;
+    build(triangle, cell);
+    return cell;
+  }
 
   const Vec3& vertex(std::int32_t triangle, int corner) const { return mesh_.vertices[at(mesh_.triangles[at(triangle)][at(corner)])]; }
   // The patch's.
@@ -71,7 +75,8 @@ class SurfaceNet {
   SurfaceVariant variant_;
   bool is_flat_;  // facet or force
   TriangleMesh mesh_;
-  void fill(std::int32_t triangle, PatchCache::Place& place) const;
+  [[gnu::noinline]] void fill(std::int32_t triangle, PatchCache::Place& place) const;  // kept out of what finds a patch in its place
+  void build(std::int32_t triangle, SurfaceCell& cell) const;
   bool haveOtherNormals(std::int32_t triangle, int edge) const;
 
   std::vector<std::array<std::int32_t, 3>> neighbours_;      // 8 triangle + 4 if sharp + edge, -1 at a border
