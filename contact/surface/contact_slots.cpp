@@ -8,7 +8,7 @@
 namespace pincer::contact {
 
 // What most ticks are: the only contact that is followed has moved on within its patch, nothing else has come near, and nothing is eased.
-bool SurfaceTouch::followAlone(SurfaceContacts& found) {
+[[gnu::flatten]] bool SurfaceTouch::followAlone(SurfaceContacts& found) {
   int slot = -1;
   for (int i = 0; i < kMaxSurfaceContacts; ++i) {
     if (keptIn(i).triangle < 0) continue;
