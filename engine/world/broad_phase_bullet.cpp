@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "engine/world/broad_phase.h"
-#include "engine/world/island_sleep.h"
 #include "engine/world/scratch.h"
 
 namespace pincer::engine {
@@ -97,7 +96,7 @@ BroadPhase::~BroadPhase() = default;
 std::span<const BodyPair> BroadPhase::candidates(const WorldModel& model, const WorldScratch& scratch) {
   pairs_.clear();
   for (std::size_t i = 0; i < tree_->proxies.size(); ++i) {
-    if (!tree_->proxies[i] || (model.bodies[i].dynamic && isIdle(scratch, static_cast<int>(i)))) continue;
+    if (!tree_->proxies[i]) continue;
     const Box box = boxOf(model, scratch, static_cast<int>(i));
     tree_->bullet.setAabb(tree_->proxies[i], box.low, box.high, nullptr);
   }

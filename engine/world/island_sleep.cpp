@@ -44,10 +44,10 @@ bool isAsleep(const SleepScratch& sleep, const Contact& c) {
 // Contacts of those that fell asleep are put aside, with what they remember.
 void putContactsAside(const WorldState& state, WorldScratch& scratch) {
   SleepScratch& sleep = scratch.sleep;
-  const auto first_awake =
-      std::stable_partition(scratch.contacts.begin(), scratch.contacts.end(), [&](const Contact& c) { return !isAsleep(sleep, c); });
-  for (auto c = first_awake; c != scratch.contacts.end(); ++c) sleep.contacts.push_back({*c, {}, 0});
-  scratch.contacts.erase(first_awake, scratch.contacts.end());
+  for (const Contact& c : scratch.contacts) {
+    if (isAsleep(sleep, c)) sleep.contacts.push_back({c, {}, 0});
+  }
+  std::erase_if(scratch.contacts, [&](const Contact& c) { return isAsleep(sleep, c); });
   std::sort(sleep.contacts.begin(), sleep.contacts.end(),
             [](const SleepingContact& x, const SleepingContact& y) { return x.contact.id < y.contact.id; });
   sleep.room = scratch.contacts.capacity() - sleep.contacts.size();

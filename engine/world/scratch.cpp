@@ -17,7 +17,8 @@ void sizeForSleep(const WorldModel& model, SleepScratch& sleep) {
   sleep.idle.resize(bodies);
   sleep.group.resize(bodies);
   sleep.states.resize(bodies);
-  if (!model.options.sleep) return;
+  const bool may_sleep = std::any_of(model.bodies.begin(), model.bodies.end(), [](const BodyModel& body) { return body.dynamic; });
+  if (!model.options.sleep || !may_sleep) return;
   sleep.contacts.reserve(static_cast<std::size_t>(model.options.max_contacts));
   sleep.kept.reserve(static_cast<std::size_t>(model.options.max_contacts));
 }

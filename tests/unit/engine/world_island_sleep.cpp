@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/world/step.h"
+#include "tests/support/allocation_guard.h"
 #include "tests/support/random_numbers.h"
 #include "tests/support/worlds.h"
 
@@ -80,6 +81,20 @@ TEST(IslandSleep, HasTheSameBitsAsWithoutSleep) {
   }
   EXPECT_GT(slept, 4000);  // body ticks
   EXPECT_GT(woken, 10);
+}
+
+TEST(IslandSleep, AllocatesNothing) {
+  if (!tests::allocationsAreCounted()) GTEST_SKIP() << "a sanitizer owns the allocator";
+  SleepWorld w = stacksAndBalls(1, true, 1);
+  w.tick();  // the broad phase's first
+  int slept = 0;
+  const std::int64_t before = tests::allocationCount();
+  for (int tick = 0; tick < 900; ++tick) {
+    w.tick();
+    slept += w.scratch.sleep.bodies;
+  }
+  EXPECT_EQ(tests::allocationCount() - before, 0);
+  EXPECT_GT(slept, 500);
 }
 
 // Boxes that rest apart from each other, the last one on ice.

@@ -41,7 +41,7 @@ std::vector<Shape> smoothBodies() {
 
 double bodyDistance(const Shape& shape, const Vec3& p_B) {
   SurfaceTracker tracker;
-  PatchCache cache(8);
+  static PatchCache cache(1);  // smooth bodies have no patches
   const double r = 1e-3;
   return querySphere(shape, p_B, r, 0, tracker, cache).main().phi + r;
 }
