@@ -24,8 +24,7 @@ class CentralPath {
       memory += problem.rowCount();
     }
     for (int row = 0; row < problem.rowCount(); ++row) size_ = std::max(size_, std::abs(problem.q[row]));
-    std::fill(x_, x_ + problem.rowCount(), 0.0);
-    std::fill(z_, z_ + problem.rowCount(), 0.0);
+    for (double* vector : {x_, z_, dx_, dz_}) std::fill(vector, vector + problem.rowCount(), 0.0);  // not whatever was there, times 0
     for (int i = 0; i < problem.contactCount(); ++i) x_[normal(i)] = z_[normal(i)] = size_;
     update();
   }
