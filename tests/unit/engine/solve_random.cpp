@@ -93,9 +93,26 @@ TEST_P(RandomProblems, GiveTheSameBitsAgain) {
 // As another island leaves it that had no finite answer. Which one that is depends on the number of threads.
 void fillWithNaN(SolverScratch& s) {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  for (std::vector<double>* vector :
-       {&s.W, &s.q, &s.scale, &s.y, &s.weight, &s.shift, &s.jacobian, &s.step, &s.rhs, &s.response, &s.interior, &s.shift_centre, &s.give,
-        &s.local, &s.impulses[0], &s.impulses[1], &s.impulses[2], &s.velocities[0], &s.velocities[1], &s.velocities[2]})
+  for (std::vector<double>* vector : {&s.W,
+                                      &s.q,
+                                      &s.scale,
+                                      &s.y,
+                                      &s.weight,
+                                      &s.shift,
+                                      &s.jacobian,
+                                      &s.step,
+                                      &s.rhs,
+                                      &s.response,
+                                      &s.interior,
+                                      &s.shift_centre,
+                                      &s.give,
+                                      &s.local,
+                                      &s.impulses[0],
+                                      &s.impulses[1],
+                                      &s.impulses[2],
+                                      &s.velocities[0],
+                                      &s.velocities[1],
+                                      &s.velocities[2]})
     std::fill(vector->begin(), vector->end(), kNaN);
 }
 
