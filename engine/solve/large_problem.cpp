@@ -8,22 +8,18 @@
 namespace pincer::engine {
 namespace {
 
-constexpr int kSweptVisits = 12000;                 // of contacts in a tick: 40 sweeps of the heap of 100 balls, 4 of one of 1000;
-constexpr int kMovingVisits = 48000;                // while a sweep still changes velocities by more than
-constexpr double kMovingSpeed = 1e-3;               // [m/s]: 1 um per tick, of which the next one undoes a fifth
-constexpr int kFewestSweeps = 4, kMostSweeps = 40;  // sweeps
-constexpr int kRestingSweeps = 2;                   // sweeps of what was near enough before them: so a heap comes to rest
-constexpr int kBetweenLooks = 4;                    // a look at the residual costs half a sweep,
-constexpr double kWorthALook = 4;                   // and a sweep that changed more than so many times what is enough needs none
-
-int sweepsOf(int visits, int contacts) { return std::clamp(visits / contacts, kFewestSweeps, kMostSweeps); }
+constexpr int kVisits = 48000;  // of contacts in a tick: 40 sweeps of the heap of 100 balls, 16 of one of 1000
+constexpr int kFewestSweeps = 4, kMostSweeps = 40;
+constexpr int kRestingSweeps = 2;  // of what was near enough before them: so a heap comes to rest
+constexpr int kBetweenLooks = 4;   // a look at the residual costs half a sweep,
+constexpr double kWorthALook = 4;  // and a sweep that changed more than so many times what is enough needs none
 
 }  // namespace
 
 SolveResult solveLargeProblem(const ContactProblem& problem, double enough, double start, SolverScratch& scratch, double* r, double* u) {
   const int n = problem.contactCount();
   const bool rests = start <= enough;
-  const int few = sweepsOf(kSweptVisits, n), most = sweepsOf(kMovingVisits, n);
+  const int most = std::clamp(kVisits / n, kFewestSweeps, kMostSweeps);
   const double near_speed = kWorthALook * enough * referenceSpeed(problem);
   GaussSeidel method({problem.first_row, problem.mu, problem.sides, problem.q.data(), scratch.y.data(), problem.movers}, scratch, r);
   double residual = start;
@@ -35,11 +31,12 @@ SolveResult solveLargeProblem(const ContactProblem& problem, double enough, doub
   };
   for (;;) {
     const bool is_spent = !spend(kPerContactSwept * n, scratch);
-    method.sweep(sweeps++ % 2 == 1);
+    method.sweep(false);  // to and fro would be half as fast: what was visited last learns nothing from being visited first
+    ++sweeps;
     if (sweeps == most || (is_spent && sweeps >= kFewestSweeps)) break;  // contacts that are new have no impulse yet: every tick gets a few
     const double change = method.largestChange();
     const bool is_due = sweeps % kBetweenLooks == 0 ? change <= near_speed : rests && sweeps == kRestingSweeps;
-    if ((is_due && isEnough()) || (sweeps >= few && change <= kMovingSpeed)) break;
+    if (is_due && isEnough()) break;
     method.accelerate();
   }
   const bool converged = isEnough();
