@@ -43,14 +43,17 @@ GaussSeidel::GaussSeidel(const SweptProblem& problem, SolverScratch& scratch, do
       r_(r),
       terms_(scratch.local.data()),
       change_(scratch.step.data()),
-      direction_(scratch.response.data()),
+      way_(scratch.response.data()),
       y_before_(scratch.rhs.data()),
-      y_direction_(scratch.interior.data()),
+      y_way_(scratch.interior.data()),
       weight_(scratch.weight.data()) {
   const int most = mostRows(problem);
   stride_ = kTermsBefore + 2 * most * most;
   for (int i = 0; i < problem.contactCount(); ++i) fillTerms(i);
-  std::copy(problem_.y, problem_.y + kMoverFreedoms * problem_.movers, y_before_);
+  const int size = kMoverFreedoms * problem_.movers;
+  std::copy(problem_.y, problem_.y + size, y_before_);
+  std::fill(way_, way_ + problem_.rowCount(), 0.0);
+  std::fill(y_way_, y_way_ + size, 0.0);
 }
 
 void GaussSeidel::fillTerms(int i) {
@@ -82,77 +85,110 @@ void GaussSeidel::relax(int i) {
   const ContactSides& sides = problem_.sides[static_cast<std::size_t>(i)];
   const int first = problem_.firstRow(i);
   double *const r_i = r_ + first, *const change_i = change_ + first;
+  const double *const q_i = problem_.q + first, *const way_i = way_ + first;
   withRows(problem_.rows(i), [&](auto rows) {
+    for (int k = 0; k < rows; ++k) work_of_way_ += q_i[k] * way_i[k];
     if (staysOpen(i)) return std::fill(change_i, change_i + rows, 0.0);
     double u[kMaxContactRows], r[kMaxContactRows];
-    velocityOf(sides, rows, problem_.q + first, problem_.y, u);
-    solveOwn(i, rows, u, r);
-    double way2 = 0;
+    velocityOf(sides, rows, q_i, problem_.y, u);
+    const double shift = solveOwn(i, rows, u, r);
+    double change2 = 0;
     for (int k = 0; k < rows; ++k) {
       change_i[k] = r[k] - r_i[k];
       r_i[k] = r[k];
-      way2 += change_i[k] * change_i[k];
+      change2 += change_i[k] * change_i[k];
+      work_of_change_ += q_i[k] * change_i[k];
     }
-    way2_ += weight_[i] * way2;
-    largest_change2_ = std::max(largest_change2_, weight_[i] * weight_[i] * way2);
+    work_of_change_ += shift * change_i[kNormalRow];
+    work_of_way_ += shift * way_i[kNormalRow];
+    largest_change2_ = std::max(largest_change2_, weight_[i] * weight_[i] * change2);
     addImpulse(sides, rows, change_i, problem_.y);
   });
 }
 
-// r = the impulse of contact i, which has the velocity u with the present one.
+// r = the impulse of contact i, which has the velocity u with the present one. Returns its mu |u_T| with r.
 template <class Rows>
-[[gnu::always_inline]] inline void GaussSeidel::solveOwn(int i, Rows rows, double* u, double* r) {
+[[gnu::always_inline]] inline double GaussSeidel::solveOwn(int i, Rows rows, double* u, double* r) {
   const double *const terms = termsOf(i), *const inverse = terms + kTermsBefore, *const W = inverse + rows * rows;
   const double* const r_i = r_ + problem_.firstRow(i);
+  const double mu = problem_.friction(i);
   if (terms[0] > 0) {
     for (int k = 0; k < kTorsionRow; ++k) r[k] = r_i[k] - terms[k == kNormalRow] * u[k];
-    return limitFriction(problem_.friction(i), r);
+    return mu * limitFriction(mu, r) / terms[0];
   }
   for (int k = 0; k < rows; ++k) {
     r[k] = r_i[k];
     for (int l = 0; l < rows; ++l) r[k] -= inverse[rows * l + k] * u[l];
   }
-  if (isInCone(r, rows, problem_.friction(i))) return;  // it sticks
+  if (isInCone(r, rows, mu)) return 0;  // it sticks
   for (int k = 0; k < rows; ++k) {
     for (int l = 0; l < rows; ++l) u[k] -= W[rows * l + k] * r_i[l];
   }
-  slide_steps_ += solveOneContact(W, rows, u, rows, problem_.friction(i), r);
+  slide_steps_ += solveOneContact(W, rows, u, rows, mu, r);
+  for (int k = 0; k < rows; ++k) {
+    for (int l = 0; l < rows; ++l) u[k] += W[rows * l + k] * r[l];
+  }
+  return mu * std::sqrt(tangentNorm2(u, rows));
 }
 
 void GaussSeidel::sweep(bool backwards) {
   const int n = problem_.contactCount();
-  way2_before_ = way2_;
-  way2_ = largest_change2_ = 0;
+  work_of_change_ = work_of_way_ = largest_change2_ = 0;
   slide_steps_ = 0;
   for (int k = 0; k < n; ++k) relax(backwards ? n - 1 - k : k);
 }
 
+namespace {
+
+// Where  a g_z + b g_p + (a^2 zz + 2 a b zp + b^2 pp) / 2  is least, within bounds: where contacts are redundant z and p may be any part of r that moves
+// nothing, and what is left of zz and pp is round-off. Nowhere if the sweep's own way would be taken back.
+struct LeastEnergy {
+  double a = 0, b = 0;
+
+  LeastEnergy(double g_z, double g_p, double zz, double zp, double pp) {
+    constexpr double kLongest = 3;       // hardly ever are more than 2 asked for, and less than -1/2
+    constexpr double kParallel = 1e-12;  // of z and p: the squared sine of their angle
+    const double determinant = zz * pp - zp * zp;
+    const double again = determinant > kParallel * zz * pp ? std::clamp((zp * g_z - zz * g_p) / determinant, 0.0, 1.0) : 0;
+    const double further = std::min(-(g_z + again * zp) / zz, kLongest);
+    if (!(further > -1)) return;
+    a = further;
+    b = again;
+  }
+};
+
+}  // namespace
+
 // y follows r by linearity: only what the cones take back goes through A.
 void GaussSeidel::accelerate() {
-  const double ratio = way2_before_ > 0 && way2_ <= way2_before_ ? way2_ / way2_before_ : 0;  // 0: begin anew
   const int size = kMoverFreedoms * problem_.movers;
-  if (ratio == 0) {
-    std::copy(change_, change_ + problem_.rowCount(), direction_);
-    for (int j = 0; j < size; ++j) y_direction_[j] = problem_.y[j] - y_before_[j];
-  } else {
-    for (int j = 0; j < size; ++j) {
-      const double further = ratio * y_direction_[j];
-      y_direction_[j] = further + (problem_.y[j] - y_before_[j]);
-      problem_.y[j] += further;
-    }
-    for (int i = 0; i < problem_.contactCount(); ++i) goFurther(i, ratio);
+  double *const y = problem_.y, zz = 0, zp = 0, pp = 0;
+  double g_z = work_of_change_, g_p = work_of_way_;
+  for (int j = 0; j < size; ++j) {
+    const double z = y[j] - y_before_[j], p = y_way_[j];
+    zz += z * z;
+    zp += z * p;
+    pp += p * p;
+    g_z += y[j] * z;
+    g_p += y[j] * p;
   }
-  std::copy(problem_.y, problem_.y + size, y_before_);
+  const LeastEnergy least(g_z, g_p, zz, zp, pp);
+  for (int j = 0; j < size; ++j) y[j] += least.a * (y[j] - y_before_[j]) + least.b * y_way_[j];
+  for (int i = 0; i < problem_.contactCount(); ++i) goFurther(i, least.a, least.b);
+  for (int j = 0; j < size; ++j) {
+    y_way_[j] = y[j] - y_before_[j];
+    y_before_[j] = y[j];
+  }
 }
 
-void GaussSeidel::goFurther(int i, double ratio) {
+void GaussSeidel::goFurther(int i, double a, double b) {
   const int first = problem_.firstRow(i);
-  double *const r_i = r_ + first, *const direction = direction_ + first;
+  double *const r_i = r_ + first, *const way_i = way_ + first;
   withRows(problem_.rows(i), [&](auto rows) {
     for (int k = 0; k < rows; ++k) {
-      const double further = ratio * direction[k];
-      direction[k] = further + change_[first + k];
+      const double change = change_[first + k], further = a * change + b * way_i[k];
       r_i[k] += further;
+      way_i[k] = change + further;
     }
     if (isInCone(r_i, rows, problem_.friction(i))) return;
     double back[kMaxContactRows];
@@ -161,6 +197,7 @@ void GaussSeidel::goFurther(int i, double ratio) {
       const double inside = back[k];
       back[k] -= r_i[k];
       r_i[k] = inside;
+      way_i[k] += back[k];
     }
     addImpulse(problem_.sides[static_cast<std::size_t>(i)], rows, back, problem_.y);
   });

@@ -2,8 +2,13 @@
 //
 // Slow where contacts are redundant or masses differ, but it hardly ever fails to improve: it carries Newton's method to where that converges, and
 // heaps of hundreds of contacts from tick to tick (large_problem.h).
-// Sources: M. Jean, Comput. Methods Appl. Mech. Engrg. 177 (1999) 235-257 (non-smooth contact dynamics). accelerate(): M. Silcowitz, S. Niebe,
-// K. Erleben, The Visual Computer 26 (2010) 893-901, with the length of a step measured in energy.
+//
+// accelerate(): z is the way of the last sweep, p the whole way of the one before. On to the least of the energy
+//   E(r) = |A^T r|^2 / 2 + r . (q + s),   s_i = mu_i |u_iT| e_n as the sweep left it
+// over r + a z + b p, then back into the cones. Were all contacts to stick, and the sweep symmetric, this would be the method of conjugate gradients. For fixed s
+// the least of E in the cones solves the contact problem: without s what slides would be carried on for ever.
+// Sources: M. Jean, Comput. Methods Appl. Mech. Engrg. 177 (1999) 235-257 (non-smooth contact dynamics); M. Silcowitz, S. Niebe, K. Erleben,
+// The Visual Computer 26 (2010) 893-901 (conjugate gradients on its sweeps); E: V. Acary, F. Cadoux, C. Lemarechal, J. Malick, ZAMM 91 (2011) 155-175.
 #pragma once
 #include <cmath>
 
@@ -37,7 +42,7 @@ class GaussSeidel {
 
   void sweep(bool backwards);
 
-  // After each sweep but the last: goes on along the way that the sweeps took, as the method of conjugate gradients would.
+  // After each sweep but the last.
   void accelerate();
 
   // How far the last sweep changed a contact's own velocity, at most: w_i |change of r_i| [m/s].
@@ -51,20 +56,20 @@ class GaussSeidel {
   void fillTerms(int i);
   void relax(int i);
   template <class Rows>
-  void solveOwn(int i, Rows rows, double* u, double* r);
+  double solveOwn(int i, Rows rows, double* u, double* r);
   bool staysOpen(int i) const;
-  void goFurther(int i, double ratio);
+  void goFurther(int i, double a, double b);
 
   const SweptProblem problem_;
   double* const r_;
   static constexpr int kTermsBefore = 2;
   double* const terms_;  // per contact: of isotropic ones 1 / W_tt, 0 of others; 1 / W_nn; the inverse of W_ii, of others; W_ii
   int stride_;
-  double *const change_, *const direction_;      // of r by the last sweep; by all of them, conjugate
-  double *const y_before_, *const y_direction_;  // y before the last sweep; A^T direction
+  double *const change_, *const way_;      // z and p
+  double *const y_before_, *const y_way_;  // y before the last sweep; A^T p
   const double* const weight_;
-  double way2_ = 0, way2_before_ = 0;  // of the last sweep and the one before, squared [J]
-  double largest_change2_ = 0;         // [(m/s)^2]
+  double work_of_change_ = 0, work_of_way_ = 0;  // (q + s) . z and p [J]
+  double largest_change2_ = 0;                   // [(m/s)^2]
   int slide_steps_ = 0;
 };
 

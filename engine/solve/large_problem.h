@@ -1,8 +1,8 @@
 // large_problem: contacts that are too many and too entangled for Newton's method (heaps of some hundred), by accelerated Gauss-Seidel.
 //
 // A few sweeps per tick from the last tick's impulses: what a tick leaves undone the next one goes on with. Anytime: the work is bounded
-// by visits to contacts, so that a tick of a thousand bodies costs little more than one of a hundred. A heap that falls is solved as far as that
-// goes, and flagged where that isn't to kLargeSpeed; one that settles is.
+// by visits to contacts, so that a tick of a thousand bodies costs little more than one of a hundred. A heap of hundreds that falls is solved as
+// far as that goes, and flagged where that isn't to kLargeSpeed; one of a hundred, or that settles, is.
 #pragma once
 #include "engine/solve/cascade.h"
 

@@ -19,16 +19,18 @@ namespace pincer::engine {
 // Whether, of three rows, all directions along the surface are alike and the normal is apart from them.
 bool isIsotropic(const double* W, int stride);
 
-// r = -W^-1 q of such a contact, which would stop it, becomes its solution.
-[[gnu::always_inline]] inline void limitFriction(double mu, double* r) {
+// r = -W^-1 q of such a contact, which would stop it, becomes its solution. Returns how much friction was missing of |r_T|, if it pushes.
+[[gnu::always_inline]] inline double limitFriction(double mu, double* r) {
   const double most = mu * r[kNormalRow], r_T2 = r[0] * r[0] + r[1] * r[1];
   if (!(r[kNormalRow] > 0)) {
     r[0] = r[1] = r[kNormalRow] = 0;
-  } else if (r_T2 > most * most) {
-    const double share = most / std::sqrt(r_T2);
-    r[0] *= share;
-    r[1] *= share;
+    return 0;
   }
+  if (!(r_T2 > most * most)) return 0;
+  const double r_T = std::sqrt(r_T2), share = most / r_T;
+  r[0] *= share;
+  r[1] *= share;
+  return r_T - most;
 }
 
 // r = the solution for the `rows` x `rows` block W (column-major with column stride `stride`) and q; rows is 3, 4 or 6.

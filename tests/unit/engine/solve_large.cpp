@@ -1,8 +1,10 @@
 // Contacts too many for Newton's method: accelerated sweeps.
 #include <gtest/gtest.h>
 
+#include "engine/solve/gauss_seidel.h"
 #include "engine/solve/large_problem.h"
 #include "engine/solve/local_contact.h"
+#include "engine/solve/residual.h"
 #include "tests/support/contact_problems.h"
 
 namespace pincer::engine {
@@ -38,6 +40,35 @@ TEST(LargeProblem, SweepsFindWhatNewtonFinds) {
     EXPECT_LE((newton.u - swept.u).norm(), 1e-7 * p.q.norm());  // both to 1e-10, times the condition of W
   }
   EXPECT_GE(compared, 95);
+}
+
+// How many sweeps it takes to a residual of 1e-6.
+int sweepsFor(OwnedContactProblem& p, bool accelerated) {
+  constexpr int kMost = 4000;
+  const ContactProblem problem = p.view();
+  SolverScratch scratch(static_cast<int>(p.mu.size()), p.movers);
+  Eigen::VectorXd r = Eigen::VectorXd::Zero(p.q.size()), u = r;
+  contactResidual(problem, r, scratch, u);
+  GaussSeidel method({problem.first_row, problem.mu, problem.sides, problem.q.data(), scratch.y.data(), problem.movers}, scratch, r.data());
+  for (int sweeps = 1; sweeps < kMost; ++sweeps) {
+    method.sweep(false);
+    if (respondedResidual(problem, r.data(), scratch, u.data()) <= 1e-6) return sweeps;
+    if (accelerated) method.accelerate();
+  }
+  return kMost;
+}
+
+// Energy without the shift of what slides carries it on and on: of 56 problems of a heap that falls 24 weren't solved in 2000 sweeps, and 28 sweeps are enough
+// on average.
+TEST(LargeProblem, AccelerationIsNotMisledByWhatSlides) {
+  RandomScenes random(25);
+  int plain = 0, accelerated = 0;
+  for (int n = 0; n < 10; ++n) {
+    OwnedContactProblem p = random.stack(12, 1, 0.3);  // boxes that are pushed about: some slide, some stick
+    plain += sweepsFor(p, false);
+    accelerated += sweepsFor(p, true);
+  }
+  EXPECT_LE(4 * accelerated, plain);
 }
 
 // Where two spheres touch W is a multiple of the identity along the surface: the closed form is what the search for the root finds beside it.
