@@ -4,15 +4,8 @@ namespace pincer::contact {
 
 namespace {
 
-constexpr double kParallel = 0.05;     // |nA x nB| below which the sides' cross product has no reliable direction: 3 degrees
-constexpr double kSteepest = 0.3;      // T.g of a handle that still leads along the edge
-constexpr double kNoDirection = 1e-3;  // of a sum of unit normals: without a direction
-
-template <class Vec>
-Vec mirroredSum(const Vec& p0, const Vec& p1, const Vec& n0, const Vec& n1) {
-  const Vec d = p1 - p0, sum = n0 + n1;
-  return sum - 2 * d.dot(sum) / d.squaredNorm() * d;
-}
+constexpr double kParallel = 0.05;  // |nA x nB| below which the sides' cross product has no reliable direction: 3 degrees
+constexpr double kSteepest = 0.3;   // T.g of a handle that still leads along the edge
 
 // Unit tangent of a crease at one of its ends, along `g`.
 Vec3 creaseTangent(const EdgeEnd& end, const Vec3& g) {
@@ -42,17 +35,12 @@ EdgeHandles edgeHandles(const EdgeEnd& from, const EdgeEnd& to) {
   return {from.p + handle(from), to.p - handle(to)};
 }
 
-[[gnu::flatten]] Vec3 middleNormal(const Vec3& p0, const Vec3& p1, const Vec3& n0, const Vec3& n1) {
-  const Vec3 mirrored = mirroredSum(p0, p1, n0, n1), sum = n0 + n1;
-  const double length = mirrored.norm();
-  if (length > kNoDirection) return mirrored / length;
-  return sum.norm() > kNoDirection ? sum.normalized() : n0;  // both ends' normals along the edge, or opposite: the fold check reports it
+Vec3 middleNormalWithout(const Vec3&, const Vec3&, const Vec3& n0, const Vec3& n1) {
+  const Vec3 sum = n0 + n1;
+  return canMirror(1, sum.squaredNorm()) ? sum.normalized() : n0;
 }
 
-[[gnu::flatten]] VecPair middleNormal(const VecPair& p0, const VecPair& p1, const VecPair& n0, const VecPair& n1) {
-  const VecPair mirrored = mirroredSum(p0, p1, n0, n1);
-  const Two length = mirrored.norm();
-  if (length[0] > kNoDirection && length[1] > kNoDirection) return mirrored / length;
+VecPair middleNormalWithout(const VecPair& p0, const VecPair& p1, const VecPair& n0, const VecPair& n1) {
   return {middleNormal(p0.first(), p1.first(), n0.first(), n1.first()), middleNormal(p0.second(), p1.second(), n0.second(), n1.second())};
 }
 

@@ -5,7 +5,7 @@
 
 namespace pincer::contact {
 
-PatchCache::PatchCache(int cells) : places_(std::bit_ceil(static_cast<std::size_t>(std::max(cells, 1)))) {
+PatchCache::PatchCache(int cells) : places_(std::bit_ceil(static_cast<std::size_t>(std::max(cells, 1)))), last_(places_.size() - 1) {
   for (LookParts& looks : parts_) {
     for (NearParts* near : {&looks.now, &looks.ahead}) near->parts.reserve(kMostParts);
   }

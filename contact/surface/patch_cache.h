@@ -22,9 +22,7 @@ class PatchCache {
     std::int32_t triangle = -1;  // -1: empty
     SurfaceCell cell;
   };
-  Place& placeOf(std::uint64_t net, std::int32_t triangle) {
-    return places_[(static_cast<std::uint64_t>(triangle) ^ net) & (places_.size() - 1)];
-  }
+  Place& placeOf(std::uint64_t net, std::int32_t triangle) { return places_[(static_cast<std::uint64_t>(triangle) ^ net) & last_]; }
 
   // The place for what is near a finger: the same for as long as its tracker stays where it is, and another than its neighbours'.
   LookParts& partsOf(const SurfaceTracker& tracker) {
@@ -33,6 +31,7 @@ class PatchCache {
 
  private:
   std::vector<Place> places_;
+  std::uint64_t last_;               // place
   std::array<LookParts, 31> parts_;  // a prime, so that fingers on one of many bodies have different ones
 };
 

@@ -37,19 +37,24 @@ std::array<double, 3> coordinatesOf(const SurfaceNet& net, std::int32_t triangle
   return {1 - u - v, u, v};
 }
 
+// The edge beyond which a foot is furthest outside.
+int edgeLeft(const std::array<double, 3>& b) {
+  const bool second = b[1] < b[0], third = b[2] < (second ? b[1] : b[0]);
+  return (1 + second) * !third;  // across from the corner whose coordinate is least; no branch, for nothing foretells it
+}
+
 // Carries a foot that is outside of its triangle over smooth edges into the one that it is in, as far as the flat mesh tells.
 bool carryInside(const SurfaceNet& net, Foot& foot, int& crossings) {
   constexpr int kMostCrossings = 4;
-  for (;; ++crossings) {
-    const auto least = std::min_element(foot.b.begin(), foot.b.end());
-    if (*least >= 0) return true;
-    const int edge = (static_cast<int>(least - foot.b.begin()) + 1) % 3;
+  for (; std::min({foot.b[0], foot.b[1], foot.b[2]}) < 0; ++crossings) {
+    const int edge = edgeLeft(foot.b);
     if (!(crossings < kMostCrossings) || net.isSharp(foot.triangle, edge)) return false;
     Vec3 p = Vec3::Zero();
     for (int i = 0; i < 3; ++i) p += foot.b[static_cast<std::size_t>(i)] * net.vertex(foot.triangle, i);
     const std::int32_t other = net.neighbour(foot.triangle, edge).triangle;
     foot = {other, coordinatesOf(net, other, p)};
   }
+  return true;
 }
 
 class ShellWalk {

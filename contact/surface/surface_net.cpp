@@ -12,6 +12,7 @@ namespace {
 
 Vec3& firstHandle(Patch& p, int edge) { return edge == 0 ? p.b210 : edge == 1 ? p.b021 : p.b102; }
 Vec3& secondHandle(Patch& p, int edge) { return edge == 0 ? p.b120 : edge == 1 ? p.b012 : p.b201; }
+Vec3& middleNormalOf(Patch& p, int edge) { return edge == 0 ? p.n110 : edge == 1 ? p.n011 : p.n101; }
 
 // The ends of edge i of triangle t, as seen along it.
 std::array<EdgeEnd, 2> edgeEnds(const SurfaceNet& net, std::int32_t t, int i) {
@@ -23,36 +24,52 @@ std::array<EdgeEnd, 2> edgeEnds(const SurfaceNet& net, std::int32_t t, int i) {
   return {EdgeEnd{p0, left0, right0}, EdgeEnd{p1, left1, right1}};
 }
 
+void setEdge(Patch& p, int i, const Vec3& first, const Vec3& second, const Vec3& normal) {
+  firstHandle(p, i) = first;
+  secondHandle(p, i) = second;
+  middleNormalOf(p, i) = normal;
+}
+
+// The middle of an edge: its place [m], its normal of any length.
+template <class Vec>
+struct Middle {
+  Vec M, N;
+};
+template <class Vec>
+Middle<Vec> middleOf(const Vec& p0, const Vec& p1, const Handles<Vec>& handles, const Vec& n0, const Vec& n1, const Vec& normal) {
+  return {0.125 * ((p0 + p1) + 3 * (handles.first + handles.second)), (n0 + n1) + 2 * normal};
+}
+Middle<Vec3> middleOf(const Patch& p, int i) {
+  const auto curve = edgeCurve(p, i);
+  const auto normals = edgeNormals(p, i);
+  return middleOf<Vec3>(curve[0], curve[3], {curve[1], curve[2]}, normals[0], normals[2], normals[1]);
+}
+
+// Of a patch's edges, two side by side.
+struct Middles {
+  Middle<Vec3> first;
+  Middle<VecPair> others;
+};
+Middles middlesOf(const Patch& p) {
+  const Middle<Vec3> second = middleOf(p, 1), third = middleOf(p, 2);
+  return {middleOf(p, 0), {VecPair(second.M, third.M), VecPair(second.N, third.N)}};
+}
+
+// All edges as if they were smooth.
+Middles setSmoothEdges(Patch& p) {
+  const Handles<Vec3> handles = smoothHandles(p.b300, p.b030, p.n200, p.n020);
+  const Vec3 normal = middleNormal(p.b300, p.b030, p.n200, p.n020);
+  const VecPair p0(p.b030, p.b003), p1(p.b003, p.b300), n0(p.n020, p.n002), n1(p.n002, p.n200);
+  const Handles<VecPair> others = smoothHandles(p0, p1, n0, n1);
+  const VecPair normals = middleNormal(p0, p1, n0, n1);
+  setEdge(p, 0, handles.first, handles.second, normal);
+  setEdge(p, 1, others.first.first(), others.second.first(), normals.first());
+  setEdge(p, 2, others.first.second(), others.second.second(), normals.second());
+  return {middleOf(p.b300, p.b030, handles, p.n200, p.n020, normal), middleOf(p0, p1, others, n0, n1, normals)};
+}
+
 // Whether the triangle is the first of an edge's: as that one sees it the edge is computed, so that the two sides share it to the last bit.
 bool isFirst(std::int32_t triangle, const Neighbour& other) { return other.triangle < 0 || triangle < other.triangle; }
-
-// The ends of smooth edge i, as its first triangle sees it.
-struct SmoothEdge {
-  const Vec3 *p0, *p1, *n0, *n1;
-  Vec3 *first, *second;  // handles
-};
-SmoothEdge smoothEdge(Patch& p, int i, bool is_first) {
-  const std::array<const Vec3*, 3> corners = {&p.b300, &p.b030, &p.b003}, normals = {&p.n200, &p.n020, &p.n002};
-  const auto here = static_cast<std::size_t>(i), next = static_cast<std::size_t>((i + 1) % 3);
-  const auto [from, to] = is_first ? std::pair(here, next) : std::pair(next, here);
-  Vec3 &first = firstHandle(p, i), &second = secondHandle(p, i);
-  return {corners[from], corners[to], normals[from], normals[to], is_first ? &first : &second, is_first ? &second : &first};
-}
-
-void setSmoothEdge(const SmoothEdge& e) {
-  const auto [first, second] = smoothHandles(*e.p0, *e.p1, *e.n0, *e.n1);
-  *e.first = first;
-  *e.second = second;
-}
-
-// Two side by side.
-void setSmoothEdges(const SmoothEdge& a, const SmoothEdge& b) {
-  const auto [first, second] = smoothHandles(VecPair(*a.p0, *b.p0), VecPair(*a.p1, *b.p1), VecPair(*a.n0, *b.n0), VecPair(*a.n1, *b.n1));
-  *a.first = first.first();
-  *b.first = first.second();
-  *a.second = second.first();
-  *b.second = second.second();
-}
 
 void setSharpEdge(const SurfaceNet& net, std::int32_t triangle, int i, SurfaceCell& cell) {
   const Neighbour other = cell.neighbours[static_cast<std::size_t>(i)];
@@ -63,22 +80,11 @@ void setSharpEdge(const SurfaceNet& net, std::int32_t triangle, int i, SurfaceCe
   secondHandle(cell.patch, i) = is_first ? second : first;
 }
 
-void setEdges(const SurfaceNet& net, std::int32_t triangle, SurfaceCell& cell) {
-  const auto smooth = [&](int i) { return smoothEdge(cell.patch, i, isFirst(triangle, cell.neighbours[static_cast<std::size_t>(i)])); };
-  const auto set = [&](int i) {
-    cell.sharp[static_cast<std::size_t>(i)] ? setSharpEdge(net, triangle, i, cell) : setSmoothEdge(smooth(i));
-  };
-  set(0);
-  if (!cell.sharp[1] && !cell.sharp[2]) return setSmoothEdges(smooth(1), smooth(2));
-  set(1);
-  set(2);
-}
-
-void setMiddleNormals(Patch& p) {
-  p.n110 = middleNormal(p.b300, p.b030, p.n200, p.n020);
-  const VecPair middles = middleNormal(VecPair(p.b030, p.b003), VecPair(p.b003, p.b300), VecPair(p.n020, p.n002), VecPair(p.n002, p.n200));
-  p.n011 = middles.first();
-  p.n101 = middles.second();
+Middles setSharpEdges(const SurfaceNet& net, std::int32_t triangle, SurfaceCell& cell) {
+  for (int i = 0; i < 3; ++i) {
+    if (cell.sharp[static_cast<std::size_t>(i)]) setSharpEdge(net, triangle, i, cell);
+  }
+  return middlesOf(cell.patch);
 }
 
 // A handle lies in its end's tangent plane, whatever the other side of the edge has there.
@@ -106,29 +112,21 @@ void setCentre(Patch& p) {
   p.b111 = handles + (handles - (p.b300 + p.b030 + p.b003) / 3) / 2;
 }
 
-// Where the smooth edge from the corner `P` with normal `n` to the middle of the side across has come to after 2/3 of the way, over the
-// triangle's middle. `side` and `normals` are the control points across.
+// By what the median from the corner `P` with normal `n` to the middle of the side across is bent after 2/3 of its way [m]: 27 times its
+// place there is 9 P + 18 M + 6 (5 sigma N - 4 rho n).
 template <class Vec>
-Vec placeOnMedian(const Vec& P, const Vec& n, const std::array<Vec, 4>& side, const std::array<Vec, 3>& normals) {
-  const Vec M = (side[0] + 3 * side[1] + 3 * side[2] + side[3]) / 8, n_M = (normals[0] + 2 * normals[1] + normals[2]).normalized();
-  const auto [first, second] = smoothHandles(P, M, n, n_M);
-  return (P + 6 * first + 12 * second + 8 * M) / 27;
-}
-
-template <std::size_t N>
-std::array<VecPair, N> sideBySide(const std::array<Vec3, N>& a, const std::array<Vec3, N>& b) {
-  return [&]<std::size_t... I>(std::index_sequence<I...>) { return std::array<VecPair, N>{VecPair(a[I], b[I])...}; }
-  (std::make_index_sequence<N>{});
+Vec bendOfMedian(const Vec& P, const Vec& n, const Middle<Vec>& across) {
+  const auto [rho, sigma] = edgeBends(Vec(across.M - P), n, across.N, across.N.squaredNorm());
+  return 5 * sigma * across.N - 4 * rho * n;
 }
 
 // So that the patch's middle is the medians' mean: on spheres no further off than its edges; with Vlachos' centre it is the worst place.
 // Returns whether there is one: not where a side's normals are opposite.
-bool setCentreByMedians(Patch& p) {
-  const VecPair places = placeOnMedian(VecPair(p.b300, p.b030), VecPair(p.n200, p.n020), sideBySide(edgeCurve(p, 1), edgeCurve(p, 2)),
-                                       sideBySide(edgeNormals(p, 1), edgeNormals(p, 2)));
-  const Vec3 middle = (places.first() + places.second() + placeOnMedian(p.b003, p.n002, edgeCurve(p, 0), edgeNormals(p, 0))) / 3;
+bool setCentreByMedians(Patch& p, const Middles& middles) {
+  const VecPair bends = bendOfMedian(VecPair(p.b300, p.b030), VecPair(p.n200, p.n020), middles.others);
+  const Vec3 bend = bends.first() + bends.second() + bendOfMedian(p.b003, p.n002, middles.first);
   const Vec3 corners = p.b300 + p.b030 + p.b003, handles = p.b210 + p.b120 + p.b021 + p.b012 + p.b102 + p.b201;
-  p.b111 = (27 * middle - corners - 3 * handles) / 6;
+  p.b111 = (14 * corners - 3 * handles + 8 * bend) / 24;
   return p.b111.allFinite();
 }
 
@@ -147,17 +145,6 @@ class Fingerprint {
  private:
   std::uint64_t hash_ = 0xcbf29ce484222325ull;
 };
-
-std::vector<std::array<std::int32_t, 3>> packed(const Neighbours& neighbours) {
-  std::vector<std::array<std::int32_t, 3>> codes(neighbours.size());
-  for (std::size_t t = 0; t < codes.size(); ++t) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto [triangle, edge] = neighbours[t][i];
-      codes[t][i] = triangle < 0 ? -1 : 8 * triangle + edge;
-    }
-  }
-  return codes;
-}
 
 double halfDiagonal(const std::vector<Vec3>& points) {
   Vec3 low = points.front(), high = low;
@@ -225,16 +212,22 @@ SurfaceNet::SurfaceNet(TriangleMesh mesh, double crease_angle, bool use_file_nor
       mesh_(std::move(mesh)),
       length_(halfDiagonal(mesh_.vertices)) {
   const Neighbours neighbours = findNeighbours(mesh_);
-  neighbours_ = packed(neighbours);
+  links_.resize(neighbours.size());
+  for (std::size_t t = 0; t < links_.size(); ++t) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto [other, edge] = neighbours[t][i];
+      links_[t].across[i] = other < 0 ? -1 : 8 * other + edge;
+    }
+  }
   if (variant != SurfaceVariant::facet) {
     const CornerNormals corners = findCornerNormals(mesh_, neighbours, crease_angle, use_file_normals);
     NormalNumbers numbers(mesh_, corners);
     normals_ = std::move(numbers.distinct);
-    corner_normals_ = std::move(numbers.numbers);
+    for (std::size_t t = 0; t < links_.size(); ++t) links_[t].normals = numbers.numbers[t];
   }
   for (std::int32_t t = 0; t < size(); ++t) {
     for (int i = 0; i < 3; ++i) {
-      if (neighbour(t, i).triangle >= 0 && haveOtherNormals(t, i)) neighbours_[at(t)][at(i)] += 4;
+      if (neighbour(t, i).triangle >= 0 && haveOtherNormals(t, i)) links_[at(t)].across[at(i)] += 4;
     }
   }
   mesh_.normals = {};
@@ -244,15 +237,14 @@ SurfaceNet::SurfaceNet(TriangleMesh mesh, double crease_angle, bool use_file_nor
   normals_.shrink_to_fit();
   preferLargePages(mesh_.vertices);
   preferLargePages(mesh_.triangles);
-  preferLargePages(neighbours_);
+  preferLargePages(links_);
   preferLargePages(normals_);
-  preferLargePages(corner_normals_);
   Fingerprint fingerprint;
   fingerprint.add(static_cast<std::uint64_t>(variant));
   for (const Vec3& v : mesh_.vertices) fingerprint.add(v);
   for (const Vec3& n : normals_) fingerprint.add(n);
   for (const auto& triangle : mesh_.triangles) fingerprint.add(triangle);
-  for (const auto& numbers : corner_normals_) fingerprint.add(numbers);
+  for (const Links& links : links_) fingerprint.add(links.normals);
   fingerprint_ = fingerprint.value();
 }
 
@@ -267,8 +259,8 @@ bool SurfaceNet::haveOtherNormals(std::int32_t triangle, int edge) const {
   const int next = (edge + 1) % 3, other_next = (other.edge + 1) % 3;
   if (is_flat_)
     return normal(triangle, edge) != normal(other.triangle, other_next) || normal(triangle, next) != normal(other.triangle, other.edge);
-  const auto &numbers = corner_normals_[at(triangle)],
-             &others = corner_normals_[at(other.triangle)];  // equal normals of a vertex share theirs
+  const auto &numbers = links_[at(triangle)].normals,
+             &others = links_[at(other.triangle)].normals;  // equal normals of a vertex share theirs
   return numbers[at(edge)] != others[at(other_next)] || numbers[at(next)] != others[at(other.edge)];
 }
 
@@ -282,41 +274,45 @@ bool SurfaceNet::haveOtherNormals(std::int32_t triangle, int edge) const {
   p.n200 = normal(triangle, 0);
   p.n020 = normal(triangle, 1);
   p.n002 = normal(triangle, 2);
-  setMiddleNormals(p);
+  Middles middles = setSmoothEdges(p);
   if (is_flat_) {
     cell.sharp = {true, true, true};
     setStraightEdges(p);
   } else {
     cell.sharp = {isSharp(triangle, 0), isSharp(triangle, 1), isSharp(triangle, 2)};
-    setEdges(*this, triangle, cell);
+    if (cell.sharp[0] || cell.sharp[1] || cell.sharp[2]) middles = setSharpEdges(*this, triangle, cell);
     if (variant_ == SurfaceVariant::smooth_published) setPublishedEdges(p);
   }
-  if (variant_ != SurfaceVariant::smooth || !setCentreByMedians(p)) setCentre(p);
+  if (variant_ != SurfaceVariant::smooth || !setCentreByMedians(p, middles)) setCentre(p);
 }
 
-// Who comes here goes on to a neighbour: what that is built from is fetched from memory meanwhile, its numbers first, then what they lead to.
-void SurfaceNet::fill(std::int32_t triangle, PatchCache::Place& place) const {
-  const auto& codes = neighbours_[at(triangle)];
-  for (const std::int32_t code : codes) {
+inline void SurfaceNet::fetchAround(std::int32_t triangle) const {
+  for (const std::int32_t code : links_[at(triangle)].across) {
     if (code < 0) continue;
-    const std::size_t other = at(code / 8);
-    __builtin_prefetch(&mesh_.triangles[other]);
-    __builtin_prefetch(&neighbours_[other]);
-    if (!is_flat_) __builtin_prefetch(&corner_normals_[other]);
+    __builtin_prefetch(&mesh_.triangles[at(code / 8)]);
+    __builtin_prefetch(&links_[at(code / 8)]);
   }
+}
+
+// Who comes here goes on to a neighbour, or over it: what those are built from is fetched from memory meanwhile, their numbers first, then
+// what the neighbours' lead to, and the numbers of those beyond.
+void SurfaceNet::fill(std::int32_t triangle, PatchCache::Place& place) const {
+  constexpr std::array<std::size_t, 3> kOpposite = {2, 0, 1};  // the corner across an edge
+  fetchAround(triangle);
   place.net = fingerprint_;
   place.triangle = triangle;
   build(triangle, place.cell);
-  for (const std::int32_t code : codes) {
+  for (const std::int32_t code : links_[at(triangle)].across) {
     if (code < 0) continue;
-    const std::size_t other = at(code / 8), across = at((code % 4 + 2) % 3);
-    __builtin_prefetch(&mesh_.vertices[at(mesh_.triangles[other][across])]);
-    if (!is_flat_) __builtin_prefetch(&normals_[at(corner_normals_[other][across])]);
+    const std::size_t corner = kOpposite[at(code % 4)];
+    __builtin_prefetch(&mesh_.vertices[at(mesh_.triangles[at(code / 8)][corner])]);
+    __builtin_prefetch(normals_.data() + links_[at(code / 8)].normals[corner]);
+    fetchAround(code / 8);
   }
 }
 
 std::size_t SurfaceNet::memoryBytes() const {
-  return bytesOf(mesh_.vertices) + bytesOf(mesh_.triangles) + bytesOf(neighbours_) + bytesOf(normals_) + bytesOf(corner_normals_);
+  return bytesOf(mesh_.vertices) + bytesOf(mesh_.triangles) + bytesOf(links_) + bytesOf(normals_);
 }
 
 }  // namespace pincer::contact

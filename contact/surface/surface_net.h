@@ -54,13 +54,13 @@ class SurfaceNet {
   Vec3 normal(std::int32_t triangle, int corner) const { return is_flat_ ? facetNormal(triangle) : shadingNormal(triangle, corner); }
   Vec3 facetNormal(std::int32_t triangle) const;  // unit; zero for a triangle without area
   // Not of a `facet`.
-  const Vec3& shadingNormal(std::int32_t triangle, int corner) const { return normals_[at(corner_normals_[at(triangle)][at(corner)])]; }
+  const Vec3& shadingNormal(std::int32_t triangle, int corner) const { return normals_[at(links_[at(triangle)].normals[at(corner)])]; }
   Neighbour neighbour(std::int32_t triangle, int edge) const {
-    const std::int32_t code = neighbours_[at(triangle)][at(edge)];
+    const std::int32_t code = links_[at(triangle)].across[at(edge)];
     return code < 0 ? Neighbour{} : Neighbour{code / 8, static_cast<std::int8_t>(code % 4)};
   }
   bool isSharp(std::int32_t triangle, int edge) const {
-    const std::int32_t code = neighbours_[at(triangle)][at(edge)];
+    const std::int32_t code = links_[at(triangle)].across[at(edge)];
     return code < 0 || (code & 4) != 0;
   }
 
@@ -78,10 +78,16 @@ class SurfaceNet {
   [[gnu::noinline]] void fill(std::int32_t triangle, PatchCache::Place& place) const;  // kept out of what finds a patch in its place
   void build(std::int32_t triangle, SurfaceCell& cell) const;
   bool haveOtherNormals(std::int32_t triangle, int edge) const;
+  // Asks memory for the numbers of the triangles around one. Always inlined: to the compiler it is without effect, and it drops calls of such.
+  [[gnu::always_inline]] void fetchAround(std::int32_t triangle) const;
 
-  std::vector<std::array<std::int32_t, 3>> neighbours_;      // 8 triangle + 4 if sharp + edge, -1 at a border
-  std::vector<Vec3> normals_;                                // those that differ; a fan shares one
-  std::vector<std::array<std::int32_t, 3>> corner_normals_;  // places in normals_
+  // What a triangle's edges and corners lead to, side by side in memory, for they are asked for together.
+  struct Links {
+    std::array<std::int32_t, 3> across;   // 8 triangle + 4 if sharp + edge, -1 at a border
+    std::array<std::int32_t, 3> normals;  // places in normals_
+  };
+  std::vector<Links> links_;
+  std::vector<Vec3> normals_;  // those that differ; a fan shares one
   std::uint64_t fingerprint_ = 0;
   double length_ = 0;
 };

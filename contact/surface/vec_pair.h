@@ -11,6 +11,7 @@ namespace pincer::contact {
 using Two = double __attribute__((vector_size(16)));  // one instruction for both
 
 inline Two squareRoots(Two a) { return Two{std::sqrt(a[0]), std::sqrt(a[1])}; }
+inline double squareRoots(double a) { return std::sqrt(a); }
 
 struct VecPair {
   Two x, y, z;

@@ -124,6 +124,13 @@ TEST(EdgeCubic, FollowsAnArc) {
   EXPECT_LT((V1 - Vec3(0.01, 0, 0)).norm() + (V2 - Vec3(0.02, 0, 0)).norm(), 1e-17);
 }
 
+TEST(EdgeCubic, BendsAreThoseOfTheUnitNormal) {
+  const Vec3 c(0.01, -0.004, 0.003), n0 = Vec3(0.2, 0.1, 1).normalized(), n1 = Vec3(-0.1, 0.3, 1).normalized(), longer = 3.7 * n1;
+  const auto unit = edgeBends(c, n0, n1, 1.0), any = edgeBends(c, n0, longer, longer.squaredNorm());
+  EXPECT_NEAR(any.rho, unit.rho, 1e-18) << "a few units in the last place of 1e-3";
+  EXPECT_LT((any.sigma * longer - unit.sigma * n1).norm(), 1e-18);
+}
+
 TEST(EdgeCubic, ACreaseLeavesAlongBothSides) {
   const Vec3 top = Vec3::UnitZ(), n0(1, 0, 0), n1(std::cos(0.3), std::sin(0.3), 0);  // a cylinder's rim
   const auto [V1, V2] = edgeHandles({0.025 * n0, n0, top}, {0.025 * n1, n1, top});

@@ -48,6 +48,16 @@ TEST_F(VecPairs, HaveTheHandlesOfEachEdgeAlone) {
   }
 }
 
+// So both of an edge's triangles compute one curve, whichever of its ends they begin at.
+TEST_F(VecPairs, HaveTheSameHandlesFromBothEnds) {
+  for (int i = 0; i < 1000; ++i) {
+    const EdgeEnds e = edge();
+    const EdgeHandles there = smoothHandles(e.p0, e.p1, e.n0, e.n1), back = smoothHandles(e.p1, e.p0, e.n1, e.n0);
+    EXPECT_EQ(there.first, back.second);
+    EXPECT_EQ(there.second, back.first);
+  }
+}
+
 TEST_F(VecPairs, HaveTheMiddleNormalOfEachEdgeAloneAlsoWhereTheNormalsCancel) {
   for (int i = 0; i < 1000; ++i) {
     const EdgeEnds a = edge();
