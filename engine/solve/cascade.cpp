@@ -250,6 +250,7 @@ SolverScratch::SolverScratch(int contacts, int movers)
   sides.resize(n);
   terms.resize(n);
   local.resize(2 * (kMaxContactRows * m + n));
+  round.resize(n);
   scale.resize(n);
   shift.resize(n);
   active.resize(n);

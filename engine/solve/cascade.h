@@ -83,6 +83,7 @@ struct SolverScratch {
   std::vector<int> active, pivots;                          // contacts in the dense equations; row swaps
   std::vector<ContactTerms> terms;                          // contact_equations.h
   std::vector<double> local;                                // gauss_seidel.h
+  std::vector<RoundContact> round;                          // round_contact.h
   std::vector<int> node;                                    // of movers in movers_lu
   BlockLu movers_lu;
 };

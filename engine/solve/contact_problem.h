@@ -50,6 +50,16 @@ struct alignas(64) ContactSide {
 };
 using ContactSides = std::array<ContactSide, 2>;  // never both of one mover
 
+// The same of a contact between balls, see round_contact.h.
+struct alignas(64) RoundContact {
+  double R[kTorsionRow][3];
+  double linear[2], turn[2];
+  double inverse_W_tt, inverse_W_nn;  // [kg]
+  int mover[2];                       // of what doesn't move the other one, and 0 for its share
+
+  bool isRound() const { return inverse_W_tt > 0; }
+};
+
 // Views onto memory that somebody else owns (engine/world's scratch). n contacts, m rows in all.
 struct ContactProblem {
   std::span<const int> first_row;       // size n + 1; contact i owns rows first_row[i] .. first_row[i + 1] - 1
@@ -57,7 +67,8 @@ struct ContactProblem {
   std::span<const ContactSides> sides;  // size n
   VectorMap q;                          // m
   int movers = 0;
-  bool strict = false;  // the warm start is only taken where it is exact to round-off, see cascade.h
+  bool strict = false;                       // the warm start is only taken where it is exact to round-off, see cascade.h
+  std::span<const RoundContact> round = {};  // of each contact; empty where nobody looked
 
   int contactCount() const { return static_cast<int>(mu.size()); }
   int rowCount() const { return static_cast<int>(q.size()); }

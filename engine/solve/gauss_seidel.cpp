@@ -8,6 +8,7 @@
 #include "engine/solve/linear.h"
 #include "engine/solve/local_contact.h"
 #include "engine/solve/mobility.h"
+#include "engine/solve/round_contact.h"
 
 namespace pincer::engine {
 namespace {
@@ -57,6 +58,7 @@ GaussSeidel::GaussSeidel(const SweptProblem& problem, SolverScratch& scratch, do
 }
 
 void GaussSeidel::fillTerms(int i) {
+  if (!problem_.round.empty() && problem_.round[static_cast<std::size_t>(i)].isRound()) return;
   const int rows = problem_.rows(i);
   double *const terms = termsOf(i), *const inverse = terms + kTermsBefore, *const W = inverse + rows * rows;
   std::fill(W, W + rows * rows, 0.0);
@@ -69,29 +71,18 @@ void GaussSeidel::fillTerms(int i) {
   if (!is_isotropic) invertOwn(rows, W, inverse);
 }
 
-// Whether contact i pushes on nothing and doesn't close: so are many of a heap's, and most rows needn't be looked at.
-bool GaussSeidel::staysOpen(int i) const {
-  const int normal = problem_.firstRow(i) + kNormalRow;
-  if (r_[normal] != 0) return false;
-  double u = problem_.q[normal];
-  for (const ContactSide& side : problem_.sides[static_cast<std::size_t>(i)]) {
-    if (side.mover >= 0) u += dot6(side.A[kNormalRow], problem_.y + kMoverFreedoms * side.mover);
-  }
-  return u >= 0;
-}
-
 // Solves contact i with all others held; the movers' y follows.
 void GaussSeidel::relax(int i) {
-  const ContactSides& sides = problem_.sides[static_cast<std::size_t>(i)];
   const int first = problem_.firstRow(i);
   double *const r_i = r_ + first, *const change_i = change_ + first;
   const double *const q_i = problem_.q + first, *const way_i = way_ + first;
-  withRows(problem_.rows(i), [&](auto rows) {
+  withForm(problem_, i, [&](auto rows, const auto& form) {
     for (int k = 0; k < rows; ++k) work_of_way_ += q_i[k] * way_i[k];
-    if (staysOpen(i)) return std::fill(change_i, change_i + rows, 0.0);
+    // What pushes on nothing and doesn't close: so are many of a heap's contacts, and most rows needn't be looked at.
+    if (r_i[kNormalRow] == 0 && normalVelocityOf(form, q_i[kNormalRow], problem_.y) >= 0) return std::fill(change_i, change_i + rows, 0.0);
     double u[kMaxContactRows], r[kMaxContactRows];
-    velocityOf(sides, rows, q_i, problem_.y, u);
-    const double shift = solveOwn(i, rows, u, r);
+    velocityOf(form, rows, q_i, problem_.y, u);
+    const double shift = solveOwn(i, form, rows, u, r);
     double change2 = 0;
     for (int k = 0; k < rows; ++k) {
       change_i[k] = r[k] - r_i[k];
@@ -102,13 +93,20 @@ void GaussSeidel::relax(int i) {
     work_of_change_ += shift * change_i[kNormalRow];
     work_of_way_ += shift * way_i[kNormalRow];
     largest_change2_ = std::max(largest_change2_, weight_[i] * weight_[i] * change2);
-    addImpulse(sides, rows, change_i, problem_.y);
+    addImpulse(form, rows, change_i, problem_.y);
   });
 }
 
 // r = the impulse of contact i, which has the velocity u with the present one. Returns its mu |u_T| with r.
+[[gnu::always_inline]] inline double GaussSeidel::solveOwn(int i, const RoundContact& round, int, double* u, double* r) {
+  const double* const r_i = r_ + problem_.firstRow(i);
+  const double mu = problem_.friction(i);
+  for (int k = 0; k < kNormalRow; ++k) r[k] = r_i[k] - round.inverse_W_tt * u[k];
+  r[kNormalRow] = r_i[kNormalRow] - round.inverse_W_nn * u[kNormalRow];
+  return mu * limitFriction(mu, r) / round.inverse_W_tt;
+}
 template <class Rows>
-[[gnu::always_inline]] inline double GaussSeidel::solveOwn(int i, Rows rows, double* u, double* r) {
+[[gnu::always_inline]] inline double GaussSeidel::solveOwn(int i, const ContactSides&, Rows rows, double* u, double* r) {
   const double *const terms = termsOf(i), *const inverse = terms + kTermsBefore, *const W = inverse + rows * rows;
   const double* const r_i = r_ + problem_.firstRow(i);
   const double mu = problem_.friction(i);
@@ -184,7 +182,7 @@ void GaussSeidel::accelerate() {
 void GaussSeidel::goFurther(int i, double a, double b) {
   const int first = problem_.firstRow(i);
   double *const r_i = r_ + first, *const way_i = way_ + first;
-  withRows(problem_.rows(i), [&](auto rows) {
+  withForm(problem_, i, [&](auto rows, const auto& form) {
     for (int k = 0; k < rows; ++k) {
       const double change = change_[first + k], further = a * change + b * way_i[k];
       r_i[k] += further;
@@ -199,7 +197,7 @@ void GaussSeidel::goFurther(int i, double a, double b) {
       r_i[k] = inside;
       way_i[k] += back[k];
     }
-    addImpulse(problem_.sides[static_cast<std::size_t>(i)], rows, back, problem_.y);
+    addImpulse(form, rows, back, problem_.y);
   });
 }
 

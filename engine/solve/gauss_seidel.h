@@ -27,6 +27,7 @@ struct SweptProblem {
   const double* q;
   double* y;  // A^T r, kMoverFreedoms per mover: it follows r
   int movers;
+  std::span<const RoundContact> round = {};
 
   int contactCount() const { return static_cast<int>(mu.size()); }
   int rowCount() const { return first_row.back(); }
@@ -55,9 +56,9 @@ class GaussSeidel {
   double* termsOf(int i) const { return terms_ + stride_ * i; }
   void fillTerms(int i);
   void relax(int i);
+  double solveOwn(int i, const RoundContact& round, int rows, double* u, double* r);
   template <class Rows>
-  double solveOwn(int i, Rows rows, double* u, double* r);
-  bool staysOpen(int i) const;
+  double solveOwn(int i, const ContactSides& sides, Rows rows, double* u, double* r);
   void goFurther(int i, double a, double b);
 
   const SweptProblem problem_;

@@ -21,7 +21,8 @@ SolveResult solveLargeProblem(const ContactProblem& problem, double enough, doub
   const bool rests = start <= enough;
   const int most = std::clamp(kVisits / n, kFewestSweeps, kMostSweeps);
   const double near_speed = kWorthALook * enough * referenceSpeed(problem);
-  GaussSeidel method({problem.first_row, problem.mu, problem.sides, problem.q.data(), scratch.y.data(), problem.movers}, scratch, r);
+  GaussSeidel method({problem.first_row, problem.mu, problem.sides, problem.q.data(), scratch.y.data(), problem.movers, problem.round},
+                     scratch, r);
   double residual = start;
   int sweeps = 0, measured = 0;
   const auto isEnough = [&] {

@@ -72,6 +72,15 @@ inline void velocityOf(const ContactSides& sides, int rows, const double* q, con
   });
 }
 
+// The same of the normal row alone.
+inline double normalVelocityOf(const ContactSides& sides, double q_n, const double* y) {
+  double u = q_n;
+  for (const ContactSide& side : sides) {
+    if (side.mover >= 0) u += dot6(side.A[kNormalRow], y + kMoverFreedoms * side.mover);
+  }
+  return u;
+}
+
 // y = A^T r
 inline void respond(std::span<const ContactSides> sides, std::span<const int> first_row, const double* r, int movers, double* y) {
   for (int j = 0; j < kMoverFreedoms * movers; ++j) y[j] = 0;

@@ -1,11 +1,17 @@
 #include "engine/solve/residual.h"
 
 #include "engine/solve/mobility.h"
+#include "engine/solve/round_contact.h"
 
 namespace pincer::engine {
 
 void weighContacts(const ContactProblem& problem, SolverScratch& scratch) {
   for (int i = 0; i < problem.contactCount(); ++i) {
+    if (!problem.round.empty() && problem.round[static_cast<std::size_t>(i)].isRound()) {
+      const RoundContact& c = problem.round[static_cast<std::size_t>(i)];
+      scratch.weight[static_cast<std::size_t>(i)] = (2 / c.inverse_W_tt + 1 / c.inverse_W_nn) / kTorsionRow;
+      continue;
+    }
     const int rows = problem.rows(i);
     double sum = 0;
     for (const ContactSide& side : problem.sides[static_cast<std::size_t>(i)]) {
@@ -23,7 +29,10 @@ double referenceSpeed(const ContactProblem& problem) {
 }
 
 double weighedResidual(const ContactProblem& problem, const double* r, SolverScratch& scratch, double* u) {
-  respond(problem.sides, problem.first_row, r, problem.movers, scratch.y.data());
+  double* const y = scratch.y.data();
+  std::fill(y, y + kMoverFreedoms * problem.movers, 0.0);
+  for (int i = 0; i < problem.contactCount(); ++i)
+    withForm(problem, i, [&](auto rows, const auto& form) { addImpulse(form, rows, r + problem.firstRow(i), y); });
   return respondedResidual(problem, r, scratch, u);
 }
 
@@ -31,7 +40,8 @@ double respondedResidual(const ContactProblem& problem, const double* r, SolverS
   WorstResidual worst;
   for (int i = 0; i < problem.contactCount(); ++i) {
     const int first = problem.firstRow(i);
-    velocityOf(problem.sides[static_cast<std::size_t>(i)], problem.rows(i), problem.q.data() + first, scratch.y.data(), u + first);
+    withForm(problem, i,
+             [&](auto rows, const auto& form) { velocityOf(form, rows, problem.q.data() + first, scratch.y.data(), u + first); });
     const double w = scratch.weight[static_cast<std::size_t>(i)];
     worst.add(naturalMap2(r + first, u + first, problem.rows(i), problem.friction(i), w), u[first + kNormalRow], w * r[first + kNormalRow]);
   }

@@ -5,6 +5,7 @@
 
 #include "engine/solve/cone.h"
 #include "engine/solve/mobility.h"
+#include "engine/solve/round_contact.h"
 #include "engine/world/contact_rows.h"
 
 namespace pincer::engine {
@@ -134,7 +135,7 @@ class BiasFit {
       if (weight_[first + kNormalRow] == 0) continue;
       double weighed[kMaxContactRows] = {};
       for (int k = 0; k < problem_.rows(i); ++k) weighed[k] = -weight_[first + k] * b_[first + k];
-      addImpulse(problem_.sides[static_cast<std::size_t>(i)], problem_.rows(i), weighed, gradient_);
+      withForm(problem_, i, [&](auto rows, const auto& form) { addImpulse(form, rows, weighed, gradient_); });
     }
   }
   // image = w A direction,  response = A^T w image: each contact is read once
@@ -143,17 +144,16 @@ class BiasFit {
     for (int i = 0; i < problem_.contactCount(); ++i) {
       double* const u = image_ + problem_.firstRow(i);
       const double* const weight = weight_ + problem_.firstRow(i);
-      const ContactSides& sides = problem_.sides[static_cast<std::size_t>(i)];
-      withRows(problem_.rows(i), [&](auto rows) {
+      withForm(problem_, i, [&](auto rows, const auto& form) {
         for (int k = 0; k < rows; ++k) u[k] = 0;
         if (weight[kNormalRow] == 0) return;
-        addVelocity(sides, rows, direction_, u);
+        addVelocity(form, rows, direction_, u);
         double weighed[kMaxContactRows] = {};
         for (int k = 0; k < rows; ++k) {
           u[k] *= weight[k];
           weighed[k] = weight[k] * u[k];
         }
-        addImpulse(sides, rows, weighed, response_);
+        addImpulse(form, rows, weighed, response_);
       });
     }
   }

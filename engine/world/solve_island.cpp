@@ -5,6 +5,7 @@
 #include "engine/solve/contact_equations.h"
 #include "engine/solve/gauss_seidel.h"
 #include "engine/solve/large_problem.h"
+#include "engine/solve/round_contact.h"
 #include "engine/world/contact_rows.h"
 #include "engine/world/island_bias.h"
 #include "engine/world/scratch.h"
@@ -51,7 +52,9 @@ class IslandSolve {
     const std::int64_t reserve = is_limited ? reserveForStops() : 0;
     memory_.operations_left = share - reserve;
     const bool contradicts = is_loop_ && scratch_.h > 0;
-    if (contradicts && (!is_heap_ || isEntangled())) fit(PushingBy::kLastTick);
+    const bool is_swept = is_heap_ && isEntangled();
+    if (is_swept) findRoundContacts(memory_.round, problem_);
+    if (contradicts && (!is_heap_ || is_swept)) fit(PushingBy::kLastTick);
     contradicts && !is_heap_ ? solveLoop() : solveOther();
     if (island_.result.give > 0) giveWay(scratch_.h, offset_rate_, problem_, memory_.give.data(), island_.q, order_, scratch_.contacts);
     std::int64_t spent = share - reserve - memory_.operations_left;
@@ -122,7 +125,7 @@ class IslandSolve {
   WorldScratch& scratch_;
   Island& island_;
   SolverScratch& memory_;
-  const ContactProblem problem_;
+  ContactProblem problem_;
   const std::span<const int> order_;
   const bool is_heap_, is_loop_;
   const double offset_rate_;
