@@ -23,20 +23,11 @@ struct VecPair {
 
   Two dot(const VecPair& b) const { return x * b.x + y * b.y + z * b.z; }
   Two squaredNorm() const { return dot(*this); }
-  Two norm() const { return squareRoots(squaredNorm()); }
-  VecPair normalized() const;  // zero stays
 };
 
 inline VecPair operator+(const VecPair& a, const VecPair& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 inline VecPair operator-(const VecPair& a, const VecPair& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 inline VecPair operator*(Two s, const VecPair& a) { return {s * a.x, s * a.y, s * a.z}; }
 inline VecPair operator*(double s, const VecPair& a) { return {s * a.x, s * a.y, s * a.z}; }
-inline VecPair operator/(const VecPair& a, Two s) { return {a.x / s, a.y / s, a.z / s}; }
-inline VecPair operator/(const VecPair& a, double s) { return {a.x / s, a.y / s, a.z / s}; }
-
-inline VecPair VecPair::normalized() const {
-  const Two length2 = squaredNorm();
-  return *this / (length2 > 0 ? squareRoots(length2) : Two{1, 1});
-}
 
 }  // namespace pincer::contact

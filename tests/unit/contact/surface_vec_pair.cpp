@@ -27,15 +27,6 @@ auto sideBySide(const EdgeEnds& a, const EdgeEnds& b, Call&& call) {
   return call(VecPair(a.p0, b.p0), VecPair(a.p1, b.p1), VecPair(a.n0, b.n0), VecPair(a.n1, b.n1));
 }
 
-TEST_F(VecPairs, NormaliseEachAsAlone) {
-  for (int i = 0; i < 1000; ++i) {
-    const Vec3 a = vector(), b = i % 10 == 0 ? Vec3(Vec3::Zero()) : vector();
-    const VecPair unit = VecPair(a, b).normalized();
-    EXPECT_EQ(unit.first(), a.normalized());
-    EXPECT_EQ(unit.second(), b.normalized());
-  }
-}
-
 TEST_F(VecPairs, HaveTheHandlesOfEachEdgeAlone) {
   for (int i = 0; i < 1000; ++i) {
     const EdgeEnds a = edge(), b = edge();
