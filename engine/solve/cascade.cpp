@@ -27,6 +27,8 @@ constexpr int kFewestStops = 4;          // sweeps, whatever is left of the budg
 constexpr int kSweepsPerLook = 5;        // a look at the residual costs as much as a sweep
 constexpr int kAffordableContacts = 20;  // beyond, only one attempt from the interior
 constexpr int kCostlyContacts = 80;      // beyond, an interior point costs milliseconds; the next tick begins where this one gives up
+constexpr int kHeapContacts = 60;        // beyond, where a factorisation takes more than
+constexpr int kHeapProducts = 100;       // of blocks, sweeps are tried before all that needs many factorisations
 constexpr int kDenseContacts = 40;       // beyond, a dense matrix costs more than any graph of movers that fits
 constexpr int kBlocksPerMover = 40;      // of the sparse matrix: enough for dense graphs of 40 movers, and for long stacks
 
@@ -75,8 +77,10 @@ class Search {
     spend(n * (kPerContactScaled + (problem_.W ? kPerPairScaled * n : 0)), scratch);
   }
 
-  SolveMethod run(const SolverOptions& options) {
-    if (finish(options)) return SolveMethod::kNewton;
+  bool tryNewton(const SolverOptions& options) { return finish(options); }
+
+  // Where Newton's method failed.
+  SolveMethod goOn(const SolverOptions& options) {
     if (isSpent()) return sweep(options);
     restartFromBest();
     evaluate(problem_, current_);
@@ -258,6 +262,15 @@ SolverScratch::SolverScratch(int contacts, int movers)
 
 namespace {
 
+double enoughOfLarge(const ContactProblem& problem, const SolverOptions& options) {
+  const double speed = referenceSpeed(problem);
+  return std::max(contentResidual(options, speed), kLargeSpeed / speed);
+}
+
+bool isHeap(const ContactProblem& problem, EquationForm form, const SolverScratch& scratch) {
+  return form == EquationForm::kMovers && problem.contactCount() > kHeapContacts && scratch.movers_lu.products() > kHeapProducts;
+}
+
 // What solveSmallProblem leaves; r in the cones.
 SolveResult solveByForm(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch, VectorMap r, VectorMap u) {
   weighContacts(problem, scratch);
@@ -267,12 +280,22 @@ SolveResult solveByForm(const ContactProblem& problem, const SolverOptions& opti
     return {SolveMethod::kWarmStart, 0, start, start, true};
   const EquationForm form = chooseForm(problem, scratch);
   if (form == EquationForm::kTooLarge) {
-    const double enough = std::max(contentResidual(options, referenceSpeed(problem)), kLargeSpeed / referenceSpeed(problem));
-    const SolveResult large = solveLargeProblem(problem, enough, start, scratch, r.data(), u.data());
+    const SolveResult large = solveLargeProblem(problem, enoughOfLarge(problem, options), start, scratch, r.data(), u.data());
     return large.converged ? large : withoutAddedEnergy(problem, large, scratch, r, u);
   }
   Search search(problem, form, scratch, r.data(), u.data(), start);
-  const SolveMethod method = is_close ? search.polish(options) : search.run(options);
+  SolveMethod method = SolveMethod::kNewton;
+  if (is_close) {
+    method = search.polish(options);
+  } else if (!search.tryNewton(options)) {
+    if (isHeap(problem, form, scratch)) {
+      weighedResidual(problem, r.data(), scratch, u.data());  // the search had its memory
+      SolveResult large = solveLargeProblem(problem, enoughOfLarge(problem, options), start, scratch, r.data(), u.data());
+      large.iterations += search.iterations();
+      if (large.converged) return large;
+    }
+    method = search.goOn(options);
+  }
   SolveResult result{method, search.iterations(), search.residual(), start, true, search.give()};
   search.write(r.data(), u.data());
   if (result.give > 0) return result;
