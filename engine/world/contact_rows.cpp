@@ -20,8 +20,8 @@ struct Rates {
   Rates(const WorldModel& model, const WorldState& state, double h)
       : tangent(h > 0 ? kTangentCorrection / model.options.h : 0),
         normal(kNormalCorrection / model.options.h),
-        turn(h / (h + state.h_last)),
-        longer(h / state.h_last) {}
+        turn(h == state.h_last ? 0.5 : h / (h + state.h_last)),
+        longer(h == state.h_last ? 1 : h / state.h_last) {}
 };
 
 // The turn of the normal and of the arms from now to the end, from their motion since the middle of the last part of a tick: n_end . v_end - n_mid . v_mid.

@@ -10,10 +10,12 @@ namespace {
 
 void fillPointSide(const Contact& c, int rows, double sign, const PointScratch& point, ContactSide& out) {
   const Vec3 root = sign * point.root_inverse_mass;
-  for (int k = 0; k < rows; ++k) std::fill(out.A[k], out.A[k] + kMoverFreedoms, 0.0);
-  for (int k = 0; k < 3; ++k) {
-    for (int j = 0; j < 3; ++j) out.A[k][j] = root[j] * (point.turned ? point.R_WA.col(j).dot(c.R_WC.col(k)) : c.R_WC(j, k));
+  for (int k = 0; k < kTorsionRow; ++k) {
+    double* const A = out.A[k];
+    for (int j = 0; j < 3; ++j) A[j] = root[j] * (point.turned ? point.R_WA.col(j).dot(c.R_WC.col(k)) : c.R_WC(j, k));
+    A[3] = A[4] = A[5] = 0;
   }
+  for (int k = kTorsionRow; k < rows; ++k) std::fill(out.A[k], out.A[k] + kMoverFreedoms, 0.0);
   if (rows > kTorsionRow) out.A[kTorsionRow][3] = sign * radiusOf(c, kTorsionRow) * std::sqrt(point.inverse_twist);
 }
 

@@ -16,7 +16,7 @@ bool isFree(const WorldModel& model, const Side& side) {
   return body.dynamic && body.joint_group < 0;
 }
 
-double deepGap(const WorldModel& model) { return -kDeepSpeed * model.options.h / kNormalCorrection; }
+double deepGap(const WorldModel& model) { return -(kDeepSpeed / kNormalCorrection) * model.options.h; }
 
 // Points are no body: they are as thick as can be.
 double thicknessOf(const WorldModel& model, const Side& side) {

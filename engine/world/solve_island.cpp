@@ -43,7 +43,7 @@ class IslandSolve {
         order_(scratch.islands.order.data() + island_.place, static_cast<std::size_t>(island_.contacts)),
         is_heap_(island_.contacts > kHeapContacts),
         is_loop_(mayContradict(problem_)),
-        offset_rate_(scratch.h > 0 ? kTangentCorrection / model.options.h : 0) {}
+        tick_(model.options.h) {}
 
   void run() {
     const bool is_limited = scratch_.operations_left < kNoLimit;
@@ -56,7 +56,7 @@ class IslandSolve {
     if (is_swept) findRoundContacts(memory_.round, problem_);
     if (contradicts && (!is_heap_ || is_swept)) fit(PushingBy::kLastTick);
     contradicts && !is_heap_ ? solveLoop() : solveOther();
-    if (island_.result.give > 0) giveWay(scratch_.h, offset_rate_, problem_, memory_.give.data(), island_.q, order_, scratch_.contacts);
+    if (island_.result.give > 0) giveWay(scratch_.h, offsetRate(), problem_, memory_.give.data(), island_.q, order_, scratch_.contacts);
     std::int64_t spent = share - reserve - memory_.operations_left;
     if (isLost()) spent += stopOnly(reserve + std::max<std::int64_t>(memory_.operations_left, 0));
     island_.operations = is_limited ? spent : 0;
@@ -88,7 +88,7 @@ class IslandSolve {
   }
 
   void fit(PushingBy pushing) {
-    fitIslandBiases(pushing, scratch_.h, offset_rate_, problem_, island_.r, island_.q, order_, scratch_.contacts, memory_);
+    fitIslandBiases(pushing, scratch_.h, offsetRate(), problem_, island_.r, island_.q, order_, scratch_.contacts, memory_);
   }
 
   void solve(const SolverOptions& options) { solveContacts(problem_, options, memory_, island_.r, island_.u, island_.result); }
@@ -118,6 +118,7 @@ class IslandSolve {
 
   // What is kept of the budget for stopOnly: support doesn't depend on it.
   std::int64_t reserveForStops() const { return kStoppingSweeps * kPerContactSwept * island_.contacts; }
+  double offsetRate() const { return scratch_.h > 0 ? kTangentCorrection / tick_ : 0; }
   bool isEntangled() const { return chooseForm(problem_, memory_) == EquationForm::kTooLarge; }
   bool isLost() const { return !island_.result.converged && island_.result.residual > (is_heap_ ? kHeapLost : kLost); }
 
@@ -128,7 +129,7 @@ class IslandSolve {
   ContactProblem problem_;
   const std::span<const int> order_;
   const bool is_heap_, is_loop_;
-  const double offset_rate_;
+  const double tick_;  // [s]
 };
 
 }  // namespace
