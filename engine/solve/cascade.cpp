@@ -10,6 +10,7 @@
 #include "engine/solve/point_problem.h"
 #include "engine/solve/residual.h"
 #include "engine/solve/small_problem.h"
+#include "engine/solve/squeeze.h"
 
 namespace pincer::engine {
 namespace {
@@ -82,11 +83,13 @@ class Search {
   // Where Newton's method failed.
   SolveMethod goOn(const SolverOptions& options) {
     if (isSpent()) return sweep(options);
+    if (!(options.largest_give > 0) && isSqueezedNow()) return SolveMethod::kNotConverged;
     restartFromBest();
     evaluate(problem_, current_);
     iterations_ += iterateProximally(problem_, 0.5 * options.tolerance, options.proximal_rounds, equations_, scratch_, current_, trial_);
     keepBest();
     if (isEnough(options) || giveWay(options)) return SolveMethod::kProximalNewton;
+    if (isSqueezedNow()) return SolveMethod::kNotConverged;
     if (problem_.contactCount() > kCostlyContacts || isSpent()) return sweep(options);
     if (options.interior_point_iterations > 0) {
       iterations_ += followCentralPath(problem_, nullptr, kNearSolution, options.interior_point_iterations, equations_, scratch_, current_);
@@ -110,6 +113,14 @@ class Search {
     iterations_ += iterateNewton(problem_, kStrictness * options.tolerance, kPolishSteps, equations_, scratch_, current_, trial_);
     keepBest();
     return SolveMethod::kNewton;
+  }
+
+  // As if contacts were soft; false if that fails as well.
+  bool soften(const SolverOptions& options) {
+    if (!iterateSoftly(problem_, options.tolerance, equations_, scratch_, current_, trial_, iterations_)) return false;
+    best_.residual = std::numeric_limits<double>::infinity();
+    keepBest();
+    return true;
   }
 
   // Too large for the costlier methods: Gauss-Seidel, warm-started from tick to tick.
@@ -163,6 +174,7 @@ class Search {
   bool giveWay(const SolverOptions& options) {
     if (!(options.largest_give > 0)) return false;
     restartFromBest();
+    if (isSqueezedNow()) std::fill(current_.r, current_.r + problem_.rowCount(), 0.0);
     evaluate(problem_, current_);
     double give = options.largest_give;
     iterations_ += iterateGiving(problem_, 0.5 * options.tolerance, kGivingRounds, equations_, scratch_, current_, trial_, give);
@@ -171,6 +183,14 @@ class Search {
     best_.residual = std::numeric_limits<double>::infinity();
     keepBest();
     return true;
+  }
+
+  // Whether Newton's last iterate shows walls that close on a body.
+  bool isSqueezedNow() {
+    double* const r = scratch_.step.data();
+    for (int i = 0; i < problem_.contactCount(); ++i)
+      for (int row = problem_.firstRow(i); row < problem_.firstRow(i + 1); ++row) r[row] = current_.r[row] / problem_.scale[i];
+    return isSqueezed(unscaled_, r);
   }
 
   bool iterateOnShift(const SolverOptions& options) {
@@ -308,6 +328,24 @@ SolveResult solveByForm(const ContactProblem& problem, const SolverOptions& opti
   return withoutAddedEnergy(problem, result, scratch, r, u);
 }
 
+// What squeezes without end: `r` and `result` are as they were if nothing is found.
+void yieldToWalls(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch, VectorMap r, VectorMap u,
+                  SolveResult& result) {
+  weighContacts(problem, scratch);
+  const EquationForm form = chooseForm(problem, scratch);
+  if (form == EquationForm::kTooLarge) return;
+  const double start = weighedResidual(problem, r.data(), scratch, u.data());
+  Search search(problem, form, scratch, r.data(), u.data(), start);
+  if (!search.soften(options)) return;
+  search.write(r.data(), u.data());
+  project(problem, r.data());
+  result.residual = weighedResidual(problem, r.data(), scratch, u.data());
+  result.iterations += search.iterations();
+  result.method = SolveMethod::kNotConverged;
+  result.converged = false;
+  result.yields = true;
+}
+
 // A point between walls that nothing else solved: `r`, `u` and `result` are as they were unless this does.
 void tryPointProblem(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch, double* r, double* u,
                      SolveResult& result) {
@@ -330,6 +368,7 @@ void solveContacts(const ContactProblem& problem, const SolverOptions& options, 
   const VectorMap r_all(r, problem.rowCount()), u_all(u, problem.rowCount());
   result = solveByForm(problem, options, scratch, r_all, u_all);
   if (!result.converged && isPointProblem(problem)) tryPointProblem(problem, options, scratch, r, u, result);
+  if (isSqueezed(problem, r)) yieldToWalls(problem, options, scratch, r_all, u_all, result);
 }
 
 void stopBySweeps(const ContactProblem& problem, int sweeps, SolverScratch& scratch, VectorMap r, VectorMap u) {

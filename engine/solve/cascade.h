@@ -2,6 +2,7 @@
 //
 //   warm start's residual -> semi-smooth Newton (Alart-Curnier) -> the same with a proximal term -> interior point -> interior point with frozen shift, updated ->
 //   projected Gauss-Seidel with exact local solves -> best iterate, flagged.     Newton's method finishes what the others begin.
+// Walls that close on a body have no answer: their contacts yield (squeeze.h).
 // Few contacts go to small_problem.h, heaps of hundreds to large_problem.h; a point between walls, if all else failed, to point_problem.h
 // (it counts as kGaussSeidel: an exact local solution).
 //
@@ -54,7 +55,8 @@ struct SolveResult {
   double start = 0;     // residual of the warm start [-]
   bool converged =
       true;  // to the tolerance, or to contentment by the costlier methods; false: the returned r is the best iterate in the cones, scaled so that it adds no energy
-  double give = 0;  // not 0: r and u are the answer for q + SolverScratch::give, of which this is the largest row [m/s]
+  double give = 0;      // not 0: r and u are the answer for q + SolverScratch::give, of which this is the largest row [m/s]
+  bool yields = false;  // no answer exists (squeeze.h): r is that of contacts that are a little soft (newton.h), not converged
 };
 
 // How a contact takes part in the linear equations of contact_equations.h; blocks row-major with stride kMaxContactRows.

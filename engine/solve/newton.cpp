@@ -18,7 +18,8 @@ constexpr double kRoundDecrease = 1e-8;    // of |Phi|^2 in a round
 constexpr int kStepsPerRound = 8;
 constexpr double kGivingEpsilon = 1e-2, kMoreEpsilon = 10;  // of contacts that give way: as long as a round isn't solved, more
 constexpr int kStepsPerGivingRound = 12;
-constexpr double kStillFading = 0.5;          // of the give of the round before
+constexpr double kSoftEpsilons[] = {1e-3, 1e-2, 0.1};  // of contacts that are soft: the first with which Newton's method gets there
+constexpr double kStillFading = 0.5;                   // of the give of the round before
 constexpr int kPatience = 5;                  // steps without a residual half as large as the best before, after which it won't come
 constexpr int kTrials = 6;                    // step lengths 1, 1/2, .. 1/32
 constexpr double kSufficientDecrease = 1e-4;  // Armijo's, on |Phi|^2
@@ -302,6 +303,18 @@ int iterateGiving(const ScaledProblem& problem, double tolerance, int rounds, Co
   largest = give;
   if (std::isfinite(give)) addGive(problem, scratch, current);
   return steps;
+}
+
+bool iterateSoftly(const ScaledProblem& problem, double tolerance, ContactEquations& equations, SolverScratch& scratch, Iterate& current,
+                   Iterate& trial, int& steps) {
+  double* const r_c = scratch.shift_centre.data();
+  std::fill(r_c, r_c + problem.rowCount(), 0.0);
+  for (const double epsilon : kSoftEpsilons) {
+    std::fill(current.r, current.r + problem.rowCount(), 0.0);
+    evaluate(problem, current);
+    if (solveRound(problem, {r_c, epsilon}, tolerance, equations, scratch, current, trial, steps)) return true;
+  }
+  return false;
 }
 
 }  // namespace pincer::engine

@@ -31,4 +31,10 @@ int iterateProximally(const ScaledProblem& problem, double tolerance, int rounds
 int iterateGiving(const ScaledProblem& problem, double tolerance, int rounds, ContactEquations& equations, SolverScratch& scratch,
                   Iterate& current, Iterate& trial, double& largest);
 
+// For contacts that contradict each other by more than any may give way (squeeze.h): the answer where each is soft, with the velocities u + epsilon r, from
+// no impulse. It always has one, of impulses 1 / epsilon times what stops a body that closes as fast. `current` is that one, its u without epsilon r; false if
+// no epsilon of three led to it. `steps` grows by those taken.
+bool iterateSoftly(const ScaledProblem& problem, double tolerance, ContactEquations& equations, SolverScratch& scratch, Iterate& current,
+                   Iterate& trial, int& steps);
+
 }  // namespace pincer::engine

@@ -7,6 +7,7 @@
 #include "engine/solve/inverse3.h"
 #include "engine/solve/mobility.h"
 #include "engine/solve/residual.h"
+#include "engine/solve/squeeze.h"
 
 namespace pincer::engine {
 namespace {
@@ -146,6 +147,7 @@ class SmallProblem {
     const double start = evaluate();
     const bool is_close = start <= options.tolerance;
     result = {SolveMethod::kWarmStart, 0, start, start, true};
+    if (squeezes(r_out)) return false;
     if (is_close && !(strict && start > exactResidual(options.tolerance, speed_))) {
       copy<m>(u_, u_out);
       return true;
@@ -159,7 +161,7 @@ class SmallProblem {
       if (!step(blocks)) break;
       ++result.iterations;
       const double residual = evaluate();
-      if (!std::isfinite(residual)) break;
+      if (!std::isfinite(residual) || squeezes(r_)) break;
       if (residual > best) continue;
       found = true;
       best = result.residual = residual;
@@ -173,6 +175,13 @@ class SmallProblem {
   void keep(double* r_out, double* u_out) const {
     copy<m>(r_, r_out);
     copy<m>(u_, u_out);
+  }
+
+  // Perhaps without end: squeeze.h looks more closely.
+  bool squeezes(const double* r) const {
+    bool is_large = false;
+    for (int i = 0; i < count; ++i) is_large |= w_[i] * r[rows * i + kNormalRow] > kLargestSqueeze * speed_;
+    return is_large;
   }
 
   using Block = double[rows][rows];

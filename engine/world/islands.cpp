@@ -193,6 +193,7 @@ void scatter(const IslandScratch& s, const Island& island, double tolerance, Wor
     const int i = order[n];
     contacts[i].settling = settling;
     contacts[i].quiet = quiet;
+    contacts[i].yields = island.result.yields;
     if (r_k == r) continue;  // nothing was copied
     const int first = from_row[i], rows = from_row[i + 1] - first;
     withRows(rows, [&](auto count) {

@@ -24,7 +24,8 @@ double thicknessOf(const WorldModel& model, const Side& side) {
 }
 double thinner(const WorldModel& model, const Contact& c) { return std::min(thicknessOf(model, c.a), thicknessOf(model, c.b)); }
 
-bool isDeep(const WorldModel& model, const Contact& c, double gap) { return gap < deepGap(model) && isPushedOut(model, c); }
+// Between walls that close on it nothing is to be gained: it would end as deep in one as in both.
+bool isDeep(const WorldModel& model, const Contact& c, double gap) { return gap < deepGap(model) && !c.yields && isPushedOut(model, c); }
 
 // Where the point of a body that touches, at an arm in the middle of this part of the tick, is at its end.
 Vec3 pointAfter(const WorldState& state, const WorldScratch& scratch, const Side& side, const Vec3& arm_W) {

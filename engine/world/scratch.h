@@ -50,9 +50,10 @@ struct Contact {
   Vec3 impulse_W;           // impulse on a at p_W [N s]; b got exactly its negative
   Vec3 u_C;                 // velocity of a relative to b at the end of the tick, biases included [m/s]
   bool sliding = false;
-  int settling = 0;    // see ContactMemory; of the last tick before the solve, of this one after it
-  bool quiet = false;  // the last tick's impulses still fit
-  bool still = false;  // and nothing of it or of its bodies changed in this tick, where that was asked
+  int settling = 0;     // see ContactMemory; of the last tick before the solve, of this one after it
+  bool quiet = false;   // the last tick's impulses still fit
+  bool yields = false;  // walls close on what is between them (solve/squeeze.h)
+  bool still = false;   // and nothing of it or of its bodies changed in this tick, where that was asked
 
   Contact() {}  // NOLINT(modernize-use-equals-default): a defaulted one would clear all of a new contact
   Vec3 n_W() const { return R_WC.col(2); }

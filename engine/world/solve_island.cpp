@@ -120,7 +120,9 @@ class IslandSolve {
   std::int64_t reserveForStops() const { return kStoppingSweeps * kPerContactSwept * island_.contacts; }
   double offsetRate() const { return scratch_.h > 0 ? kTangentCorrection / tick_ : 0; }
   bool isEntangled() const { return chooseForm(problem_, memory_) == EquationForm::kTooLarge; }
-  bool isLost() const { return !island_.result.converged && island_.result.residual > (is_heap_ ? kHeapLost : kLost); }
+  bool isLost() const {
+    return !island_.result.converged && !island_.result.yields && island_.result.residual > (is_heap_ ? kHeapLost : kLost);
+  }
 
   const SolverOptions& options_;
   WorldScratch& scratch_;

@@ -13,7 +13,7 @@ namespace {
 constexpr double kPressedIn = 0.1;  // of 2 sin(alpha) S: far below what presses a point in, far above round-off of a squeeze
 constexpr double kLoose = 0.5;      // of tan(alpha): what is let go comes out without much of a squeeze
 
-constexpr double kLargestSqueeze = 1e3;  // w r_n of the problem's speeds: 1 / sin(alpha) where the groove opens by 0.1 degrees
+constexpr double kWedgedSqueeze = 1e3;  // w r_n of the problem's speeds: 1 / sin(alpha) where the groove opens by 0.1 degrees
 
 bool isPressedPoint(const Contact& c) {
   const bool is_point = c.a.kind == SideKind::kPoint || c.b.kind == SideKind::kPoint;
@@ -47,7 +47,7 @@ double responseOf(const ContactProblem& problem, int i, const double* r) {
 
 bool isWedged(const ContactProblem& problem, const double* r, const SolveResult& result) {
   if (!isPointProblem(problem)) return false;
-  const double most = kLargestSqueeze * referenceSpeed(problem);
+  const double most = kWedgedSqueeze * referenceSpeed(problem);
   bool is_squeezed = false;
   for (int i = 0; i < problem.contactCount(); ++i) is_squeezed = is_squeezed || responseOf(problem, i, r) > most;
   return is_squeezed || !result.converged;

@@ -55,6 +55,30 @@ TEST(Giving, IsAskedForAndNoMoreThanThat) {
   }
 }
 
+// Both soft, the body still by symmetry:  -v + epsilon w r_n = 0,  w = (1/m + 2 (1/m + a^2/I)) / 3.
+TEST(Squeeze, OfWallsThatCloseIsThatOfSoftContacts) {
+  for (const double closing : {1e-4, 1e-3, 0.1, 10.0}) {
+    OwnedContactProblem p = squeezed(closing);
+    const tests::Solved s = solve(p);
+    EXPECT_FALSE(s.result.converged);
+    EXPECT_TRUE(s.result.yields);
+    const double w = (10 + 2 * (10 + 1e-4 / 1e-5)) / 3;
+    for (const int row : {2, 5}) EXPECT_NEAR(s.r[row], closing / (1e-3 * w), 1e-6 * closing / (1e-3 * w));
+    EXPECT_NEAR(s.u[2], -closing, 1e-9 * closing);
+  }
+}
+
+// Bounded answers, however large, aren't taken for it: a stack whose top is a million times as heavy as its base.
+TEST(Squeeze, IsNotSeenWhereALightBodyCarriesAHeavyOne) {
+  for (const double ratio : {1.0, 1e3, 1e6}) {
+    tests::RandomScenes random(17);
+    OwnedContactProblem p = random.stack(3, ratio, 0);
+    const tests::Solved s = solve(p);
+    EXPECT_TRUE(s.result.converged) << ratio;
+    EXPECT_FALSE(s.result.yields) << ratio;
+  }
+}
+
 // What has an answer needn't give way.
 TEST(Giving, IsLeftAloneWhereThereIsAnAnswer) {
   tests::RandomScenes random(5);
