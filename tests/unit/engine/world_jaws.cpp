@@ -24,10 +24,10 @@ struct Jaws {
   int ticks = 0, flagged = 0;
   double largest_force = 0, largest_speed = 0;
 
-  Jaws(const contact::Shape& shape, double closing_speed, double closing_depth)
+  Jaws(const contact::Shape& shape, double closing_speed, double closing_depth, int threads = 1)
       : speed(closing_speed),
         depth(closing_depth),
-        model(build(shape)),
+        model(build(shape, threads)),
         state(makeState(model, {startAt(Vec3::Zero()), startAt(Vec3(-kHalf - 0.01, 0, 0)), startAt(Vec3(kHalf + 0.01, 0, 0))}, {})),
         scratch(model) {}
 
@@ -50,8 +50,10 @@ struct Jaws {
   const BodyState& body() const { return state.bodies[0]; }
 
  private:
-  static WorldModel build(const contact::Shape& shape) {
-    WorldBuilder builder{WorldOptions{}};
+  static WorldModel build(const contact::Shape& shape, int threads) {
+    WorldOptions options;
+    options.threads = threads;
+    WorldBuilder builder{options};
     const Material material{0.5, 0.5, 0, 0};
     builder.addBody({"gripped", shape, true, kMass, material});
     for (const char* name : {"left", "right"}) builder.addBody({name, contact::Box{Vec3(0.01, 0.05, 0.05)}, false, 0, material, true});
@@ -113,9 +115,7 @@ TEST(Jaws, APlateComesDownOnABall) {
 
 TEST(Jaws, TheSameBitsOnTwoThreadsAndAgain) {
   const auto hashAfter = [](int threads) {
-    Jaws jaws(contact::Box{Vec3(kHalf, kHalf, kHalf)}, 0.02, 1e-3);
-    jaws.model.options.threads = threads;
-    jaws.scratch = WorldScratch(jaws.model);
+    Jaws jaws(contact::Box{Vec3(kHalf, kHalf, kHalf)}, 0.02, 1e-3, threads);
     jaws.close(200);
     return hashOf(jaws.state);
   };
