@@ -34,6 +34,18 @@ const grasp::FingerReport& FingerScene::tick(const Vec3& p_WF) {
   return scratch_.fingers.front();
 }
 
+bool FingerScene::isLocked() const {
+  const std::vector<engine::Contact>& contacts = scratch_.world.contacts;
+  for (auto x = contacts.begin(); x != contacts.end(); ++x) {
+    for (auto y = x + 1; y != contacts.end(); ++y) {
+      if (!x->active() || !y->active()) continue;
+      const double tan_alpha = (x->n_W() + y->n_W()).norm() / (x->n_W() - y->n_W()).norm();
+      if (std::min(x->material.mu_s, y->material.mu_s) > tan_alpha) return true;
+    }
+  }
+  return false;
+}
+
 void FingerScene::leadTo(const Vec3& p_WF) {
   constexpr double kStep = 1e-4;  // [m] per tick
   const Vec3 from = device_;

@@ -22,6 +22,8 @@ class FingerScene {
 
   const Vec3& proxy() const { return state_.world.points.front().p_W; }  // centre of the fingertip on the surface [m]
   int flagged() const { return flagged_; }                               // ticks that the step complained of
+  // Between two walls that push and lock: mu > tan(alpha), pi - 2 alpha the angle between their normals (engine/world/wedge.h).
+  bool isLocked() const;
 
  private:
   grasp::GraspModel model_;
