@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "contact/surface/flat_contact.h"
+#include "contact/surface/shell_edge.h"
 #include "contact/surface/surface_touch.h"
 
 namespace pincer::contact {
@@ -57,6 +58,21 @@ void SurfaceTouch::followSlots() {
     if (!isListed(contact) && hasFreeSlot()) addNew(contact);
   }
 }
+
+namespace {
+
+constexpr double kAtPoint = 1e-6;  // of r: nearer to a point of a border the direction to it is lost
+
+bool isOnBorder(const SurfaceNet& net, const Foot& foot) {
+  constexpr double kOn = 1e-12;  // of a barycentric coordinate
+  for (int i = 0; i < 3; ++i) {
+    if (foot.b[static_cast<std::size_t>((i + 2) % 3)] < kOn && net.neighbour(foot.triangle, i).triangle < 0) return true;
+    if (foot.b[static_cast<std::size_t>(i)] > 1 - kOn && net.visitCorners({foot.triangle, i}, [](const CellCorner&) {})) return true;
+  }
+  return false;
+}
+
+}  // namespace
 
 // Beside a fin the centre may pass the plane across its edge's mean normal, and counts as behind it, in one query as far as it was in front: the finger was
 // caught between the edge and itself, or lost it.
@@ -132,8 +148,18 @@ void SurfaceTouch::findLost() {
   ++cost_.reseeds;
 }
 
+// Where an open border was touched it is a wire, that faces everywhere: a finger that is led in under the sheet is pushed away from it until it is clear.
+void SurfaceTouch::leanOnBorder(int slot) {
+  const SurfaceSlot& kept = keptIn(slot);
+  const FeatureContact wire = contactWithPoint(C_, kept.p_BS, kept.n_B, true, kAtPoint * r_);
+  list_.push_back({{footOf(slot), wire.n, wire.h, true, {}}, slot, false, false, std::max(0.0, kept.ease - moved_)});
+  status_ |= kQueryReseeded;
+  ++cost_.reseeds;
+}
+
 // Its plane stays, whole.
 void SurfaceTouch::hold(int slot) {
+  if (eases_ && isOnBorder(s_.net, footOf(slot))) return leanOnBorder(slot);
   list_.push_back({planeOf(slot), slot, false, false, keptIn(slot).ease});
   status_ |= kQueryHeldDirection;
   ++cost_.held;

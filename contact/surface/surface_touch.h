@@ -70,6 +70,7 @@ class SurfaceTouch {
   void lose(int slot);
   void fadeLost();
   void findLost();
+  void leanOnBorder(int slot);
   void hold(int slot);
   void takeNearest();
   ShellContact nearestWithin(double bound);
