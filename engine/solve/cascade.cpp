@@ -190,7 +190,7 @@ class Search {
     double* const r = scratch_.step.data();
     for (int i = 0; i < problem_.contactCount(); ++i)
       for (int row = problem_.firstRow(i); row < problem_.firstRow(i + 1); ++row) r[row] = current_.r[row] / problem_.scale[i];
-    return isSqueezed(unscaled_, r);
+    return isSqueezed(unscaled_, scratch_.weight, r);
   }
 
   bool iterateOnShift(const SolverOptions& options) {
@@ -368,7 +368,7 @@ void solveContacts(const ContactProblem& problem, const SolverOptions& options, 
   const VectorMap r_all(r, problem.rowCount()), u_all(u, problem.rowCount());
   result = solveByForm(problem, options, scratch, r_all, u_all);
   if (!result.converged && isPointProblem(problem)) tryPointProblem(problem, options, scratch, r, u, result);
-  if (isSqueezed(problem, r)) yieldToWalls(problem, options, scratch, r_all, u_all, result);
+  if (isSqueezed(problem, scratch.weight, r)) yieldToWalls(problem, options, scratch, r_all, u_all, result);
 }
 
 void stopBySweeps(const ContactProblem& problem, int sweeps, SolverScratch& scratch, VectorMap r, VectorMap u) {

@@ -1,13 +1,28 @@
 #include "engine/solve/squeeze.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "engine/solve/mobility.h"
 #include "engine/solve/residual.h"
 
 namespace pincer::engine {
 
-bool isSqueezed(const ContactProblem& problem, const double* r) {
+namespace {
+
+// No contact that moves something does so by more than W_nn r_n, at most the trace of W_ii: heaps needn't look at their sides.
+bool maySqueeze(const ContactProblem& problem, const std::vector<double>& weight, const double* r, double most) {
+  double largest = 0;
+  for (int i = 0; i < problem.contactCount(); ++i)
+    largest = std::max(largest, problem.rows(i) * weight[static_cast<std::size_t>(i)] * r[problem.firstRow(i) + kNormalRow]);
+  return largest > most;
+}
+
+}  // namespace
+
+bool isSqueezed(const ContactProblem& problem, const std::vector<double>& weight, const double* r) {
+  const double most = kLargestSqueeze * referenceSpeed(problem);
+  if (!maySqueeze(problem, weight, r, most)) return false;
   double least_mobility = std::numeric_limits<double>::infinity(), largest = 0;
   for (int i = 0; i < problem.contactCount(); ++i) {
     largest = std::max(largest, r[problem.firstRow(i) + kNormalRow]);
@@ -16,7 +31,7 @@ bool isSqueezed(const ContactProblem& problem, const double* r) {
       if (mobility > 0) least_mobility = std::min(least_mobility, mobility);
     }
   }
-  return largest * least_mobility > kLargestSqueeze * referenceSpeed(problem);
+  return largest * least_mobility > most;
 }
 
 }  // namespace pincer::engine

@@ -6,13 +6,15 @@
 // iterates cancel each other and grow without end, and a residual relative to them (contactResidual) ends within any tolerance. Bounded answers don't come
 // near the bound: walls squeeze by 1 / sin of half the angle between them, a stack by the number of its bodies.
 #pragma once
+#include <vector>
+
 #include "engine/solve/contact_problem.h"
 
 namespace pincer::engine {
 
 constexpr double kLargestSqueeze = 1e5;  // a wedge of a thousandth of a degree
 
-// Whether the impulses `r` squeeze like that.
-bool isSqueezed(const ContactProblem& problem, const double* r);
+// Whether the impulses `r` squeeze like that. `weight`: of the contacts, weighContacts (residual.h).
+bool isSqueezed(const ContactProblem& problem, const std::vector<double>& weight, const double* r);
 
 }  // namespace pincer::engine
