@@ -9,6 +9,8 @@
 #include "devices/usb/usb_host.h"
 #include "tasks/app/app.h"
 #include "tasks/app/devices_commands.h"
+#include "tasks/app/interrupt.h"
+#include "tasks/measure/interrupted.h"
 #include "tasks/scene/json_writer.h"
 #include "tasks/servo/hand_devices_parts.h"
 
@@ -72,7 +74,13 @@ void printJson(UsbHost& host, const std::vector<devices::falcon::FalconPlace>& f
 int listDevices(const DevicesListArguments& arguments) {
   const auto usb = startUsb();
   UsbHost& host = *usb;
-  if (host.waitFor(1, 0, arguments.timeout)) std::this_thread::sleep_for(std::chrono::milliseconds(200));  // the others, too
+  constexpr double kLook = 0.1;  // for an interrupt [s]
+  bool answered = false;
+  for (double waited = 0; !answered && waited < arguments.timeout; waited += kLook) {
+    throwIf(interruptFlag());
+    answered = host.waitFor(1, 0, kLook);
+  }
+  if (answered) std::this_thread::sleep_for(std::chrono::milliseconds(200));  // the others, too
   const auto falcons = devices::falcon::listFalcons();
   if (arguments.json) {
     printJson(host, falcons);

@@ -6,6 +6,7 @@
 
 #include "tasks/app/app.h"
 #include "tasks/app/commands.h"
+#include "tasks/app/interrupt.h"
 #include "tasks/session/bids_export.h"
 #include "tasks/session/csv_export.h"
 
@@ -25,7 +26,8 @@ struct ExportArguments {
 };
 
 int exportSession(const ExportArguments& arguments) {
-  const SessionReader session(arguments.session);
+  SessionReader session(arguments.session);
+  session.heed(interruptFlag());
   if (!arguments.bids.empty()) {
     for (const std::string& file : exportBids(session, arguments.bids)) fmt::print("{}\n", file);
     return kExitOk;

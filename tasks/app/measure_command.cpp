@@ -10,6 +10,7 @@
 #include "contact/error.h"
 #include "tasks/app/app.h"
 #include "tasks/app/interrupt.h"
+#include "tasks/app/process.h"
 #include "tasks/app/progress.h"
 #include "tasks/app/record_text.h"
 #include "tasks/scene/json_writer.h"
@@ -71,6 +72,7 @@ int runMeasurements(const std::vector<Measurement>& measurements, const MeasureO
   std::vector<Record> records;
   std::size_t done = 0;
   {
+    const StandardOutputAside aside;  // other engines say what they like; the records come after
     Progress progress(title, kSteps * static_cast<std::int64_t>(chosen.size()));
     MeasureContext context;
     context.thorough = options.thorough;
@@ -86,7 +88,10 @@ int runMeasurements(const std::vector<Measurement>& measurements, const MeasureO
     }
   }
   fmt::print("{}", options.json ? recordJson(records) : recordTable(records));
-  if (done < chosen.size()) return kExitInterrupted;
+  if (done < chosen.size()) {
+    fmt::print(stderr, "pincer: interrupted; these are the figures that were whole.\n");
+    return kExitInterrupted;
+  }
   return allOk(records) ? kExitOk : kExitCheckFailed;
 }
 

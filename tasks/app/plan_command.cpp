@@ -114,12 +114,13 @@ std::string planJson(const Scene& scene, const std::vector<PlanLine>& plan, cons
 }
 
 int runPlan(const PlanArguments& arguments) {
-  interruptFlag();
   const Scene scene = readSceneOrBuiltin(arguments.scene);
   const std::vector<PlanLine> plan = describePlan(buildWorld(scene));
   const PlanTimes times = measureStages(scene, arguments.ticks);
   fmt::print("{}", arguments.json ? planJson(scene, plan, times) : planText(scene, plan, times));
-  return times.interrupted ? kExitInterrupted : kExitOk;
+  if (!times.interrupted) return kExitOk;
+  fmt::print(stderr, "pincer: interrupted; the times are those of the ticks that were done.\n");
+  return kExitInterrupted;
 }
 
 }  // namespace

@@ -55,7 +55,8 @@ ReplayResult replayAll(const ReplayArguments& arguments, const SessionReader& se
 }
 
 int replay(const ReplayArguments& arguments) {
-  const SessionReader session(arguments.session);
+  SessionReader session(arguments.session);
+  session.heed(interruptFlag());
   const ReplayResult result = arguments.looks() ? replayAndLook(arguments, session) : replayAll(arguments, session);
   if (result.first) {
     const ReplayDifference& d = *result.first;
@@ -67,7 +68,9 @@ int replay(const ReplayArguments& arguments) {
   fmt::print("The same to the bit: {} trials{}, {} samples{}\n", result.trials,
              result.cut_short > 0 ? fmt::format(" and {} that was cut short", result.cut_short) : "", result.samples,
              result.inputs > 0 ? fmt::format(", {} ticks of a person's hands", result.inputs) : "");
-  return interruptFlag() ? kExitInterrupted : kExitOk;
+  if (!interruptFlag()) return kExitOk;
+  fmt::print(stderr, "pincer: interrupted; these are the trials that were whole.\n");
+  return kExitInterrupted;
 }
 
 }  // namespace
