@@ -126,7 +126,7 @@ int testDevices(const DevicesTestArguments& arguments) {
                           : fmt::format("No device {} is ready on USB. See what is there: pincer devices list", arguments.serial));
   }
   DeviceTest test(host, arms, displays, arguments);
-  const ServoOptions servo{.real_time = true, .watchdog = 1e-3 * arguments.watchdog_ms};
+  const ServoOptions servo{.clock = ServoClock::kReal, .watchdog = 1e-3 * arguments.watchdog_ms};
   const ServoReport report = runServo(servo, test, interrupted);
   test.cutForces();
   fmt::print("{}\n", servoText(report, 1 / servo.rate));

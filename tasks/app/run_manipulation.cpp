@@ -101,7 +101,7 @@ int showStudy(const ManipulationArguments& arguments, const std::string& directo
   fmt::print("{}\n", arguments.run.json ? summaryJson(summary) : formatTable(summary));
   const auto say = [&](const std::string& line) { fmt::print(arguments.run.json ? stderr : stdout, "{}\n", line); };
   const ServoOptions& servo = arguments.run.servo;
-  const bool by_the_clock = servo.real_time || arguments.view.view || arguments.devices.devices != "sim";
+  const bool by_the_clock = servo.clock != ServoClock::kVirtual || arguments.view.view || arguments.devices.devices != "sim";
   if (by_the_clock) say(servoText(result.servo, 1 / servo.rate));
   say(fmt::format("Session: {}", session.path()));
   if (!by_the_clock) say(throughputText(static_cast<double>(result.servo.ticks) / servo.rate));
@@ -110,7 +110,8 @@ int showStudy(const ManipulationArguments& arguments, const std::string& directo
                     directory));
     return kExitInterrupted;
   }
-  if (arguments.run.report) say(fmt::format("Report: {}", writeReport(session, directory + "/report.html").html));
+  if (arguments.run.report)
+    say(fmt::format("Report: {}", writeReport(session, directory + "/report.html", {.interrupted = &interruptFlag()}).html));
   const std::int64_t faults = faultsOfStudy(summary);
   if (faults > 0) say(fmt::format("Trials that ended in a fault: {}; their events say why: pincer export {}", faults, session.path()));
   return faults > 0 ? kExitCheckFailed : kExitOk;
@@ -125,10 +126,8 @@ struct Stage {
 Stage setStage(const ManipulationArguments& arguments, ManipulationSessionOptions& options, const std::atomic<bool>& interrupted) {
   Stage stage;
   const std::string& choice = arguments.devices.devices;
-  options.servo.real_time = options.servo.real_time || arguments.view.view;
-  constexpr double kMouseStall = 0.1;  // that ends no trial [s]: a mouse has no motors
-  if (choice == "mouse") options.servo.watchdog = kMouseStall;
-  if (choice != "mouse") stage.devices = openDevices(arguments.devices, options.servo);
+  if (arguments.view.view) options.servo.clock = ServoClock::kPaced;
+  stage.devices = openDevices(arguments.devices, options.servo);
   ViewOptions view = arguments.view;
   view.title = taskName(options.study);
   stage.window = hostOf(choice, view, options.servo, interrupted);

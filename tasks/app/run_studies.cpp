@@ -71,7 +71,7 @@ int showStudy(const StudyArguments& arguments, const std::string& directory, con
   const StudySummary summary = summariseStudy(session, session.responses());
   fmt::print("{}\n", arguments.run.json ? studySummaryJson(summary) : formatStudyTable(summary));
   const auto say = [&](const std::string& line) { fmt::print(arguments.run.json ? stderr : stdout, "{}\n", line); };
-  if (arguments.run.servo.real_time) say(servoText(outcome.servo, 1 / arguments.run.servo.rate));
+  if (arguments.run.servo.clock != ServoClock::kVirtual) say(servoText(outcome.servo, 1 / arguments.run.servo.rate));
   const double simulated = static_cast<double>(outcome.servo.ticks) / arguments.run.servo.rate;
   say(throughputText(simulated));
   say(fmt::format("Session: {}", session.path()));
@@ -79,7 +79,8 @@ int showStudy(const StudyArguments& arguments, const std::string& directory, con
     say(fmt::format("Interrupted after {} trials; they are safe. Go on: the same task with --resume --out {}", outcome.trials, directory));
     return kExitInterrupted;
   }
-  if (arguments.run.report) say(fmt::format("Report: {}", writeStudyReport(session, directory + "/report.html").html));
+  if (arguments.run.report)
+    say(fmt::format("Report: {}", writeStudyReport(session, directory + "/report.html", {.interrupted = &interruptFlag()}).html));
   std::int64_t unanswered = 0;
   for (const StudyCondition& c : summary.conditions) unanswered += c.unanswered;
   return unanswered > 0 ? kExitCheckFailed : kExitOk;
@@ -101,7 +102,6 @@ int runStudyTask(const std::string& task, const Study& published, const StudyArg
   session.info =
       studySessionInfo(task, study.seed, studyJson(study), participantsJson(study), arguments.run.servo, arguments.run.sample_rate);
   session.path = directory + "/session.db";
-  session.real_time = arguments.run.servo.real_time;
   Progress line("study", 1000);
   const StudyOutcome outcome =
       runStudySession(experiment, session, interrupted, [&](const StudyProgress& p) { line.update(std::lround(1000 * p.share)); });
