@@ -8,6 +8,7 @@
 #include <csignal>
 
 #include "tasks/app/interrupt.h"
+#include "tasks/app/print.h"
 #include "tasks/app/servo_text.h"
 
 namespace pincer::tasks {
@@ -61,22 +62,22 @@ std::unique_ptr<HandDevices> openDevices(const DeviceRunOptions& options, ServoO
                     *options.watchdog_ms, options.devices));
   }
   if (options.watchdog_ms) servo.watchdog = 1e-3 * *options.watchdog_ms;
-  servo.show = [period = 1 / servo.rate](const ServoReport& report) { fmt::print(stderr, "{}\n", servoText(report, period)); };
+  servo.show = [period = 1 / servo.rate](const ServoReport& report) { print(stderr, "{}\n", servoText(report, period)); };
   std::signal(SIGUSR1, pincerOnReportRequest);
   DeviceOptions which = options.which;
   which.watchdog = servo.watchdog;
   which.choice = choice;
   if (choice == DeviceChoice::kSim || choice == DeviceChoice::kMouse) return nullptr;
   auto devices = openHandDevices(which);
-  for (const std::string& line : devices->describe()) fmt::print(stderr, "{}\n", line);
+  for (const std::string& line : devices->describe()) print(stderr, "{}\n", line);
   servo.clock = hasMotors(choice) ? ServoClock::kReal : ServoClock::kPaced;
   return devices;
 }
 
 bool operatorArms(const DeviceRunOptions& options, const std::string& why) {
-  fmt::print(stderr, "{}\n", why);
+  print(stderr, "{}\n", why);
   if (options.yes) return true;
-  fmt::print(stderr, "Forces are off. Fingers in place, emergency stop at hand? Enter switches forces on, Ctrl-D ends the session. ");
+  print(stderr, "Forces are off. Fingers in place, emergency stop at hand? Enter switches forces on, Ctrl-D ends the session. ");
   return lineComes();
 }
 

@@ -10,6 +10,7 @@
 #include "contact/error.h"
 #include "tasks/app/app.h"
 #include "tasks/app/interrupt.h"
+#include "tasks/app/print.h"
 #include "tasks/app/process.h"
 #include "tasks/app/progress.h"
 #include "tasks/app/record_text.h"
@@ -28,13 +29,13 @@ std::vector<Measurement> selected(const std::vector<Measurement>& all, const std
 
 void printNames(const std::vector<Measurement>& measurements, bool as_json) {
   if (!as_json) {
-    for (const Measurement& m : measurements) fmt::print("{}\n", m.name);
+    for (const Measurement& m : measurements) print("{}\n", m.name);
     return;
   }
   JsonWriter json;
   json.beginArray();
   for (const Measurement& m : measurements) json.value(m.name);
-  fmt::print("{}", json.endArray().text());
+  print("{}", json.endArray().text());
 }
 
 void runOne(const Measurement& measurement, MeasureContext& context, std::vector<Record>& records) {
@@ -87,9 +88,9 @@ int runMeasurements(const std::vector<Measurement>& measurements, const MeasureO
       records.insert(records.end(), measured.begin(), measured.end());
     }
   }
-  fmt::print("{}", options.json ? recordJson(records) : recordTable(records));
+  print("{}", options.json ? recordJson(records) : recordTable(records));
   if (done < chosen.size()) {
-    fmt::print(stderr, "pincer: interrupted; these are the figures that were whole.\n");
+    print(stderr, "pincer: interrupted; these are the figures that were whole.\n");
     return kExitInterrupted;
   }
   return allOk(records) ? kExitOk : kExitCheckFailed;

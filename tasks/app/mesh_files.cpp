@@ -7,6 +7,7 @@
 #include "contact/mesh/mesh_writer.h"
 #include "tasks/app/interrupt.h"
 #include "tasks/app/mesh_commands.h"
+#include "tasks/app/print.h"
 #include "tasks/app/progress.h"
 #include "tasks/measure/interrupted.h"
 
@@ -42,8 +43,8 @@ void writeAndSay(const MeshInput& input, const std::string& out, const contact::
   throwIf(interruptFlag());
   const contact::WriteOptions options = {.metres_per_unit = contact::metresPerUnit(units)};
   contact::writeMesh(out, mesh, options);
-  fmt::print("{}: {} vertices, {} triangles, in {}\n", out, mesh.vertices.size(), mesh.triangles.size(), units);
-  for (const std::string& loss : contact::lossesOf(mesh, *contact::formatOfName(out), options)) fmt::print("  - lost: {}\n", loss);
+  print("{}: {} vertices, {} triangles, in {}\n", out, mesh.vertices.size(), mesh.triangles.size(), units);
+  for (const std::string& loss : contact::lossesOf(mesh, *contact::formatOfName(out), options)) print("  - lost: {}\n", loss);
 }
 
 }  // namespace pincer::tasks

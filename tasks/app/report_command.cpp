@@ -7,6 +7,7 @@
 #include "tasks/app/app.h"
 #include "tasks/app/commands.h"
 #include "tasks/app/interrupt.h"
+#include "tasks/app/print.h"
 #include "tasks/report/report.h"
 #include "tasks/report/study_report.h"
 
@@ -26,8 +27,8 @@ struct ReportArguments {
 
 int reportStudy(const SessionReader& session, const std::string& html, bool as_json) {
   const StudySummary summary = summariseStudy(session, session.responses());
-  fmt::print("{}\n", as_json ? studySummaryJson(summary) : formatStudyTable(summary));
-  fmt::print(as_json ? stderr : stdout, "Report: {}\n", writeStudyReport(session, html, {.interrupted = &interruptFlag()}).html);
+  print("{}\n", as_json ? studySummaryJson(summary) : formatStudyTable(summary));
+  print(as_json ? stderr : stdout, "Report: {}\n", writeStudyReport(session, html, {.interrupted = &interruptFlag()}).html);
   return kExitOk;
 }
 
@@ -38,9 +39,9 @@ int report(const ReportArguments& arguments) {
   const std::string html = arguments.html.empty() ? beside : arguments.html;
   if (isStudy(session.info().task)) return reportStudy(session, html, arguments.json);
   const SessionSummary summary = summariseSession(session);
-  fmt::print("{}\n", arguments.json ? summaryJson(summary) : formatTable(summary));
+  print("{}\n", arguments.json ? summaryJson(summary) : formatTable(summary));
   const ReportFiles files = writeReport(session, html, {.interrupted = &interruptFlag()});
-  fmt::print(arguments.json ? stderr : stdout, "Report: {}\n", files.html);
+  print(arguments.json ? stderr : stdout, "Report: {}\n", files.html);
   return kExitOk;
 }
 

@@ -9,6 +9,7 @@
 #include "tasks/app/device_options.h"
 #include "tasks/app/interrupt.h"
 #include "tasks/app/manipulation_session.h"
+#include "tasks/app/print.h"
 #include "tasks/app/progress.h"
 #include "tasks/app/run_options.h"
 #include "tasks/app/run_tasks.h"
@@ -98,8 +99,8 @@ std::int64_t faultsOfStudy(const SessionSummary& summary) {
 int showStudy(const ManipulationArguments& arguments, const std::string& directory, const ManipulationSessionResult& result) {
   const SessionReader session(directory + "/session.db");
   const SessionSummary summary = summariseSession(session);
-  fmt::print("{}\n", arguments.run.json ? summaryJson(summary) : formatTable(summary));
-  const auto say = [&](const std::string& line) { fmt::print(arguments.run.json ? stderr : stdout, "{}\n", line); };
+  print("{}\n", arguments.run.json ? summaryJson(summary) : formatTable(summary));
+  const auto say = [&](const std::string& line) { print(arguments.run.json ? stderr : stdout, "{}\n", line); };
   const ServoOptions& servo = arguments.run.servo;
   const bool by_the_clock = servo.clock != ServoClock::kVirtual || arguments.view.view || arguments.devices.devices != "sim";
   if (by_the_clock) say(servoText(result.servo, 1 / servo.rate));
@@ -163,7 +164,7 @@ int runManipulation(const ManipulationArguments& arguments) {
   validate(options);
   if (!arguments.write_study.empty()) {
     writeAtomically(arguments.write_study, studyFile(options.study));
-    fmt::print("Study: {}\n", arguments.write_study);
+    print("Study: {}\n", arguments.write_study);
     return kExitOk;
   }
   makePickupObject(options.study.pickup);  // bad options and objects are named before anything is written

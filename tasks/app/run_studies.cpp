@@ -8,6 +8,7 @@
 #include "contact/error.h"
 #include "tasks/app/app.h"
 #include "tasks/app/interrupt.h"
+#include "tasks/app/print.h"
 #include "tasks/app/progress.h"
 #include "tasks/app/run_options.h"
 #include "tasks/app/run_tasks.h"
@@ -69,8 +70,8 @@ int strideOf(const RunOptions& options) {
 int showStudy(const StudyArguments& arguments, const std::string& directory, const StudyOutcome& outcome) {
   const SessionReader session(directory + "/session.db");
   const StudySummary summary = summariseStudy(session, session.responses());
-  fmt::print("{}\n", arguments.run.json ? studySummaryJson(summary) : formatStudyTable(summary));
-  const auto say = [&](const std::string& line) { fmt::print(arguments.run.json ? stderr : stdout, "{}\n", line); };
+  print("{}\n", arguments.run.json ? studySummaryJson(summary) : formatStudyTable(summary));
+  const auto say = [&](const std::string& line) { print(arguments.run.json ? stderr : stdout, "{}\n", line); };
   if (arguments.run.servo.clock != ServoClock::kVirtual) say(servoText(outcome.servo, 1 / arguments.run.servo.rate));
   const double simulated = static_cast<double>(outcome.servo.ticks) / arguments.run.servo.rate;
   say(throughputText(simulated));
@@ -91,7 +92,7 @@ int runStudyTask(const std::string& task, const Study& published, const StudyArg
   const std::atomic<bool>& interrupted = interruptFlag();
   const Study study = arguments.resume ? resumedStudy(task, published, arguments) : studyOf(published, arguments);
   if (arguments.print_study) {
-    fmt::print("{}\n", studyJson(study));
+    print("{}\n", studyJson(study));
     return kExitOk;
   }
   auto experiment = make(study, arguments.run.servo, strideOf(arguments.run));
