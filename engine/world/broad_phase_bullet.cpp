@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact/shape/bullet_memory.h"
 #include "engine/world/broad_phase.h"
 #include "engine/world/scratch.h"
 
@@ -82,7 +83,7 @@ struct BroadPhase::Tree {
   }
 };
 
-BroadPhase::BroadPhase(const WorldModel& model) : tree_(std::make_unique<Tree>(model)) {
+BroadPhase::BroadPhase(const WorldModel& model) : tree_((contact::letBulletThrow(), std::make_unique<Tree>(model))) {
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
     if (model.bodies[i].dynamic) dynamic_.push_back(static_cast<int>(i));
     if (!isBounded(model.bodies[i])) unbounded_.push_back(static_cast<int>(i));

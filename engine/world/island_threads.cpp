@@ -1,12 +1,17 @@
 #include "engine/world/island_threads.h"
 
+#include <exception>
+
 namespace pincer::engine {
 namespace {
 constexpr int kLooks = 2000;  // for the next round, before a thread goes to sleep: some tens of microseconds
 }
 
 IslandThreads::IslandThreads(int threads) {
-  for (int t = 1; t < threads; ++t) threads_.emplace_back([this, t] { work(t); });
+  try {
+    for (int t = 1; t < threads; ++t) threads_.emplace_back([this, t] { work(t); });
+  } catch (const std::exception&) {  // no memory, or no more threads: fewer do the same work
+  }
 }
 
 IslandThreads::~IslandThreads() {

@@ -10,6 +10,7 @@
 #include "tasks/app/commands.h"
 #include "tasks/app/interrupt.h"
 #include "tasks/app/plan_text.h"
+#include "tasks/app/print.h"
 #include "tasks/app/progress.h"
 #include "tasks/app/tick_times.h"
 #include "tasks/scene/builtin_scenes.h"
@@ -114,12 +115,13 @@ std::string planJson(const Scene& scene, const std::vector<PlanLine>& plan, cons
 }
 
 int runPlan(const PlanArguments& arguments) {
-  interruptFlag();
   const Scene scene = readSceneOrBuiltin(arguments.scene);
   const std::vector<PlanLine> plan = describePlan(buildWorld(scene));
   const PlanTimes times = measureStages(scene, arguments.ticks);
-  fmt::print("{}", arguments.json ? planJson(scene, plan, times) : planText(scene, plan, times));
-  return times.interrupted ? kExitInterrupted : kExitOk;
+  print("{}", arguments.json ? planJson(scene, plan, times) : planText(scene, plan, times));
+  if (!times.interrupted) return kExitOk;
+  print(stderr, "pincer: interrupted; the times are those of the ticks that were done.\n");
+  return kExitInterrupted;
 }
 
 }  // namespace

@@ -93,7 +93,7 @@ ServoReport servedFor(double seconds, bool watched) {
   ServoReport report;
   std::thread servo([&] {
     ServoOptions options;
-    options.real_time = true;
+    options.clock = ServoClock::kPaced;
     report = runServo(options, cycle, interrupted);
     done = true;
   });

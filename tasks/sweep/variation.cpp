@@ -22,6 +22,7 @@ namespace {
 std::vector<std::string> partsOf(const std::string& text, char separator) {
   std::vector<std::string> parts;
   std::istringstream stream(text);
+  stream.exceptions(std::ios::badbit);  // else it takes a lack of memory for the end
   for (std::string part; std::getline(stream, part, separator);) parts.push_back(part);
   return parts;
 }
