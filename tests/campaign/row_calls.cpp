@@ -1,0 +1,119 @@
+// Calls of the operating system that fail, allocations that fail. Then: a sentence, nothing half-made, and what was finished is there.
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cmath>
+
+#include "tests/campaign/inputs.h"
+#include "tests/campaign/rows.h"
+#include "tests/campaign/session_checks.h"
+
+namespace pincer::campaign {
+namespace {
+
+struct Work {
+  std::vector<std::string> arguments;
+  bool is_session = false;
+};
+
+std::vector<Work> works(const Ground& ground) {
+  return {{pickupArguments("out"), true},
+          {{"export", pickupSession(ground), "--out", "csv"}},
+          {{"export", studySession(ground), "--bids", "bids"}},
+          {{"sim", "s4_pinch", "--duration", "0.5", "--out", "table.csv"}},
+          {{"mesh", "convert", ground.inputs() / "meshes/star_knob.obj", "out.ply", "--units", "mm"}},
+          {{"run", "manipulation", "--write-study", "study.json"}},
+          {{"sweep", "s4_pinch", "--vary", "duration=0.01,0.02", "--threads", "2"}},
+          {{"plan", "s4_pinch", "--ticks", "100"}},
+          {{"report", pickupSession(ground), "--html", "report.html"}}};
+}
+
+// Half of the draws are sessions: they have the most to lose. A report takes seconds, so it is rare.
+const Work& draw(Case& c, const std::vector<Work>& all) {
+  if (c.chance(0.5)) return all[0];
+  return all[c.chance(0.06) ? all.size() - 1 : static_cast<std::size_t>(1 + c.below(all.size() - 2))];
+}
+
+// The first calls, and then ever fewer: 1 .. most, evenly on a logarithmic scale.
+long drawCall(Case& c, double most) { return static_cast<long>(std::exp(c.random.uniform(0, std::log(most)))); }
+
+// What an undisturbed run writes, by name; made once per command line.
+const std::map<std::string, std::string>& soundOutputs(Case& c, const Work& work) {
+  static std::map<std::vector<std::string>, std::map<std::string, std::string>> kept;
+  const auto found = kept.find(work.arguments);
+  if (found != kept.end()) return found->second;
+  Launch launch = c.pincer(work.arguments);
+  launch.folder = c.ground.out / "undisturbed";
+  fs::remove_all(launch.folder);
+  fs::create_directories(launch.folder);
+  run(launch);
+  auto& outputs = kept[work.arguments];
+  for (const auto& entry : fs::recursive_directory_iterator(launch.folder)) {
+    const std::string extension = entry.path().extension();
+    const bool compared = extension == ".csv" || extension == ".tsv" || extension == ".ply" || extension == ".json";
+    if (compared && !work.is_session) outputs[fs::relative(entry.path(), launch.folder)] = readFile(entry.path());
+  }
+  return outputs;
+}
+
+// A file that stands under its name is whole, whatever happened; after success all stand there.
+void requireWholeOutputs(Case& c, const Work& work, const Ended& ended) {
+  for (const auto& [name, bytes] : soundOutputs(c, work)) {
+    const bool there = fs::exists(c.folder / name);
+    if (!there && ended.exit_code == 0 && ended.signal == 0) c.fault(Verdict::kLost, "said that all was well, but there is no " + name);
+    if (there && readFile(c.folder / name) != bytes) c.fault(Verdict::kWrong, name + " isn't whole");
+  }
+}
+
+void requireSound(Case& c, const Work& work, const Ended& ended, bool lasts) {
+  if (!work.is_session) return requireWholeOutputs(c, work, ended);
+  const SessionState state = stateOf(c.folder / "out/session.db");
+  const bool ended_well = ended.exit_code == 0 && ended.signal == 0;
+  if (ended_well) return requireWhole(c);
+  if (state.readable && state.state == "running" && !lasts) c.fault(Verdict::kWrong, "the session is left \"running\"");
+  completeSession(c);
+}
+
+// The environment variables of fail_malloc.cpp; the only place that knows them.
+void failAllocations(Launch& launch, const fs::path& library, long at, bool forever) {
+  launch.environment.emplace_back("LD_PRELOAD", library);
+  launch.environment.emplace_back("PINCER_FAIL_MALLOC_AT", std::to_string(at));
+  if (forever) launch.environment.emplace_back("PINCER_FAIL_MALLOC_FOREVER", "1");
+}
+
+}  // namespace
+
+void failCall(Case& c) {
+  static const std::vector<std::string> kCalls = {"any", "write", "read", "fsync", "rename", "unlink", "mkdir", "open", "start", "mmap", "ftruncate", "thread", "close"};
+  static const std::vector<int> kErrors = {ENOSPC, EIO, EMFILE, EINTR, EACCES, EROFS, ENOMEM, EDQUOT};
+  const std::vector<Work> all = works(c.ground);
+  const Work& work = draw(c, all);
+  soundOutputs(c, work);
+  const std::string call = c.anyOf(kCalls);
+  const int error = call == "write" && c.chance(0.2) ? 0 : c.anyOf(kErrors);
+  const bool forever = error != EINTR && c.chance(0.4);
+  Launch launch = c.pincer(work.arguments);
+  launch.environment.emplace_back("LD_PRELOAD", (c.ground.build / "failing_calls.so").string());
+  launch.environment.emplace_back("CAMPAIGN_FAIL_CALL", call);
+  launch.environment.emplace_back("CAMPAIGN_FAIL_AT", std::to_string(drawCall(c, call == "any" ? 600 : call == "write" || call == "read" ? 200 : 12)));
+  launch.environment.emplace_back("CAMPAIGN_FAIL_ERROR", std::to_string(error));
+  launch.environment.emplace_back("CAMPAIGN_FAIL_LOG", (c.folder.parent_path() / "failed").string());
+  if (forever) launch.environment.emplace_back("CAMPAIGN_FAIL_FOREVER", "1");
+  const Ended ended = c.run(launch);
+  requireSound(c, work, ended, forever);
+}
+
+void failAllocation(Case& c) {
+  const fs::path library = c.ground.build / "fail_malloc.so";
+  if (!fs::exists(library)) return c.skip("there is no fail_malloc.so in the build directory");
+  const std::vector<Work> all = works(c.ground);
+  const Work& work = draw(c, all);
+  soundOutputs(c, work);
+  const bool forever = c.chance(0.3);
+  Launch launch = c.pincer(work.arguments);
+  failAllocations(launch, library, drawCall(c, 100'000), forever);
+  const Ended ended = c.run(launch);
+  requireSound(c, work, ended, forever);
+}
+
+}  // namespace pincer::campaign
