@@ -87,8 +87,8 @@ std::string soundValue(const Ground& ground, const Option& wanted) {
 
 // Makes runs short: of whatever a command has of these.
 const std::vector<std::pair<std::string, std::string>> kShort = {
-    {"--duration", "0.05"}, {"--ticks", "100"},     {"--seeds", "1"},       {"--repetitions", "1"},         {"--participants", "1"},
-    {"--no-report", ""},    {"--experiments", "1"}, {"--list", ""}, {"--study-experiments", "0"}, {"--control-experiments", "1"}};
+    {"--duration", "0.05"}, {"--ticks", "100"},     {"--seeds", "1"}, {"--repetitions", "1"},       {"--participants", "1"},
+    {"--no-report", ""},    {"--experiments", "1"}, {"--list", ""},   {"--study-experiments", "0"}, {"--control-experiments", "1"}};
 
 }  // namespace
 

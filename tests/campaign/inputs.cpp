@@ -22,7 +22,7 @@ void put(const fs::path& file, const std::string& bytes) {
   std::ofstream(file, std::ios::binary) << bytes;
 }
 
-Ended make(const Ground& ground, std::vector<std::string> arguments, std::optional<Blow> blow = {}) {
+Ended make(const Ground& ground, std::vector<std::string> arguments, std::optional<Blow> blow = {}, const std::set<int>& codes = {0}) {
   Launch launch;
   launch.program = ground.pincer;
   launch.arguments = std::move(arguments);
@@ -31,7 +31,7 @@ Ended make(const Ground& ground, std::vector<std::string> arguments, std::option
   launch.limit = 120;
   launch.blow = blow;
   Ended ended = run(launch);
-  if (ended.exit_code == 0 && (ended.signal == 0 || blow)) return ended;
+  if (codes.contains(ended.exit_code) && (ended.signal == 0 || blow)) return ended;
   throw std::runtime_error(shellText(launch) + " failed, though nothing was done to it: " + ended.error);
 }
 
@@ -122,16 +122,33 @@ void makeMeshes(const Ground& ground) {
   fs::copy_file(ground.source / "tasks/scenes/files/star_knob.obj", folder / "star_knob.obj");
 }
 
-void makeSessions(const Ground& ground) {
-  make(ground, pickupArguments("pickup"));
-  make(ground, {"export", "pickup/session.db", "--trial", "0", "--every", "10", "--out", "recording"});
-  make(ground, studyArguments("study"));
+// As people's: from devices, with every input kept. A second of it; then the recorded arms have no samples any more, and the trial ends.
+void makePeoplesSession(const Ground& ground) {
+  const std::string recording = readFile(recordingFile(ground));
+  std::size_t end = 0;
+  for (int rows = 0; rows < 12; ++rows) end = recording.find('\n', end) + 1;
+  put(ground.inputs() / "short.csv", recording.substr(0, end));
+  make(ground, {"run", "sphere-pickup", "--devices", "replay",     "--recording", "short.csv",   "--yes", "--watchdog",
+                "100", "--repetitions", "1",         "--friction", "0.9",         "--condition", "force", "--sample-rate",
+                "10",  "--no-report",   "--out",     "people"},
+       {}, {0, 1});
+}
+
+void makeKilledSession(const Ground& ground) {
   for (double after = 0.4; after > 0.01; after *= 0.7) {
     make(ground, pickupArguments("killed"), Blow{SIGKILL, after});
     if (fs::exists(ground.inputs() / "killed/session.db-wal")) return;
     fs::remove_all(ground.inputs() / "killed");
   }
   throw std::runtime_error("no session could be killed before it was complete");
+}
+
+void makeSessions(const Ground& ground) {
+  make(ground, pickupArguments("pickup"));
+  make(ground, {"export", "pickup/session.db", "--trial", "0", "--out", "recording"});
+  make(ground, studyArguments("study"));
+  makePeoplesSession(ground);
+  makeKilledSession(ground);
 }
 
 std::vector<fs::path> filesOf(const fs::path& folder, const std::string& extension) {
@@ -151,9 +168,11 @@ void makeInputs(const Ground& ground) {
   fs::copy(ground.source / "tasks/scenes", ground.inputs() / "scenes", fs::copy_options::recursive);
   makeTrajectory(ground);
   makeMeshes(ground);
-  for (const char* study : kStudies) put(ground.inputs() / "studies" / (study + std::string(".json")), make(ground, {"run", study, "--print-study"}).out);
+  for (const char* study : kStudies)
+    put(ground.inputs() / "studies" / (study + std::string(".json")), make(ground, {"run", study, "--print-study"}).out);
   make(ground, {"run", "manipulation", "--write-study", "studies/manipulation.json"});
-  put(calibrationFile(ground), "{\n  \"device\": \"ARM1\",\n  \"values\": {\"base_x\": 0.012, \"base_y\": 0, \"base_z\": 0, \"base_turn\": 0.1}\n}\n");
+  put(calibrationFile(ground),
+      "{\n  \"device\": \"ARM1\",\n  \"values\": {\"base_x\": 0.012, \"base_y\": 0, \"base_z\": 0, \"base_turn\": 0.1}\n}\n");
   makeSessions(ground);
 }
 
@@ -164,13 +183,29 @@ fs::path trajectoryScene(const Ground& ground) { return ground.inputs() / "traje
 fs::path trajectoryTable(const Ground& ground) { return ground.inputs() / "trajectory/trajectory.csv"; }
 fs::path pickupSession(const Ground& ground) { return ground.inputs() / "pickup/session.db"; }
 fs::path killedSession(const Ground& ground) { return ground.inputs() / "killed/session.db"; }
+fs::path peoplesSession(const Ground& ground) { return ground.inputs() / "people/session.db"; }
 fs::path studySession(const Ground& ground) { return ground.inputs() / "study/session.db"; }
 fs::path recordingFile(const Ground& ground) { return ground.inputs() / "recording/sample.csv"; }
 fs::path calibrationFile(const Ground& ground) { return ground.inputs() / "calibration.json"; }
 
 std::vector<std::string> pickupArguments(const std::string& out) {
-  return {"run",    "sphere-pickup", "--repetitions", "3", "--friction", "0.9",         "--friction", "0.6", "--condition",
-          "force", "--sample-rate", "10",            "--seed", "3",  "--no-report", "--out",      out};
+  return {"run",
+          "sphere-pickup",
+          "--repetitions",
+          "3",
+          "--friction",
+          "0.9",
+          "--friction",
+          "0.6",
+          "--condition",
+          "force",
+          "--sample-rate",
+          "10",
+          "--seed",
+          "3",
+          "--no-report",
+          "--out",
+          out};
 }
 
 std::vector<std::string> studyArguments(const std::string& out) {

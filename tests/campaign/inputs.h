@@ -17,16 +17,17 @@ std::vector<fs::path> meshFiles(const Ground& ground);   // of every format, tex
 
 fs::path trajectoryScene(const Ground& ground);  // its finger follows trajectory.csv, beside it
 fs::path trajectoryTable(const Ground& ground);
-fs::path pickupSession(const Ground& ground);  // complete, six trials
-fs::path killedSession(const Ground& ground);  // the same, killed after some of them
-fs::path studySession(const Ground& ground);   // complete, of one finger, with some hundred responses
-fs::path recordingFile(const Ground& ground);  // samples of a trial, as export writes them
+fs::path pickupSession(const Ground& ground);   // complete, six trials
+fs::path killedSession(const Ground& ground);   // the same, killed after some of them
+fs::path peoplesSession(const Ground& ground);  // complete, one trial, with the inputs of every tick
+fs::path studySession(const Ground& ground);    // complete, of one finger, with some hundred responses
+fs::path recordingFile(const Ground& ground);   // samples of a trial, as export writes them
 fs::path calibrationFile(const Ground& ground);
 
 // Of the session in pickupSession, for a new folder `out`.
 std::vector<std::string> pickupArguments(const std::string& out);
 std::vector<std::string> studyArguments(const std::string& out);  // of the session in studySession
-std::vector<std::string> resumedPickup(const std::string& out);  // to go on with it
+std::vector<std::string> resumedPickup(const std::string& out);   // to go on with it
 inline constexpr int kPickupTrials = 6;
 
 }  // namespace pincer::campaign

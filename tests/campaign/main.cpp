@@ -39,14 +39,14 @@ std::string printable(std::string text) {
 }
 
 void tell(const Ground& ground, const Fault& fault) {
-  fmt::print(stderr, "  {} {}: {}\n    {}\n    again: {}\n", fault.row, kVerdictNames[static_cast<std::size_t>(fault.verdict)], printable(fault.why),
-             printable(fault.command), repeatCommand(ground, fault));
+  fmt::print(stderr, "  {} {}: {}\n    {}\n    again: {}\n", fault.row, kVerdictNames[static_cast<std::size_t>(fault.verdict)],
+             printable(fault.why), printable(fault.command), repeatCommand(ground, fault));
 }
 
 void keep(const Ground& ground, const Fault& fault) {
   std::ofstream(ground.out / "faults.txt", std::ios::app)
-      << fmt::format("{}\t{}\t{}\t{}\t{}\n", fault.row, fault.number, kVerdictNames[static_cast<std::size_t>(fault.verdict)], printable(fault.why),
-                     printable(fault.command));
+      << fmt::format("{}\t{}\t{}\t{}\t{}\n", fault.row, fault.number, kVerdictNames[static_cast<std::size_t>(fault.verdict)],
+                     printable(fault.why), printable(fault.command));
 }
 
 void runCase(const Row& row, const Ground& ground, int number, Tally& tally) {
@@ -69,25 +69,26 @@ Tally runRow(const Row& row, const Ground& ground, const Asked& asked) {
       if (told < kShown) tell(ground, tally.faults[told]);
     }
   }
-  if (tally.faults.size() > kShown) fmt::print(stderr, "  ... and {} more: {}\n", tally.faults.size() - kShown, (ground.out / "faults.txt").string());
+  if (tally.faults.size() > kShown)
+    fmt::print(stderr, "  ... and {} more: {}\n", tally.faults.size() - kShown, (ground.out / "faults.txt").string());
   return tally;
 }
 
 std::string line(const Row& row, const Tally& t) {
   const auto of = [&](Verdict v) { return t.counts[static_cast<std::size_t>(v)]; };
-  return fmt::format("{:<20} {:>8} {:>8} {:>8} {:>7} {:>7} {:>5} {:>5} {:>5} {:>7.1f}  {}", row.name, t.runs, of(Verdict::kFine), of(Verdict::kRefused),
-                     of(Verdict::kStopped), of(Verdict::kCrashed), of(Verdict::kHung), of(Verdict::kLost), of(Verdict::kWrong), t.seconds,
-                     t.faults.empty() ? "ok" : "FAIL");
+  return fmt::format("{:<20} {:>8} {:>8} {:>8} {:>7} {:>7} {:>5} {:>5} {:>5} {:>7.1f}  {}", row.name, t.runs, of(Verdict::kFine),
+                     of(Verdict::kRefused), of(Verdict::kStopped), of(Verdict::kCrashed), of(Verdict::kHung), of(Verdict::kLost),
+                     of(Verdict::kWrong), t.seconds, t.faults.empty() ? "ok" : "FAIL");
 }
 
-const std::string kHead = fmt::format("{:<20} {:>8} {:>8} {:>8} {:>7} {:>7} {:>5} {:>5} {:>5} {:>7}", "row", "runs", "fine", "refused", "stopped", "crashed",
-                                      "hung", "lost", "wrong", "s");
+const std::string kHead = fmt::format("{:<20} {:>8} {:>8} {:>8} {:>7} {:>7} {:>5} {:>5} {:>5} {:>7}", "row", "runs", "fine", "refused",
+                                      "stopped", "crashed", "hung", "lost", "wrong", "s");
 
 std::string record(const Row& row, const Tally& t) {
   std::string counts;
   for (std::size_t i = 0; i < t.counts.size(); ++i) counts += fmt::format(", \"{}\": {}", kVerdictNames[i], t.counts[i]);
-  return fmt::format("  {{\"name\": \"{}\", \"what\": \"{}\", \"runs\": {}{}, \"seconds\": {:.1f}, \"ok\": {}}}", row.name, row.what, t.runs, counts, t.seconds,
-                     t.faults.empty());
+  return fmt::format("  {{\"name\": \"{}\", \"what\": \"{}\", \"runs\": {}{}, \"seconds\": {:.1f}, \"ok\": {}}}", row.name, row.what,
+                     t.runs, counts, t.seconds, t.faults.empty());
 }
 
 int runRows(Ground ground, const Asked& asked) {
@@ -102,7 +103,8 @@ int runRows(Ground ground, const Asked& asked) {
   Row sum{"all", "", 0, nullptr};
   Tally total;
   for (const auto& [row, tally] : done) {
-    table += asked.json ? fmt::format("{}{}", table.empty() ? "" : ",\n", record(*row, tally)) : fmt::format("{}  {}\n", line(*row, tally), row->what);
+    table += asked.json ? fmt::format("{}{}", table.empty() ? "" : ",\n", record(*row, tally))
+                        : fmt::format("{}  {}\n", line(*row, tally), row->what);
     if (!asked.json && !tally.skipped.empty()) table += fmt::format("{:<20} {}\n", "", tally.skipped);
     for (std::size_t i = 0; i < total.counts.size(); ++i) total.counts[i] += tally.counts[i];
     total.runs += tally.runs, total.seconds += tally.seconds;
@@ -133,7 +135,8 @@ void requireKnown(const std::vector<std::string>& only) {
 
 int main(int argc, char** argv) {
   using namespace pincer::campaign;
-  CLI::App app("Does to pincer what users, disks and other programs' files do at their worst, and counts what came of it.", "tests/campaign/run");
+  CLI::App app("Does to pincer what users, disks and other programs' files do at their worst, and counts what came of it.",
+               "tests/campaign/run");
   Ground ground;
   Asked asked;
   bool list = false;
@@ -141,7 +144,9 @@ int main(int argc, char** argv) {
   ground.source = PINCER_SOURCE_DIR;
   ground.pincer = ground.build / "pincer";
   ground.out = ground.build / "campaign-out";
-  app.add_option("--times", ground.times, "So many times the usual number of cases")->check(CLI::Range(0.001, 1000.0))->capture_default_str();
+  app.add_option("--times", ground.times, "So many times the usual number of cases")
+      ->check(CLI::Range(0.001, 1000.0))
+      ->capture_default_str();
   app.add_option("--only", asked.only, "Only these rows");
   app.add_option("--case", asked.one_case, "Only this case of the rows")->check(CLI::NonNegativeNumber);
   app.add_option("--seed", ground.seed, "Of all that is drawn")->capture_default_str();
@@ -149,8 +154,9 @@ int main(int argc, char** argv) {
   app.add_option("--out", ground.out, "Where cases work, and where those that failed stay");
   app.add_flag("--json", asked.json, "The table as JSON");
   app.add_flag("--list", list, "Only the rows' names and what they do");
-  app.footer("\nExit code 1 if a row fails. What failed stays in --out, with the command that repeats it.\n\nExamples:\n  tests/campaign/run\n"
-             "  tests/campaign/run --only scenes kills --times 10\n");
+  app.footer(
+      "\nExit code 1 if a row fails. What failed stays in --out, with the command that repeats it.\n\nExamples:\n  tests/campaign/run\n"
+      "  tests/campaign/run --only scenes kills --times 10\n");
   try {
     app.parse(argc, argv);
     requireKnown(asked.only);

@@ -1,20 +1,23 @@
 #include "tests/campaign/mutation.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 
 namespace pincer::campaign {
 namespace {
 
 using Tokens = std::vector<std::string>;
-constexpr std::size_t kHugeKey = 5'000'000;   // [bytes] of a name that somebody may compare with all others
-constexpr std::size_t kDeep = 200'000;        // brackets: more than a stack of 8 MB holds, if each costs a call
+constexpr std::size_t kHugeKey = 5'000'000;  // [bytes] of a name that somebody may compare with all others
+constexpr std::size_t kDeep = 200'000;       // brackets: more than a stack of 8 MB holds, if each costs a call
 
 std::size_t below(RandomNumbers& random, std::size_t n) { return n == 0 ? 0 : static_cast<std::size_t>(random.bits() % n); }
 
 const std::string& anyOf(RandomNumbers& random, const Tokens& choices) { return choices[below(random, choices.size())]; }
 
-bool isNumber(const std::string& token) { return !token.empty() && (std::isdigit(static_cast<unsigned char>(token.back())) != 0) && token[0] != '"'; }
+bool isNumber(const std::string& token) {
+  return !token.empty() && (std::isdigit(static_cast<unsigned char>(token.back())) != 0) && token[0] != '"';
+}
 bool isBlank(const std::string& token) { return token.find_first_not_of(" \t\r\n") == token.npos; }
 bool isString(const std::string& token) { return token.size() > 1 && token[0] == '"'; }
 
@@ -55,6 +58,12 @@ void replaceNumber(RandomNumbers& random, Tokens& tokens) {
   if (at < tokens.size()) tokens[at] = anyOf(random, extremeNumbers());
 }
 
+// Another number of the same text: what is read is sound but for its sense.
+void copyNumber(RandomNumbers& random, Tokens& tokens) {
+  const std::size_t from = placeOf(random, tokens, isNumber), to = placeOf(random, tokens, isNumber);
+  if (from < tokens.size()) tokens[to] = tokens[from];
+}
+
 void exchangeTokens(RandomNumbers& random, Tokens& tokens) {
   const auto solid = [](const std::string& token) { return !isBlank(token); };
   const std::size_t a = placeOf(random, tokens, solid), b = placeOf(random, tokens, solid);
@@ -72,9 +81,28 @@ std::string lineHarmed(RandomNumbers& random, const std::string& text) {
 
 // Another type, another name, another length: what stands in place of a string or a number.
 std::string strangeValue(RandomNumbers& random) {
-  static const Tokens kStrange = {"null", "true", "[]", "{}", "\"\"", "\"text\"", "[[[[1]]]]", "{\"a\": {\"b\": null}}", "[1, 2]", "\"\\u0000\"",
-                                  "\"\\ud800\"", "\"a\\u001b[31mred\"", "\"../../../etc/passwd\"", "\"/dev/null\"", "nan", "Infinity", "'x'",
-                                  "\"$(touch pwned)\"", "\"=1+1\"", "\"<script>alert(1)</script>\"", "/* unclosed", "// to the end"};
+  static const Tokens kStrange = {"null",
+                                  "true",
+                                  "[]",
+                                  "{}",
+                                  "\"\"",
+                                  "\"text\"",
+                                  "[[[[1]]]]",
+                                  "{\"a\": {\"b\": null}}",
+                                  "[1, 2]",
+                                  "\"\\u0000\"",
+                                  "\"\\ud800\"",
+                                  "\"a\\u001b[31mred\"",
+                                  "\"../../../etc/passwd\"",
+                                  "\"/dev/null\"",
+                                  "nan",
+                                  "Infinity",
+                                  "'x'",
+                                  "\"$(touch pwned)\"",
+                                  "\"=1+1\"",
+                                  "\"<script>alert(1)</script>\"",
+                                  "/* unclosed",
+                                  "// to the end"};
   return anyOf(random, kStrange);
 }
 
@@ -118,11 +146,45 @@ void harmJsonToken(RandomNumbers& random, Tokens& tokens) {
 }  // namespace
 
 const Tokens& extremeNumbers() {
-  static const Tokens kExtremes = {"0",          "-0",       "-1",         "1",     "1e300",  "-1e300", "1e308", "1e309", "-1e309",
-                                   "1e-300",     "4.9e-324", "1e-12",      "1e6",   "1e12",   "1e18",   "0.1",   "255",   "256",
-                                   "65536",      "2147483647", "2147483648", "-2147483649", "4294967296", "9007199254740993",
-                                   "9223372036854775807", "9223372036854775808", "-9223372036854775808", "18446744073709551616",
-                                   "99999999999999999999999999", "nan", "inf", "-inf", "0x10", "1.", ".5", "1e", "--1", "1,5", "1e+999999999"};
+  static const Tokens kExtremes = {"0",
+                                   "-0",
+                                   "-1",
+                                   "1",
+                                   "1e300",
+                                   "-1e300",
+                                   "1e308",
+                                   "1e309",
+                                   "-1e309",
+                                   "1e-300",
+                                   "4.9e-324",
+                                   "1e-12",
+                                   "1e6",
+                                   "1e12",
+                                   "1e18",
+                                   "0.1",
+                                   "255",
+                                   "256",
+                                   "65536",
+                                   "2147483647",
+                                   "2147483648",
+                                   "-2147483649",
+                                   "4294967296",
+                                   "9007199254740993",
+                                   "9223372036854775807",
+                                   "9223372036854775808",
+                                   "-9223372036854775808",
+                                   "18446744073709551616",
+                                   "99999999999999999999999999",
+                                   "nan",
+                                   "inf",
+                                   "-inf",
+                                   "0x10",
+                                   "1.",
+                                   ".5",
+                                   "1e",
+                                   "--1",
+                                   "1,5",
+                                   "1e+999999999"};
   return kExtremes;
 }
 
@@ -159,7 +221,9 @@ std::string mutatedText(RandomNumbers& random, const std::string& text) {
   if (text.empty() || random.below(4) == 0) return mutatedBytes(random, text);
   if (random.below(4) == 0) return lineHarmed(random, text);
   Tokens tokens = tokensOf(text);
-  for (int n = 1 + random.below(3); n > 0; --n) random.below(2) == 0 ? replaceNumber(random, tokens) : exchangeTokens(random, tokens);
+  constexpr std::array kHarms = {copyNumber, copyNumber, replaceNumber, exchangeTokens};
+  const auto harm = kHarms[static_cast<std::size_t>(random.below(4))];
+  for (int n = 1 + random.below(3); n > 0; --n) harm(random, tokens);
   return joined(tokens);
 }
 

@@ -116,7 +116,8 @@ bool awaitEnd(int handle, double until) {
 }
 
 std::string quoted(const std::string& text) {
-  const bool plain = !text.empty() && text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./,:") == text.npos;
+  const bool plain =
+      !text.empty() && text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./,:") == text.npos;
   if (plain) return text;
   std::string out = "$'";
   for (const char c : text.substr(0, 300)) {
@@ -147,7 +148,10 @@ RunningProgram::RunningProgram(const Launch& launch) : launch_(launch), began_(n
 }
 
 RunningProgram::RunningProgram(RunningProgram&& other) noexcept
-    : launch_(std::move(other.launch_)), process_(std::exchange(other.process_, -1)), handle_(std::exchange(other.handle_, -1)), began_(other.began_) {}
+    : launch_(std::move(other.launch_)),
+      process_(std::exchange(other.process_, -1)),
+      handle_(std::exchange(other.handle_, -1)),
+      began_(other.began_) {}
 
 RunningProgram::~RunningProgram() {
   if (process_ < 0) return;

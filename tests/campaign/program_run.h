@@ -20,13 +20,13 @@ struct Blow {
 
 struct Launch {
   std::string program;
-  std::vector<std::string> arguments;                                            // without the program's name
-  std::filesystem::path folder;                                                  // where it runs
-  std::filesystem::path log;                                                     // folder for what it says: files stdout, stderr
+  std::vector<std::string> arguments;                                           // without the program's name
+  std::filesystem::path folder;                                                 // where it runs
+  std::filesystem::path log;                                                    // folder for what it says: files stdout, stderr
   std::vector<std::pair<std::string, std::optional<std::string>>> environment;  // set, or unset where there is no value
   Stream in = Stream::kNothing, out = Stream::kKept, error = Stream::kKept;
   double limit = 10;              // [s]
-  double grace = 5;               // [s]
+  double grace = 15;              // [s]; a busy machine answers late
   int stop_signal = 15;           // SIGTERM
   std::optional<Blow> blow = {};  // what hits it while it runs
   long most_memory = 4'000;       // address space [MB]; 0: no limit
@@ -41,7 +41,7 @@ struct Ended {
   bool struck = false;   // was still there for the blow
   bool hung = false;
   double seconds = 0;
-  long peak_memory = 0;   // resident [kB]
+  long peak_memory = 0;    // resident [kB]
   std::string out, error;  // at most the first kMostText bytes
 };
 inline constexpr std::size_t kMostText = 1 << 20;

@@ -42,16 +42,16 @@ struct Ground {
   fs::path pincer, build, source, out;
   std::uint64_t seed = 1;
   double times = 1;
-  bool has_devices = false;  // real ones are attached: nothing may move them
+  bool has_devices = false;                           // real ones are attached: nothing may move them
   fs::path inputs() const { return out / "inputs"; }  // made once, never changed by a case
 };
 
 struct Expect {
-  std::string name = {};                // that a refusal must mention, for example the file's
+  std::string name = {};  // that a refusal must mention, for example the file's
   std::set<int> codes = {0, 1, 2, 3, 4, 5};
-  std::vector<int> signals = {};        // that may end it besides the one that asked it to stop
-  bool may_be_silent = false;           // standard error couldn't be written
-  long most_memory = 1'500;             // resident [MB]
+  std::vector<int> signals = {};  // that may end it besides the one that asked it to stop
+  bool may_be_silent = false;     // standard error couldn't be written
+  long most_memory = 1'500;       // resident [MB]
 };
 
 class Case {
@@ -98,9 +98,10 @@ class Case {
 
 struct Row {
   std::string name, what;
-  int usual;                                // cases at --times 1
+  int usual;  // cases at --times 1
   void (*act)(Case&);
-  int (*all)(const Ground&) = nullptr;      // how many there are, if they can be listed: then at most these at --times 1, drawn without repetition
+  int (*all)(const Ground&) =
+      nullptr;  // how many there are, if they can be listed: then at most these at --times 1, drawn without repetition
 };
 
 // In the order in which they run.

@@ -74,17 +74,25 @@ void requireSound(Case& c, const Work& work, const Ended& ended, bool lasts) {
   completeSession(c);
 }
 
-// The environment variables of fail_malloc.cpp; the only place that knows them.
+// tests/campaign/fail_malloc.cpp; the only place that knows its variables.
 void failAllocations(Launch& launch, const fs::path& library, long at, bool forever) {
   launch.environment.emplace_back("LD_PRELOAD", library);
-  launch.environment.emplace_back("PINCER_FAIL_MALLOC_AT", std::to_string(at));
-  if (forever) launch.environment.emplace_back("PINCER_FAIL_MALLOC_FOREVER", "1");
+  launch.environment.emplace_back("PINCER_FAIL_MALLOC", std::to_string(at) + (forever ? "+" : ""));
+}
+
+fs::path allocationLibrary(const Ground& ground) {
+  for (const char* name :
+       {"fail_malloc.so", "libfail_malloc.so", "tests/fail_malloc.so", "tests/libfail_malloc.so", "tests/campaign/libfail_malloc.so"}) {
+    if (fs::exists(ground.build / name)) return ground.build / name;
+  }
+  return {};
 }
 
 }  // namespace
 
 void failCall(Case& c) {
-  static const std::vector<std::string> kCalls = {"any", "write", "read", "fsync", "rename", "unlink", "mkdir", "open", "start", "mmap", "ftruncate", "thread", "close"};
+  static const std::vector<std::string> kCalls = {"any",  "write", "read", "fsync",     "rename", "unlink", "mkdir",
+                                                  "open", "start", "mmap", "ftruncate", "thread", "close"};
   static const std::vector<int> kErrors = {ENOSPC, EIO, EMFILE, EINTR, EACCES, EROFS, ENOMEM, EDQUOT};
   const std::vector<Work> all = works(c.ground);
   const Work& work = draw(c, all);
@@ -95,7 +103,9 @@ void failCall(Case& c) {
   Launch launch = c.pincer(work.arguments);
   launch.environment.emplace_back("LD_PRELOAD", (c.ground.build / "failing_calls.so").string());
   launch.environment.emplace_back("CAMPAIGN_FAIL_CALL", call);
-  launch.environment.emplace_back("CAMPAIGN_FAIL_AT", std::to_string(drawCall(c, call == "any" ? 600 : call == "write" || call == "read" ? 200 : 12)));
+  launch.environment.emplace_back("CAMPAIGN_FAIL_AT", std::to_string(drawCall(c, call == "any"                       ? 600
+                                                                                 : call == "write" || call == "read" ? 200
+                                                                                                                     : 12)));
   launch.environment.emplace_back("CAMPAIGN_FAIL_ERROR", std::to_string(error));
   launch.environment.emplace_back("CAMPAIGN_FAIL_LOG", (c.folder.parent_path() / "failed").string());
   if (forever) launch.environment.emplace_back("CAMPAIGN_FAIL_FOREVER", "1");
@@ -104,8 +114,8 @@ void failCall(Case& c) {
 }
 
 void failAllocation(Case& c) {
-  const fs::path library = c.ground.build / "fail_malloc.so";
-  if (!fs::exists(library)) return c.skip("there is no fail_malloc.so in the build directory");
+  const fs::path library = allocationLibrary(c.ground);
+  if (library.empty()) return c.skip("there is no fail_malloc.so in the build directory");
   const std::vector<Work> all = works(c.ground);
   const Work& work = draw(c, all);
   soundOutputs(c, work);

@@ -1,6 +1,5 @@
 // Ends that nobody chose: kill -9, two programs on one session, signals. Finished trials must be there, each once, as if nothing had been.
 #include <fmt/format.h>
-
 #include <unistd.h>
 
 #include <csignal>
@@ -52,7 +51,9 @@ void runTwoPrograms(Case& c) {
   c.judge(first, one, {.name = "out"});
   c.count(Verdict::kFine);
   const int wins = (one.exit_code == 0 && one.signal == 0) + (second.exit_code == 0 && second.signal == 0);
-  if (wins != 1) c.fault(Verdict::kWrong, fmt::format("{} of two programs ran the session: exit codes {} and {}", wins, one.exit_code, second.exit_code));
+  if (wins != 1)
+    c.fault(Verdict::kWrong,
+            fmt::format("{} of two programs ran the session: exit codes {} and {}", wins, one.exit_code, second.exit_code));
   requireWhole(c);
 }
 

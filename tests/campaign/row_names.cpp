@@ -12,12 +12,42 @@ namespace pincer::campaign {
 namespace {
 
 const std::vector<std::string>& hostileTexts() {
-  static const std::vector<std::string> kTexts = {
-      "\"quoted\"",  "it's",          "$(touch pwned)", "`touch pwned`", "; touch pwned",     "| touch pwned",        "<script>alert(1)</script>",
-      "<b>bold</b>", "&amp;",         "=1+1",           "+1+1",          "-1+1",              "@SUM(A1)",             "=HYPERLINK(\"http://x\")",
-      "a,b;c",       "a\tb",          "a\nb",           "a\r\nb",        "\x1b[31mred\x1b[0m", "\x07",                "\xc2\x9b" "31m",
-      "%s%n",        "{}",            "{0}",            "\\",            "\\n",               "'; DROP TABLE trial;--", "../../up",
-      "a b",         "\xe2\x80\xae" "txt", "\xff\xfe",  "set output",    "@{!touch pwned}",   "\" ; system(\"touch pwned\") #"};
+  static const std::vector<std::string> kTexts = {"\"quoted\"",
+                                                  "it's",
+                                                  "$(touch pwned)",
+                                                  "`touch pwned`",
+                                                  "; touch pwned",
+                                                  "| touch pwned",
+                                                  "<script>alert(1)</script>",
+                                                  "<b>bold</b>",
+                                                  "&amp;",
+                                                  "=1+1",
+                                                  "+1+1",
+                                                  "-1+1",
+                                                  "@SUM(A1)",
+                                                  "=HYPERLINK(\"http://x\")",
+                                                  "a,b;c",
+                                                  "a\tb",
+                                                  "a\nb",
+                                                  "a\r\nb",
+                                                  "\x1b[31mred\x1b[0m",
+                                                  "\x07",
+                                                  "\xc2\x9b"
+                                                  "31m",
+                                                  "%s%n",
+                                                  "{}",
+                                                  "{0}",
+                                                  "\\",
+                                                  "\\n",
+                                                  "'; DROP TABLE trial;--",
+                                                  "../../up",
+                                                  "a b",
+                                                  "\xe2\x80\xae"
+                                                  "txt",
+                                                  "\xff\xfe",
+                                                  "set output",
+                                                  "@{!touch pwned}",
+                                                  "\" ; system(\"touch pwned\") #"};
   return kTexts;
 }
 
@@ -57,15 +87,25 @@ void requirePages(Case& c, const std::string& text) {
     const std::string extension = entry.path().extension();
     if (extension != ".html" && extension != ".svg") continue;
     const std::string page = readFile(entry.path());
-    if (text.find('<') != text.npos && page.find(text) != page.npos) c.fault(Verdict::kWrong, entry.path().filename().string() + " holds a name as markup");
+    if (text.find('<') != text.npos && page.find(text) != page.npos)
+      c.fault(Verdict::kWrong, entry.path().filename().string() + " holds a name as markup");
   }
 }
 
 // Texts of a session that a person or a device gave, or somebody who edited it.
 void sessionWith(Case& c, const std::string& text) {
-  static const std::vector<Column> kTexts = {{"session", "devices_json"}, {"session", "version"}, {"session", "build"},  {"session", "started_utc"},
-                                             {"session", "state"},        {"trial", "outcome"},   {"trial", "condition"}, {"trial", "cause"},
-                                             {"event", "kind"},           {"event", "detail"},    {"reading", "kind"},    {"reading", "decision"},
+  static const std::vector<Column> kTexts = {{"session", "devices_json"},
+                                             {"session", "version"},
+                                             {"session", "build"},
+                                             {"session", "started_utc"},
+                                             {"session", "state"},
+                                             {"trial", "outcome"},
+                                             {"trial", "condition"},
+                                             {"trial", "cause"},
+                                             {"event", "kind"},
+                                             {"event", "detail"},
+                                             {"reading", "kind"},
+                                             {"reading", "decision"},
                                              {"session", "participants_hash"}};
   fs::copy_file(pickupSession(c.ground), c.folder / "session.db");
   const int harmed = 1 + c.below(2);
@@ -95,7 +135,9 @@ void fileWith(Case& c, std::string text) {
   fs::copy_file(mesh ? c.ground.inputs() / "meshes/cube.obj" : c.ground.inputs() / "scenes/s4_pinch.json", c.folder / file);
   const std::string in = "./" + file;
   if (way == 0) c.run(c.pincer({"mesh", "convert", in, "./" + text + ".stl", "--units", "cm", "--repair"}));
-  if (way == 1) c.run(c.pincer({"run", "sphere-pickup", "--object", in, "--size", "0.04", "--repetitions", "1", "--friction", "0.9", "--condition", "force", "--sample-rate", "10", "--out", "./" + text}));
+  if (way == 1)
+    c.run(c.pincer({"run", "sphere-pickup", "--object", in, "--size", "0.04", "--repetitions", "1", "--friction", "0.9", "--condition",
+                    "force", "--sample-rate", "10", "--out", "./" + text}));
   if (way == 2) c.run(c.pincer({"mesh", "info", in, "--units", "m"}));
   if (way == 3) c.run(c.pincer({"sim", in, "--duration", "0.05", "--out", "./" + text + ".csv"}));
   if (way == 4) c.run(c.pincer({"sweep", in, "--vary", "duration=0.01,0.02", "--out", "./" + text}));

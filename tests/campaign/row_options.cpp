@@ -1,6 +1,7 @@
 // Command lines: every command with every option, its value absurd, missing, given twice; words that no command knows.
-#include <algorithm>
 #include <fmt/format.h>
+
+#include <algorithm>
 
 #include "tests/campaign/command_tree.h"
 #include "tests/campaign/mutation.h"
@@ -9,11 +10,48 @@
 namespace pincer::campaign {
 namespace {
 
+// What no option takes that wants a number.
+const std::set<std::string>& noNumbers() {
+  static const std::set<std::string> kNone = {" ",    "abc",  "%s%n%n", "NaN", "nan", "inf", "-inf",  "null",   "{}",
+                                              "=1+1", "a\nb", ".",      "/",   "1e",  "--1", "1e309", "-1e309", "1e999"};
+  return kNone;
+}
+
 const std::vector<std::string>& absurdValues() {
   static const std::vector<std::string> kValues = [] {
-    std::vector<std::string> values = {"",     " ",         "abc", "--",   "-",     "-x",   "%s%n%n",    "\x1b[31mred\x07", "\xff\xfe", "1,2",      "1 2",
-                                       "1e12", "1e999",     "NaN", "null", "true",  "{}",   "[1]",       "=1+1",            "'\"`$(x)", "a\nb",     "no/such/place",
-                                       ".",    "/dev/null", "/",   "1:2:3", "1:0:0", "x=y=z", "a=1:2:3:4", "a=1:2:1e9",       "../..",    "/dev/full", "\xe2\x80\xae"};
+    std::vector<std::string> values = {"",
+                                       " ",
+                                       "abc",
+                                       "--",
+                                       "-",
+                                       "-x",
+                                       "%s%n%n",
+                                       "\x1b[31mred\x07",
+                                       "\xff\xfe",
+                                       "1,2",
+                                       "1 2",
+                                       "1e12",
+                                       "1e999",
+                                       "NaN",
+                                       "null",
+                                       "true",
+                                       "{}",
+                                       "[1]",
+                                       "=1+1",
+                                       "'\"`$(x)",
+                                       "a\nb",
+                                       "no/such/place",
+                                       ".",
+                                       "/dev/null",
+                                       "/",
+                                       "1:2:3",
+                                       "1:0:0",
+                                       "x=y=z",
+                                       "a=1:2:3:4",
+                                       "a=1:2:1e9",
+                                       "../..",
+                                       "/dev/full",
+                                       "\xe2\x80\xae"};
     values.insert(values.end(), extremeNumbers().begin(), extremeNumbers().end());
     values.push_back(std::string(100'000, 'x'));
     values.push_back(std::string(5'000, '9'));
@@ -96,6 +134,11 @@ void harmOption(std::vector<std::string>& arguments, const Option& option, std::
   }
 }
 
+bool isUsage(const Option& option, const std::string& value) {
+  const bool wants_number = option.type.starts_with("INT") || option.type.starts_with("UINT") || option.type.starts_with("FLOAT");
+  return wants_number && noNumbers().contains(value);
+}
+
 }  // namespace
 
 int allCommandLines(const Ground& ground) { return static_cast<int>(harms(ground).size()); }
@@ -111,9 +154,11 @@ void harmCommandLine(Case& c) {
     harmPositional(arguments, command, harm.option - options, harm.value);
   }
   Launch launch = c.pincer(arguments);
-  launch.limit = 1.5;
-  // A simulation without anything to lose may simply end; a session answers the signal and ends in order.
-  c.run(launch);
+  launch.limit = 0.3;  // what was taken runs, and is asked to stop
+  Expect expect;
+  if (harm.option < options && harm.value < absurdValues().size() && isUsage(command.options[harm.option], absurdValues()[harm.value]))
+    expect.codes = {2};
+  c.run(launch, expect);
 }
 
 }  // namespace pincer::campaign

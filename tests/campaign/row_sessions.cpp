@@ -11,28 +11,71 @@ namespace {
 
 // SQL expressions. What is read is then of another type, out of range, too long, or hostile.
 const std::vector<std::string>& wrongValues() {
-  static const std::vector<std::string> kValues = {
-      "NULL",  "-1",    "0",    "1e300",  "-1e300", "9223372036854775807", "-9223372036854775807 - 1", "9007199254740993", "1e999",
-      "''",    "'x'",   "'-1'", "'{}'",   "'[]'",   "'{\"a\": [1, 2'",     "x'00ff00ff'",              "zeroblob(100000)", "'18446744073709551616'",
-      "' 1 '", "'1e3'", "'0x1f'", "'complete'", "'a' || char(27) || '[31m' || char(10) || 'b'", "hex(randomblob(50000))",
-      "'force'", "'cld+force'", "'$(touch pwned)'", "'<script>alert(1)</script>'", "'=1+1'", "2147483648", "0.5", "7"};
+  static const std::vector<std::string> kValues = {"NULL",
+                                                   "-1",
+                                                   "0",
+                                                   "1e300",
+                                                   "-1e300",
+                                                   "9223372036854775807",
+                                                   "-9223372036854775807 - 1",
+                                                   "9007199254740993",
+                                                   "1e999",
+                                                   "''",
+                                                   "'x'",
+                                                   "'-1'",
+                                                   "'{}'",
+                                                   "'[]'",
+                                                   "'{\"a\": [1, 2'",
+                                                   "x'00ff00ff'",
+                                                   "zeroblob(100000)",
+                                                   "'18446744073709551616'",
+                                                   "' 1 '",
+                                                   "'1e3'",
+                                                   "'0x1f'",
+                                                   "'complete'",
+                                                   "'a' || char(27) || '[31m' || char(10) || 'b'",
+                                                   "hex(randomblob(50000))",
+                                                   "'force'",
+                                                   "'cld+force'",
+                                                   "'$(touch pwned)'",
+                                                   "'<script>alert(1)</script>'",
+                                                   "'=1+1'",
+                                                   "2147483648",
+                                                   "0.5",
+                                                   "7"};
   return kValues;
 }
 
+struct Kind {
+  const char* task;
+  fs::path (*session)(const Ground&);
+};
+
+const std::vector<Kind>& kinds() {
+  static const std::vector<Kind> kKinds = {
+      {"sphere-pickup", pickupSession}, {"sphere-pickup", peoplesSession}, {"repeated-localisation", studySession}};
+  return kKinds;
+}
+
 struct Damage {
-  bool of_study;
+  Kind kind;
   Column column;
   std::size_t value;
 };
 
+// A sample, and what is known of hands, has dozens of columns of numbers that are read by the same code: some of them.
+bool isOneOfMany(const Column& column) {
+  const bool many = column.table == "sample" || column.table == "hands";
+  return many &&
+         (column.name.starts_with("f1_") || column.name.find("_y") != std::string::npos || column.name.find("_z") != std::string::npos);
+}
+
 const std::vector<Damage>& damages(const Ground& ground) {
   static const std::vector<Damage> kDamages = [&] {
     std::vector<Damage> all;
-    for (const bool of_study : {false, true}) {
-      for (const Column& column : columnsOf(of_study ? studySession(ground) : pickupSession(ground))) {
-        // A sample has fifty columns of numbers that go the same way: some of them.
-        if (column.table == "sample" && column.name.find("_y_") != std::string::npos) continue;
-        for (std::size_t v = 0; v < wrongValues().size(); ++v) all.push_back({of_study, column, v});
+    for (const Kind& kind : kinds()) {
+      for (const Column& column : columnsOf(kind.session(ground))) {
+        for (std::size_t v = 0; v < wrongValues().size() && !isOneOfMany(column); ++v) all.push_back({kind, column, v});
       }
     }
     return all;
@@ -40,19 +83,21 @@ const std::vector<Damage>& damages(const Ground& ground) {
   return kDamages;
 }
 
-std::string taskOf(bool of_study) { return of_study ? "repeated-localisation" : "sphere-pickup"; }
-
-// What reads sessions, drawn by what it costs.
+// What reads sessions. The tables are quick; of what takes longer one is drawn.
 void readSession(Case& c, const std::string& task) {
-  const std::vector<std::vector<std::string>> readers = {{"export", "session.db", "--out", "csv"},
-                                                         {"export", "session.db", "--bids", "bids"},
-                                                         {"replay", "session.db", "--trial", "1"},
-                                                         {"run", task, "--resume", "--out", ".", "--no-report"},
-                                                         {"report", "session.db", "--json"}};
-  const std::size_t which = c.chance(0.12) ? 4 : static_cast<std::size_t>(c.below(4));
-  Launch launch = c.pincer(readers[which]);
-  launch.limit = 20;
-  c.run(launch, {.name = "session.db"});
+  std::vector<std::vector<std::string>> readers = {{"export", "session.db", "--out", "csv"}, {"export", "session.db", "--bids", "bids"}};
+  if (c.chance(0.15)) {
+    readers.push_back({"report", "session.db", "--json"});
+  } else if (c.chance(0.5)) {
+    readers.push_back({"replay", "session.db"});
+  } else {
+    readers.push_back({"run", task, "--resume", "--out", ".", "--no-report"});
+  }
+  for (const auto& arguments : readers) {
+    Launch launch = c.pincer(arguments);
+    launch.limit = 20;
+    c.run(launch, {.name = "session.db"});
+  }
 }
 
 }  // namespace
@@ -61,26 +106,24 @@ int allDamagedColumns(const Ground& ground) { return static_cast<int>(damages(gr
 
 void damageColumn(Case& c) {
   const Damage& d = damages(c.ground)[scattered(c.ground, c.number, damages(c.ground).size())];
-  const bool killed = !d.of_study && c.chance(0.3);
-  const fs::path from = d.of_study ? studySession(c.ground) : killed ? killedSession(c.ground) : pickupSession(c.ground);
+  const bool killed = d.kind.session == pickupSession && c.chance(0.3);
+  const fs::path from = killed ? killedSession(c.ground) : d.kind.session(c.ground);
   for (const char* suffix : {"", "-wal"}) {
     if (fs::exists(from.string() + suffix)) fs::copy_file(from.string() + suffix, c.folder / ("session.db" + std::string(suffix)));
   }
   damage(c.folder / "session.db", d.column, wrongValues()[d.value], c.chance(0.5));
-  readSession(c, taskOf(d.of_study));
+  readSession(c, d.kind.task);
   if (fs::exists(c.folder / "pwned")) c.fault(Verdict::kWrong, "a command of the session was obeyed");
 }
 
 void damageSessionFile(Case& c) {
-  const bool of_study = c.chance(0.3);
-  std::string bytes = readFile(of_study ? studySession(c.ground) : pickupSession(c.ground));
+  const Kind& kind = c.anyOf(kinds());
+  std::string bytes = readFile(kind.session(c.ground));
   for (int n = 1 + c.below(4); n > 0; --n) bytes = mutatedBytes(c.random, bytes);
   if (c.chance(0.5)) bytes.replace(0, 16, "SQLite format 3", 16);
   c.write("session.db", bytes);
-  if (c.chance(0.3) && fs::exists(killedSession(c.ground).string() + "-wal")) {
-    c.write("session.db-wal", mutatedBytes(c.random, readFile(killedSession(c.ground).string() + "-wal")));
-  }
-  readSession(c, taskOf(of_study));
+  if (c.chance(0.3)) c.write("session.db-wal", mutatedBytes(c.random, readFile(killedSession(c.ground).string() + "-wal")));
+  readSession(c, kind.task);
 }
 
 }  // namespace pincer::campaign

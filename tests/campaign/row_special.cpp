@@ -53,7 +53,11 @@ const std::vector<Special>& specials() {
       {"empty", [](const fs::path& f) { std::ofstream{f}; }},
       {"loop", [](const fs::path& f) { linkTo(f.filename().c_str(), f); }},
       {"dangling", [](const fs::path& f) { linkTo("nothing-there", f); }},
-      {"unreadable", [](const fs::path& f) { std::ofstream(f) << "{}"; fs::permissions(f, fs::perms::none); }},
+      {"unreadable",
+       [](const fs::path& f) {
+         std::ofstream(f) << "{}";
+         fs::permissions(f, fs::perms::none);
+       }},
       {"300 MB of NUL", [](const fs::path& f) { makeHuge(f, ""); }},
       {"300 MB after {", [](const fs::path& f) { makeHuge(f, "{\n"); }},
       {"300 MB after a header", [](const fs::path& f) { makeHuge(f, "time,x,y,z\n0,0,0,0\n"); }},

@@ -1,6 +1,6 @@
 // Where the program writes: standard streams closed, full, cut off; links planted at names that it might write through; full disks.
-#include <fmt/format.h>
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sched.h>
 #include <sys/mount.h>
 #include <sys/wait.h>
@@ -29,7 +29,12 @@ std::vector<std::vector<std::string>> writers(const Ground& ground) {
 
 std::vector<std::vector<std::string>> speakers(const Ground& ground) {
   std::vector<std::vector<std::string>> all = writers(ground);
-  all.insert(all.end(), {{"--help"}, {"run", "--nonsense"}, {"schema", "scene"}, {"sim", "no-such-scene"}, {"plan", "s4_pinch", "--ticks", "100"}, {"mesh", "info", "none.obj", "--units", "m"}});
+  all.insert(all.end(), {{"--help"},
+                         {"run", "--nonsense"},
+                         {"schema", "scene"},
+                         {"sim", "no-such-scene"},
+                         {"plan", "s4_pinch", "--ticks", "100"},
+                         {"mesh", "info", "none.obj", "--units", "m"}});
   return all;
 }
 
@@ -60,7 +65,8 @@ bool isSession(const std::vector<std::string>& arguments) { return arguments[0] 
 void requireOutputs(Case& c, const std::vector<std::string>& arguments) {
   if (isSession(arguments)) return completeSession(c);
   for (const char* name : {"out.csv", "out.obj", "out.json", "out.html"}) {
-    if (fs::exists(c.folder / name) && readFile(c.folder / name).size() < 8) c.fault(Verdict::kWrong, std::string(name) + " is empty or cut off");
+    if (fs::exists(c.folder / name) && readFile(c.folder / name).size() < 8)
+      c.fault(Verdict::kWrong, std::string(name) + " is empty or cut off");
   }
 }
 
@@ -111,7 +117,9 @@ void plantLinks(Case& c) {
   restore();
   fs::create_directories(c.folder / "out");
   const bool into_parts = !c.chance(0.3);
-  std::vector<std::string> names = {"out.csv", "out.obj", "out.json", "out.html", "out/trial.csv", "out/session.csv", "out/sweep.csv", "out/dataset_description.json", "out/session.db"};
+  std::vector<std::string> names = {"out.csv",       "out.obj",         "out.json",      "out.html",
+                                    "out/trial.csv", "out/session.csv", "out/sweep.csv", "out/dataset_description.json",
+                                    "out/session.db"};
   if (into_parts) {
     for (std::string& name : names) name += ".part";
   }
@@ -143,7 +151,8 @@ void fillDisk(Case& c) {
     requireOutputs(c, arguments);
   } else {
     const long bytes = 4096 * static_cast<long>(c.random.uniform(1, 250));
-    if (!onSmallDisk(c.folder, bytes, [&] { c.run(launch); })) c.skip("file systems of its own need root: only permissions and size limits were tried");
+    if (!onSmallDisk(c.folder, bytes, [&] { c.run(launch); }))
+      c.skip("file systems of its own need root: only permissions and size limits were tried");
   }
 }
 

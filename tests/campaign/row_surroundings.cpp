@@ -39,7 +39,7 @@ const std::vector<Variables>& surroundings() {
 
 const std::vector<std::vector<std::string>>& programs(const Ground& ground) {
   static const std::vector<std::vector<std::string>> kPrograms = {
-      {"sim", "s4_pinch", "--duration", "0.5", "--json", "--out", "table.csv"},
+      {"sim", "s4_pinch", "--duration", "0.5", "--out", "table.csv"},
       {"mesh", "info", ground.inputs() / "meshes/star_knob.obj", "--units", "mm"},
       {"export", pickupSession(ground), "--out", "csv"},
       {"export", studySession(ground), "--bids", "bids"},
@@ -66,7 +66,8 @@ std::string outputOf(const Ended& ended, const fs::path& folder) {
   std::map<std::string, std::string> files;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
     const std::string extension = entry.path().extension();
-    if (entry.is_regular_file() && extension != ".png" && extension != ".svg") files[fs::relative(entry.path(), folder)] = readFile(entry.path());
+    if (entry.is_regular_file() && extension != ".png" && extension != ".svg")
+      files[fs::relative(entry.path(), folder)] = readFile(entry.path());
   }
   std::string all = ended.out;
   for (const auto& [name, bytes] : files) all += name + "\n" + bytes;
@@ -86,8 +87,8 @@ const std::string& usualOutput(Case& c, std::size_t program) {
 }
 
 const std::vector<std::string>& tunings() {
-  static const std::vector<std::string> kTunings = {"glibc.cpu.hwcaps=-AVX2,-FMA,-AVX512F,-AVX", "glibc.cpu.hwcaps=-FMA,-FMA4", "glibc.cpu.hwcaps=-AVX2",
-                                                    "glibc.cpu.hwcaps=-AVX2,-FMA,-AVX512F,-AVX,-SSE4_1,-SSE4_2"};
+  static const std::vector<std::string> kTunings = {"glibc.cpu.hwcaps=-AVX2,-FMA,-AVX512F,-AVX", "glibc.cpu.hwcaps=-FMA,-FMA4",
+                                                    "glibc.cpu.hwcaps=-AVX2", "glibc.cpu.hwcaps=-AVX2,-FMA,-AVX512F,-AVX,-SSE4_1,-SSE4_2"};
   return kTunings;
 }
 
@@ -100,7 +101,8 @@ void compareGoldenStates(Case& c, const std::string& tuning) {
   launch.environment.emplace_back("GLIBC_TUNABLES", tuning);
   const Ended tuned = c.run(launch, {.codes = {0}});
   c.count(Verdict::kFine, 0);
-  if (tuned.out != usual.out) c.fault(Verdict::kWrong, fmt::format("golden state {} here, {} there", usual.out.substr(0, 40), tuned.out.substr(0, 40)));
+  if (tuned.out != usual.out)
+    c.fault(Verdict::kWrong, fmt::format("golden state {} here, {} there", usual.out.substr(0, 40), tuned.out.substr(0, 40)));
 }
 
 void compareSessions(Case& c, const std::string& tuning, const std::vector<std::string>& arguments, const fs::path& usual) {
@@ -109,7 +111,8 @@ void compareSessions(Case& c, const std::string& tuning, const std::vector<std::
   launch.environment.emplace_back("GLIBC_TUNABLES", tuning);
   c.run(launch, {.codes = {0}});
   if (c.faulty()) return;
-  if (contentOf(c.folder / "out/session.db") != contentOf(usual)) c.fault(Verdict::kWrong, "the session differs from one on this processor");
+  if (contentOf(c.folder / "out/session.db") != contentOf(usual))
+    c.fault(Verdict::kWrong, "the session differs from one on this processor");
 }
 
 void replayElsewhere(Case& c, const std::string& tuning) {
@@ -136,7 +139,8 @@ void changeSurroundings(Case& c) {
     launch.environment.emplace_back(name, value);
   }
   const Ended ended = c.run(launch, {.codes = {0}});
-  if (!c.faulty() && outputOf(ended, c.folder) != usual) c.fault(Verdict::kWrong, "says or writes something else than in usual surroundings");
+  if (!c.faulty() && outputOf(ended, c.folder) != usual)
+    c.fault(Verdict::kWrong, "says or writes something else than in usual surroundings");
 }
 
 int allProcessors(const Ground&) { return static_cast<int>(tunings().size() * kComparisons); }

@@ -18,9 +18,10 @@ constexpr int kExecutions = 100'000;  // per case
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
-constexpr FrameType kTypes[] = {FrameType::kIdentify,        FrameType::kArmCommand,        FrameType::kDisplayCommand, FrameType::kReadCalibration,
-                                FrameType::kWriteCalibration, FrameType::kStop,              FrameType::kIdentity,       FrameType::kArmState,
-                                FrameType::kDisplayState,    FrameType::kCalibration,       FrameType::kStatus,         FrameType::kArmCapabilities,
+constexpr FrameType kTypes[] = {FrameType::kIdentify,           FrameType::kArmCommand,       FrameType::kDisplayCommand,
+                                FrameType::kReadCalibration,    FrameType::kWriteCalibration, FrameType::kStop,
+                                FrameType::kIdentity,           FrameType::kArmState,         FrameType::kDisplayState,
+                                FrameType::kCalibration,        FrameType::kStatus,           FrameType::kArmCapabilities,
                                 FrameType::kDisplayCapabilities};
 
 // Bytes as they come: mostly small and extreme ones, so that ranges are met from both sides.
@@ -103,7 +104,8 @@ void harmFrames(Case& c) {
   std::int64_t taken = 0;
   for (int i = 0; i < kExecutions; ++i) {
     FrameBytes bytes = encode(mutatedFrame(c.random));
-    for (int n = c.random.below(3); n > 0; --n) bytes[static_cast<std::size_t>(c.random.below(kFrameSize))] ^= static_cast<std::uint8_t>(1 << c.random.below(8));
+    for (int n = c.random.below(3); n > 0; --n)
+      bytes[static_cast<std::size_t>(c.random.below(kFrameSize))] ^= static_cast<std::uint8_t>(1 << c.random.below(8));
     const std::size_t length = c.random.below(8) == 0 ? static_cast<std::size_t>(c.random.below(kFrameSize)) : kFrameSize;
     Frame frame;
     if (decode(std::span(bytes).first(length), frame) != FrameError::kNone) continue;
@@ -121,7 +123,9 @@ void harmMessages(Case& c) {
     const Frame frame = mutatedFrame(c.random);
     order.judge(frame.sequence);
     if (!allSurvive(frame, taken)) {
-      return c.fault(Verdict::kWrong, fmt::format("execution {}: a message of type 0x{:02x} that is told again differs", i, static_cast<int>(frame.type)), "");
+      return c.fault(Verdict::kWrong,
+                     fmt::format("execution {}: a message of type 0x{:02x} that is told again differs", i, static_cast<int>(frame.type)),
+                     "");
     }
   }
   add(c, taken, began);
@@ -136,8 +140,10 @@ void harmFalconPackets(Case& c) {
     std::vector<std::uint8_t> bytes(static_cast<std::size_t>(c.random.below(66)));
     std::generate(bytes.begin(), bytes.end(), [&] { return someByte(c.random); });
     const Packet packet = packetOf({{c.random.below(8192) - 4096, c.random.below(8192) - 4096, 0}, c.random.below(2) == 0, 2});
-    if (bytes.size() >= 18) std::copy(packet.begin(), packet.end(), bytes.begin() + 2 + c.random.below(static_cast<int>(bytes.size()) - 17));
-    if (!bytes.empty() && c.random.below(2) == 0) bytes[static_cast<std::size_t>(c.random.below(static_cast<int>(bytes.size())))] = someByte(c.random);
+    if (bytes.size() >= 18)
+      std::copy(packet.begin(), packet.end(), bytes.begin() + 2 + c.random.below(static_cast<int>(bytes.size()) - 17));
+    if (!bytes.empty() && c.random.below(2) == 0)
+      bytes[static_cast<std::size_t>(c.random.below(static_cast<int>(bytes.size())))] = someByte(c.random);
     const auto answer = reader.read(bytes);
     if (!answer) continue;
     ++taken;

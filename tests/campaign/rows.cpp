@@ -4,16 +4,16 @@ namespace pincer::campaign {
 
 const std::vector<Row>& rows() {
   static const std::vector<Row> kRows = {
-      {"options", "every command x every option: absurd, missing, twice, unknown", 1600, harmCommandLine, allCommandLines},
+      {"options", "every command x every option: absurd, missing, twice, unknown", 800, harmCommandLine, allCommandLines},
       {"scenes", "scene files: bytes, tokens, numbers, keys, nesting, NUL, huge names; sim, plan", 900, harmScene},
       {"studies", "study files of six experiments, likewise", 500, harmStudy},
       {"trajectories", "trajectory tables", 300, harmTrajectory},
       {"meshes", "OBJ, STL, PLY, OFF, text and binary; info, check, convert --repair, round-edges", 900, harmMesh},
       {"device-files", "recordings and calibrations", 200, harmDeviceFile},
       {"special-files", "devices, pipes, folders, loops, 300 MB in place of each input", 320, useSpecialFile, allSpecialFiles},
-      {"session-columns", "every column of every table: other types, ranges, texts; report, export, replay, --resume", 500, damageColumn,
+      {"session-columns", "every column of every table: other types, ranges, texts; report, export, replay, --resume", 160, damageColumn,
        allDamagedColumns},
-      {"session-bytes", "session files: bytes flipped, cut off", 150, damageSessionFile},
+      {"session-bytes", "session files: bytes flipped, cut off", 50, damageSessionFile},
       {"kills", "kill -9 at any moment, then --resume", 25, killSession},
       {"two-programs", "two programs on one session", 4, runTwoPrograms},
       {"signals", "INT, TERM, HUP at any moment of run, report, export, sweep", 40, signalProgram},

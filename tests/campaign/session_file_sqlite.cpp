@@ -53,14 +53,16 @@ class Store {
 std::vector<Column> columnsIn(Store& store) {
   std::vector<Column> columns;
   store.forEach("SELECT m.name, c.name FROM sqlite_schema m, pragma_table_info(m.name) c WHERE m.type = 'table' ORDER BY 1, c.cid",
-                [&](const auto& row) { columns.push_back({row[0], row[1]}); });
+                [&](const auto& row) {
+                  columns.push_back({row[0], row[1]});
+                });
   return columns;
 }
 
 // What differs between two runs of the same study: clocks, versions, costs.
 bool isOfTheRun(const Column& column) {
-  static const std::vector<std::string> kOfTheRun = {"started_utc", "tick_median_us", "tick_p999_us", "tick_us", "samples_dropped", "build", "version",
-                                                     "processor"};
+  static const std::vector<std::string> kOfTheRun = {"started_utc",     "tick_median_us", "tick_p999_us", "tick_us",
+                                                     "samples_dropped", "build",          "version",      "processor"};
   return std::find(kOfTheRun.begin(), kOfTheRun.end(), column.name) != kOfTheRun.end();
 }
 
@@ -102,12 +104,15 @@ class Copy {
 std::vector<Column> columnsOf(const fs::path& session) {
   const Copy copy(session);
   Store store(copy.file(), SQLITE_OPEN_READWRITE);
-  return columnsIn(store);
+  std::vector<Column> columns = columnsIn(store);
+  std::erase_if(columns, [&](const Column& column) { return store.first("SELECT count(*) FROM " + column.table) == "0"; });
+  return columns;
 }
 
 void damage(const fs::path& session, const Column& column, const std::string& expression, bool all_rows) {
   Store store(session, SQLITE_OPEN_READWRITE);
-  const std::string where = fmt::format(" WHERE rowid = (SELECT rowid FROM {0} LIMIT 1 OFFSET (SELECT count(*) / 2 FROM {0}))", column.table);
+  const std::string where =
+      fmt::format(" WHERE rowid = (SELECT rowid FROM {0} LIMIT 1 OFFSET (SELECT count(*) / 2 FROM {0}))", column.table);
   store.first(fmt::format("UPDATE {} SET \"{}\" = {}{}", column.table, column.name, expression, all_rows ? "" : where));
 }
 

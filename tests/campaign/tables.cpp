@@ -13,7 +13,9 @@ bool isNumber(const std::string& cell) {
   return !cell.empty() && *end == '\0';
 }
 
-bool isFormula(const std::string& cell) { return !cell.empty() && std::string("=+-@").find(cell[0]) != std::string::npos && !isNumber(cell) && cell != "-"; }
+bool isFormula(const std::string& cell) {
+  return !cell.empty() && std::string("=+-@").find(cell[0]) != std::string::npos && !isNumber(cell) && cell != "-";
+}
 
 // The cell that begins at `at`; leaves `at` behind it.
 std::string cellAt(const std::string& text, std::size_t& at, char separator) {
@@ -49,7 +51,8 @@ std::vector<std::vector<std::string>> cellsOf(const std::string& text, char sepa
 std::string problemOfTable(const std::string& text, char separator) {
   const auto rows = cellsOf(text, separator);
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (rows[i].size() != rows[0].size()) return fmt::format("row {} has {} cells, the first one {}", i + 1, rows[i].size(), rows[0].size());
+    if (rows[i].size() != rows[0].size())
+      return fmt::format("row {} has {} cells, the first one {}", i + 1, rows[i].size(), rows[0].size());
     for (const std::string& cell : rows[i]) {
       if (isFormula(cell)) return fmt::format("row {} holds the formula {}", i + 1, cell);
     }

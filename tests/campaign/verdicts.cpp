@@ -15,7 +15,8 @@ std::optional<Finding> howItEnded(const Launch& launch, const Ended& e, const Ex
   if (e.hung) return Finding{Verdict::kHung, fmt::format("still there {:.1f} s after it was asked to stop", launch.grace)};
   const bool asked_for = (e.stopped && e.signal == launch.stop_signal) || (e.struck && e.signal == launch.blow->signal) ||
                          std::find(expect.signals.begin(), expect.signals.end(), e.signal) != expect.signals.end();
-  if (e.signal != 0 && !asked_for) return Finding{Verdict::kCrashed, fmt::format("ended by signal {} ({})", e.signal, ::strsignal(e.signal))};
+  if (e.signal != 0 && !asked_for)
+    return Finding{Verdict::kCrashed, fmt::format("ended by signal {} ({})", e.signal, ::strsignal(e.signal))};
   if (e.error.find("Sanitizer") != std::string::npos || e.error.find("runtime error:") != std::string::npos) {
     return Finding{Verdict::kCrashed, "a sanitizer's report"};
   }
@@ -39,13 +40,14 @@ std::optional<Finding> howItRefused(const Ended& e, const Expect& expect) {
   if (at != 0 && (at == std::string::npos || e.error[at - 1] != '\n')) return wrong("the message doesn't begin with \"pincer: \"");
   const std::string message = e.error.substr(at);
   if (message.size() > kLongestMessage) return wrong(fmt::format("a message of {} bytes", message.size()));
-  if (!expect.name.empty() && message.find(expect.name) == std::string::npos) return wrong("the message doesn't name " + expect.name + ": " + message);
+  if (!expect.name.empty() && message.find(expect.name) == std::string::npos)
+    return wrong("the message doesn't name " + expect.name + ": " + message);
   if (!hasRemedy(message)) return wrong("the message has no remedy: " + message);
   return {};
 }
 
 bool isPart(const std::string& name) {
-  return name.find(".part") != std::string::npos || name.ends_with("-journal") || name.ends_with(".tmp") || name.find("gnuplot") == 0;
+  return name.ends_with(".part") || name.ends_with("-journal") || name.ends_with(".tmp") || name.find("gnuplot") == 0;
 }
 
 }  // namespace
@@ -55,7 +57,9 @@ std::string controlCharacterIn(const std::string& text) {
     const auto byte = static_cast<unsigned char>(text[i]);
     const bool c0 = (byte < 0x20 && byte != '\n') || byte == 0x7f;
     const bool c1 = byte == 0xc2 && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) < 0xa0;
-    if (c0 || c1) return fmt::format("0x{:02x} at byte {}", byte, i);
+    const bool turns = text.compare(i, 2, "\xe2\x80") == 0 && i + 2 < text.size() && static_cast<unsigned char>(text[i + 2]) >= 0xaa &&
+                       static_cast<unsigned char>(text[i + 2]) <= 0xae;  // the direction of writing
+    if (c0 || c1 || turns) return fmt::format("0x{:02x} at byte {}", byte, i);
   }
   return {};
 }
@@ -70,7 +74,8 @@ std::optional<Finding> verdictOn(const Launch& launch, const Ended& e, const Exp
   if (e.signal != 0) return {};
   const bool is_documented = e.exit_code >= 0 && e.exit_code <= 5;
   if (!is_documented || (!e.stopped && !e.struck && !expect.codes.contains(e.exit_code))) {
-    return Finding{Verdict::kWrong, fmt::format("exit code {} where {} were expected; {}", e.exit_code, fmt::join(expect.codes, ", "), e.error.substr(0, 300))};
+    return Finding{Verdict::kWrong, fmt::format("exit code {} where {} were expected; {}", e.exit_code, fmt::join(expect.codes, ", "),
+                                                e.error.substr(0, 300))};
   }
   if (e.exit_code >= 2 && e.exit_code <= 4) return howItRefused(e, expect);
   return {};
