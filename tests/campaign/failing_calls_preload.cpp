@@ -4,6 +4,7 @@
 //   CAMPAIGN_FAIL_AT=3            the third call fails; with CAMPAIGN_FAIL_FOREVER set, all from there on
 //   CAMPAIGN_FAIL_ERROR=28        with this errno; 0: half of what was to be written is
 //   CAMPAIGN_FAIL_LOG=FILE        made when a call fails
+//   CAMPAIGN_COUNT_CALLS=FILE     at its end, a line "NAME COUNT" for each that was called
 //
 // Only in the program named pincer, not in what it starts; never on the standard streams, which have a row of their own.
 #include <dlfcn.h>
@@ -20,6 +21,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <iterator>
 
 namespace {
 
@@ -31,12 +33,13 @@ struct Plan {
   const char* log = nullptr;
 };
 
+bool isHere() { return std::strcmp(program_invocation_short_name, "pincer") == 0; }
+
 Plan planned() {
   const char* call = std::getenv("CAMPAIGN_FAIL_CALL");
   const char* at = std::getenv("CAMPAIGN_FAIL_AT");
   const char* error = std::getenv("CAMPAIGN_FAIL_ERROR");
-  const bool here = std::strcmp(program_invocation_short_name, "pincer") == 0;
-  if (!here || call == nullptr || at == nullptr || error == nullptr) return {};
+  if (!isHere() || call == nullptr || at == nullptr || error == nullptr) return {};
   return {call, std::atol(at), std::atoi(error), std::getenv("CAMPAIGN_FAIL_FOREVER") != nullptr, std::getenv("CAMPAIGN_FAIL_LOG")};
 }
 
@@ -45,7 +48,28 @@ const Plan& plan() {
   return kPlan;
 }
 
+constexpr const char* kCalls[] = {"write", "close", "read",  "fsync", "rename",    "unlink",
+                                  "mkdir", "open",  "start", "mmap",  "ftruncate", "thread"};
+std::atomic<long> g_counts[std::size(kCalls)];
 std::atomic<long> g_calls{0};
+
+void count(const char* call) {
+  for (std::size_t i = 0; i < std::size(kCalls); ++i) {
+    if (std::strcmp(kCalls[i], call) == 0) ++g_counts[i];
+  }
+}
+
+__attribute__((destructor)) void writeCounts() {
+  const char* path = std::getenv("CAMPAIGN_COUNT_CALLS");
+  if (!isHere() || path == nullptr) return;
+  const long file = ::syscall(SYS_openat, AT_FDCWD, path, O_CREAT | O_TRUNC | O_WRONLY | O_CLOEXEC, 0644);
+  for (std::size_t i = 0; i < std::size(kCalls); ++i) {
+    char line[64];
+    const int length = std::snprintf(line, sizeof line, "%s %ld\n", kCalls[i], g_counts[i].load());
+    ::syscall(SYS_write, file, line, length);
+  }
+  ::syscall(SYS_close, file);
+}
 
 void note() {
   if (plan().log == nullptr) return;
@@ -55,6 +79,7 @@ void note() {
 
 // True if this call is the one; errno is set.
 bool fails(const char* call) {
+  count(call);
   if (plan().call == nullptr || (std::strcmp(plan().call, call) != 0 && std::strcmp(plan().call, "any") != 0)) return false;
   const long n = ++g_calls;
   if (plan().forever ? n < plan().at : n != plan().at) return false;

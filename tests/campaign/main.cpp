@@ -105,6 +105,7 @@ int runRows(Ground ground, const Asked& asked) {
   for (const auto& [row, tally] : done) {
     table += asked.json ? fmt::format("{}{}", table.empty() ? "" : ",\n", record(*row, tally))
                         : fmt::format("{}  {}\n", line(*row, tally), row->what);
+    if (!asked.json && tally.hits > 0) table += fmt::format("{:<20} it hit {} times\n", "", tally.hits);
     if (!asked.json && !tally.skipped.empty()) table += fmt::format("{:<20} {}\n", "", tally.skipped);
     for (std::size_t i = 0; i < total.counts.size(); ++i) total.counts[i] += tally.counts[i];
     total.runs += tally.runs, total.seconds += tally.seconds;

@@ -34,7 +34,8 @@ struct Tally {
   std::int64_t runs = 0;  // of programs, or executions of a parser
   double seconds = 0;
   std::vector<Fault> faults;
-  std::string skipped;  // why the row, or a part of it, wasn't done
+  std::string skipped;    // why the row, or a part of it, wasn't done
+  std::int64_t hits = 0;  // of the cases whose harm may come too late: in so many it came
 };
 
 // Programs and files that all cases share.
@@ -78,6 +79,7 @@ class Case {
   void count(Verdict verdict, std::int64_t runs = 1);
   void spend(double seconds) { tally_.seconds += seconds; }
   void skip(const std::string& why) { tally_.skipped = why; }
+  void hit() { ++tally_.hits; }
   bool faulty() const { return faulty_; }
 
   fs::path write(const std::string& name, const std::string& bytes) const;  // into the folder; the path

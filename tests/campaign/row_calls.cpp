@@ -3,6 +3,7 @@
 
 #include <cerrno>
 #include <cmath>
+#include <fstream>
 
 #include "tests/campaign/inputs.h"
 #include "tests/campaign/rows.h"
@@ -34,8 +35,32 @@ const Work& draw(Case& c, const std::vector<Work>& all) {
   return all[c.chance(0.06) ? all.size() - 1 : static_cast<std::size_t>(1 + c.below(all.size() - 2))];
 }
 
-// The first calls, and then ever fewer: 1 .. most, evenly on a logarithmic scale.
-long drawCall(Case& c, double most) { return static_cast<long>(std::exp(c.random.uniform(0, std::log(most)))); }
+// Evenly on a logarithmic scale, 1 .. most: the first calls, and then ever fewer.
+long drawNumber(Case& c, double most) { return static_cast<long>(std::exp(c.random.uniform(0, std::log(most + 1)))); }
+
+using Counts = std::map<std::string, long>;
+
+fs::path callLibrary(const Ground& ground) { return ground.build / "failing_calls.so"; }
+
+// How often an undisturbed run calls each function; counted once per command line.
+const Counts& callsOf(Case& c, const Work& work) {
+  static std::map<std::vector<std::string>, Counts> kept;
+  const auto found = kept.find(work.arguments);
+  if (found != kept.end()) return found->second;
+  Launch launch = c.pincer(work.arguments);
+  launch.folder = c.ground.out / "undisturbed";
+  fs::remove_all(launch.folder);
+  fs::create_directories(launch.folder);
+  launch.environment.emplace_back("LD_PRELOAD", callLibrary(c.ground).string());
+  launch.environment.emplace_back("CAMPAIGN_COUNT_CALLS", (launch.folder / "counts").string());
+  run(launch);
+  std::ifstream counts(launch.folder / "counts");
+  std::string call;
+  for (long n = 0; counts >> call >> n;) {
+    if (n > 0) kept[work.arguments][call] = n;
+  }
+  return kept[work.arguments];
+}
 
 // What an undisturbed run writes, by name; made once per command line.
 const std::map<std::string, std::string>& soundOutputs(Case& c, const Work& work) {
@@ -91,25 +116,24 @@ fs::path allocationLibrary(const Ground& ground) {
 }  // namespace
 
 void failCall(Case& c) {
-  static const std::vector<std::string> kCalls = {"any",  "write", "read", "fsync",     "rename", "unlink", "mkdir",
-                                                  "open", "start", "mmap", "ftruncate", "thread", "close"};
   static const std::vector<int> kErrors = {ENOSPC, EIO, EMFILE, EINTR, EACCES, EROFS, ENOMEM, EDQUOT};
   const std::vector<Work> all = works(c.ground);
   const Work& work = draw(c, all);
   soundOutputs(c, work);
-  const std::string call = c.anyOf(kCalls);
+  const Counts& counts = callsOf(c, work);
+  if (counts.empty()) return c.fault(Verdict::kWrong, "the calls of an undisturbed run could not be counted");
+  const auto& [call, most] = *std::next(counts.begin(), c.below(counts.size()));
   const int error = call == "write" && c.chance(0.2) ? 0 : c.anyOf(kErrors);
   const bool forever = error != EINTR && c.chance(0.4);
   Launch launch = c.pincer(work.arguments);
-  launch.environment.emplace_back("LD_PRELOAD", (c.ground.build / "failing_calls.so").string());
+  launch.environment.emplace_back("LD_PRELOAD", callLibrary(c.ground).string());
   launch.environment.emplace_back("CAMPAIGN_FAIL_CALL", call);
-  launch.environment.emplace_back("CAMPAIGN_FAIL_AT", std::to_string(drawCall(c, call == "any"                       ? 600
-                                                                                 : call == "write" || call == "read" ? 200
-                                                                                                                     : 12)));
+  launch.environment.emplace_back("CAMPAIGN_FAIL_AT", std::to_string(drawNumber(c, static_cast<double>(most))));
   launch.environment.emplace_back("CAMPAIGN_FAIL_ERROR", std::to_string(error));
   launch.environment.emplace_back("CAMPAIGN_FAIL_LOG", (c.folder.parent_path() / "failed").string());
   if (forever) launch.environment.emplace_back("CAMPAIGN_FAIL_FOREVER", "1");
   const Ended ended = c.run(launch);
+  if (fs::exists(c.folder.parent_path() / "failed")) c.hit();
   requireSound(c, work, ended, forever);
 }
 
@@ -121,7 +145,7 @@ void failAllocation(Case& c) {
   soundOutputs(c, work);
   const bool forever = c.chance(0.3);
   Launch launch = c.pincer(work.arguments);
-  failAllocations(launch, library, drawCall(c, 100'000), forever);
+  failAllocations(launch, library, drawNumber(c, 100'000), forever);
   const Ended ended = c.run(launch);
   requireSound(c, work, ended, forever);
 }

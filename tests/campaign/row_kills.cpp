@@ -20,7 +20,7 @@ void killSession(Case& c) {
   Launch launch = c.pincer(pickupArguments("out"));
   // Every third one in the first 30 ms, where the session is being made.
   launch.blow = Blow{SIGKILL, c.number % 3 == 0 ? c.random.uniform(0, 0.03) : c.random.uniform(0, kWholeSession)};
-  c.runUnjudged(launch);
+  if (c.runUnjudged(launch).struck) c.hit();
   SessionState before = stateOf(session);
   if (before.readable && before.state == "running" && c.chance(0.5)) {
     Launch again = c.pincer(resumedPickup("out"));
@@ -73,6 +73,7 @@ void signalProgram(Case& c) {
   launch.blow = Blow{c.anyOf(std::vector<int>{SIGINT, SIGTERM, SIGHUP}), c.random.uniform(0, kSpans[which])};
   launch.limit = 10;
   const Ended ended = c.run(launch, {.codes = {0, 5}});
+  if (ended.struck) c.hit();
   const SessionState state = stateOf(c.folder / "out/session.db");
   // In its first milliseconds a program has no handler yet, and nothing to keep.
   if (state.readable && state.state == "running") c.fault(Verdict::kWrong, "the session is left \"running\"");

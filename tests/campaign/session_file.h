@@ -10,13 +10,14 @@ namespace pincer::campaign {
 namespace fs = std::filesystem;
 
 struct Column {
-  std::string table, name;
+  std::string table, name, type = {};  // as declared: TEXT, INTEGER, REAL, BLOB
 };
 // Of the tables that have rows.
 std::vector<Column> columnsOf(const fs::path& session);
 
-// Sets the column, in all rows or only in the one in the middle, to an SQL expression such as "NULL", "-1", "'text'", "x'00ff'".
-void damage(const fs::path& session, const Column& column, const std::string& expression, bool all_rows);
+// Sets the column, in all rows or only in the one in the middle, to an SQL expression such as "NULL", "-1", "'text'", "x'00ff'". Returns the
+// type of what stands there now: "null", "integer", "real", "text", "blob".
+std::string damage(const fs::path& session, const Column& column, const std::string& expression, bool all_rows);
 
 // How a session stands, read from a copy: looking changes nothing.
 struct SessionState {

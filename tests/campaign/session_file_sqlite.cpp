@@ -52,9 +52,9 @@ class Store {
 
 std::vector<Column> columnsIn(Store& store) {
   std::vector<Column> columns;
-  store.forEach("SELECT m.name, c.name FROM sqlite_schema m, pragma_table_info(m.name) c WHERE m.type = 'table' ORDER BY 1, c.cid",
+  store.forEach("SELECT m.name, c.name, c.type FROM sqlite_schema m, pragma_table_info(m.name) c WHERE m.type = 'table' ORDER BY 1, c.cid",
                 [&](const auto& row) {
-                  columns.push_back({row[0], row[1]});
+                  columns.push_back({row[0], row[1], row[2]});
                 });
   return columns;
 }
@@ -109,11 +109,12 @@ std::vector<Column> columnsOf(const fs::path& session) {
   return columns;
 }
 
-void damage(const fs::path& session, const Column& column, const std::string& expression, bool all_rows) {
+std::string damage(const fs::path& session, const Column& column, const std::string& expression, bool all_rows) {
   Store store(session, SQLITE_OPEN_READWRITE);
-  const std::string where =
+  const std::string middle =
       fmt::format(" WHERE rowid = (SELECT rowid FROM {0} LIMIT 1 OFFSET (SELECT count(*) / 2 FROM {0}))", column.table);
-  store.first(fmt::format("UPDATE {} SET \"{}\" = {}{}", column.table, column.name, expression, all_rows ? "" : where));
+  store.first(fmt::format("UPDATE {} SET \"{}\" = {}{}", column.table, column.name, expression, all_rows ? "" : middle));
+  return store.first(fmt::format("SELECT typeof(\"{}\") FROM {}{}", column.name, column.table, middle));
 }
 
 SessionState stateOf(const fs::path& session) {
