@@ -192,7 +192,7 @@ std::vector<std::string> pickupArguments(const std::string& out) {
   return {"run",
           "sphere-pickup",
           "--repetitions",
-          "3",
+          "2",
           "--friction",
           "0.9",
           "--friction",

@@ -17,7 +17,7 @@ std::vector<fs::path> meshFiles(const Ground& ground);   // of every format, tex
 
 fs::path trajectoryScene(const Ground& ground);  // its finger follows trajectory.csv, beside it
 fs::path trajectoryTable(const Ground& ground);
-fs::path pickupSession(const Ground& ground);   // complete, six trials
+fs::path pickupSession(const Ground& ground);   // complete, four trials
 fs::path killedSession(const Ground& ground);   // the same, killed after some of them
 fs::path peoplesSession(const Ground& ground);  // complete, one trial, with the inputs of every tick
 fs::path studySession(const Ground& ground);    // complete, of one finger, with some hundred responses
@@ -28,6 +28,6 @@ fs::path calibrationFile(const Ground& ground);
 std::vector<std::string> pickupArguments(const std::string& out);
 std::vector<std::string> studyArguments(const std::string& out);  // of the session in studySession
 std::vector<std::string> resumedPickup(const std::string& out);   // to go on with it
-inline constexpr int kPickupTrials = 6;
+inline constexpr int kPickupTrials = 4;
 
 }  // namespace pincer::campaign

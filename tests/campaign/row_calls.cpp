@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <cmath>
 #include <fstream>
+#include <stdexcept>
 
 #include "tests/campaign/inputs.h"
 #include "tests/campaign/rows.h"
@@ -25,7 +26,6 @@ std::vector<Work> works(const Ground& ground) {
           {{"mesh", "convert", ground.inputs() / "meshes/star_knob.obj", "out.ply", "--units", "mm"}},
           {{"run", "manipulation", "--write-study", "study.json"}},
           {{"sweep", "s4_pinch", "--vary", "duration=0.01,0.02", "--threads", "2"}},
-          {{"plan", "s4_pinch", "--ticks", "100"}},
           {{"report", pickupSession(ground), "--html", "report.html"}}};
 }
 
@@ -42,24 +42,39 @@ using Counts = std::map<std::string, long>;
 
 fs::path callLibrary(const Ground& ground) { return ground.build / "failing_calls.so"; }
 
-// How often an undisturbed run calls each function; counted once per command line.
-const Counts& callsOf(Case& c, const Work& work) {
-  static std::map<std::vector<std::string>, Counts> kept;
-  const auto found = kept.find(work.arguments);
-  if (found != kept.end()) return found->second;
-  Launch launch = c.pincer(work.arguments);
-  launch.folder = c.ground.out / "undisturbed";
+fs::path allocationLibrary(const Ground& ground) {
+  for (const char* name : {"fail_malloc.so", "libfail_malloc.so", "tests/libfail_malloc.so", "tests/campaign/libfail_malloc.so"}) {
+    if (fs::exists(ground.build / name)) return ground.build / name;
+  }
+  return {};
+}
+
+// A run of its own, in a folder of its own.
+void runUndisturbed(const Ground& ground, Launch launch) {
+  launch.folder = ground.out / "undisturbed";
   fs::remove_all(launch.folder);
   fs::create_directories(launch.folder);
-  launch.environment.emplace_back("LD_PRELOAD", callLibrary(c.ground).string());
-  launch.environment.emplace_back("CAMPAIGN_COUNT_CALLS", (launch.folder / "counts").string());
   run(launch);
-  std::ifstream counts(launch.folder / "counts");
-  std::string call;
-  for (long n = 0; counts >> call >> n;) {
-    if (n > 0) kept[work.arguments][call] = n;
+}
+
+// How often an undisturbed run calls each function of the library, as "write 12"; of allocations the number alone. Counted once per command line.
+const Counts& callsOf(Case& c, const Work& work, const fs::path& library, const char* variable) {
+  static std::map<std::pair<fs::path, std::vector<std::string>>, Counts> kept;
+  Counts& counts = kept[{library, work.arguments}];
+  if (!counts.empty()) return counts;
+  const fs::path file = c.ground.out / "counts";
+  Launch launch = c.pincer(work.arguments);
+  launch.environment.emplace_back("LD_PRELOAD", library.string());
+  launch.environment.emplace_back(variable, file.string());
+  runUndisturbed(c.ground, launch);
+  std::ifstream lines(file);
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t blank = line.find(' ');
+    const long n = std::stol(blank == line.npos ? line : line.substr(blank));
+    if (n > 0) counts[line.substr(0, blank == line.npos ? 0 : blank)] = n;
   }
-  return kept[work.arguments];
+  if (counts.empty()) throw std::runtime_error("the calls of an undisturbed run could not be counted");
+  return counts;
 }
 
 // What an undisturbed run writes, by name; made once per command line.
@@ -68,10 +83,8 @@ const std::map<std::string, std::string>& soundOutputs(Case& c, const Work& work
   const auto found = kept.find(work.arguments);
   if (found != kept.end()) return found->second;
   Launch launch = c.pincer(work.arguments);
+  runUndisturbed(c.ground, launch);
   launch.folder = c.ground.out / "undisturbed";
-  fs::remove_all(launch.folder);
-  fs::create_directories(launch.folder);
-  run(launch);
   auto& outputs = kept[work.arguments];
   for (const auto& entry : fs::recursive_directory_iterator(launch.folder)) {
     const std::string extension = entry.path().extension();
@@ -105,14 +118,6 @@ void failAllocations(Launch& launch, const fs::path& library, long at, bool fore
   launch.environment.emplace_back("PINCER_FAIL_MALLOC", std::to_string(at) + (forever ? "+" : ""));
 }
 
-fs::path allocationLibrary(const Ground& ground) {
-  for (const char* name :
-       {"fail_malloc.so", "libfail_malloc.so", "tests/fail_malloc.so", "tests/libfail_malloc.so", "tests/campaign/libfail_malloc.so"}) {
-    if (fs::exists(ground.build / name)) return ground.build / name;
-  }
-  return {};
-}
-
 }  // namespace
 
 void failCall(Case& c) {
@@ -120,8 +125,7 @@ void failCall(Case& c) {
   const std::vector<Work> all = works(c.ground);
   const Work& work = draw(c, all);
   soundOutputs(c, work);
-  const Counts& counts = callsOf(c, work);
-  if (counts.empty()) return c.fault(Verdict::kWrong, "the calls of an undisturbed run could not be counted");
+  const Counts& counts = callsOf(c, work, callLibrary(c.ground), "CAMPAIGN_COUNT_CALLS");
   const auto& [call, most] = *std::next(counts.begin(), c.below(counts.size()));
   const int error = call == "write" && c.chance(0.2) ? 0 : c.anyOf(kErrors);
   const bool forever = error != EINTR && c.chance(0.4);
@@ -145,7 +149,8 @@ void failAllocation(Case& c) {
   soundOutputs(c, work);
   const bool forever = c.chance(0.3);
   Launch launch = c.pincer(work.arguments);
-  failAllocations(launch, library, drawNumber(c, 100'000), forever);
+  const long most = callsOf(c, work, library, "PINCER_COUNT_MALLOC").begin()->second;
+  failAllocations(launch, library, drawNumber(c, static_cast<double>(most)), forever);
   const Ended ended = c.run(launch);
   requireSound(c, work, ended, forever);
 }

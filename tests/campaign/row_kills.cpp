@@ -11,7 +11,7 @@
 namespace pincer::campaign {
 namespace {
 
-constexpr double kWholeSession = 1.6;  // [s] that it takes at most, on an idle machine
+constexpr double kWholeSession = 1;  // [s] that it takes at most, on an idle machine
 
 }  // namespace
 
@@ -67,7 +67,7 @@ void signalProgram(Case& c) {
       {"sweep", "s4_pinch", "--vary", "sphere.material.mu_s=0.1:0.5:9", "--out", "out"},
       {"sim", "s4_pinch", "--out", "table.csv"},
       {"replay", pickupSession(c.ground)}};
-  constexpr double kSpans[] = {1.5, 1, 1.2, 0.06, 0.1, 0.5, 1, 1.2};  // [s] that each takes
+  constexpr double kSpans[] = {1, 1, 1.2, 0.06, 0.1, 0.5, 1, 1.2};  // [s] that each takes
   const auto which = static_cast<std::size_t>(c.number) % programs.size();
   Launch launch = c.pincer(programs[which]);
   launch.blow = Blow{c.anyOf(std::vector<int>{SIGINT, SIGTERM, SIGHUP}), c.random.uniform(0, kSpans[which])};
