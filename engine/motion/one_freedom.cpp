@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "contact/invariants.h"
+
 namespace pincer::engine {
 namespace {
 
@@ -66,6 +68,7 @@ OneFreedomCourse decayTurning(const OneFreedomLaw& law, double rate, double h) {
 }  // namespace
 
 OneFreedomCourse followFreedom(const OneFreedomLaw& law, double rate, double h) {
+  PINCER_ASSERT(law.c >= 0);
   if (!(h > 0)) return {0, rate};
   const double turning = law.turns ? h * (std::abs(rate) + std::sqrt(std::hypot(law.a, law.b))) / kLongestTurn : 0;
   const double steps = std::ceil(std::max({1.0, turning, h * law.c / kLargestDecay}));
@@ -85,6 +88,7 @@ OneFreedomCourse followFreedom(const OneFreedomLaw& law, double rate, double h) 
 }
 
 double dampedShare(double c, double h) {
+  PINCER_ASSERT(c >= 0);
   const double x = c * h;
   return x > 0 ? -std::expm1(-x) / x : 1;
 }

@@ -1,11 +1,14 @@
 #include "engine/world/island_threads.h"
 
+#include "contact/invariants.h"
+
 namespace pincer::engine {
 namespace {
 constexpr int kLooks = 2000;  // for the next round, before a thread goes to sleep: some tens of microseconds
 }
 
 IslandThreads::IslandThreads(int threads) {
+  PINCER_ASSERT(threads >= 2);
   for (int t = 1; t < threads; ++t) threads_.emplace_back([this, t] { work(t); });
 }
 
@@ -17,6 +20,7 @@ IslandThreads::~IslandThreads() {
 }
 
 void IslandThreads::handOver(int count) {
+  PINCER_ASSERT(busy_ == 0);  // one round at a time
   count_ = count;
   next_ = 0;
   busy_ = static_cast<int>(threads_.size());

@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "contact/invariants.h"
 #include "contact/math.h"
 
 namespace pincer::grasp {
@@ -10,6 +11,7 @@ namespace {
 
 // exp(A T) of the arm with the held force as a third, constant state: x, v, f.
 Mat3 heldArm(const ArmPort& arm, double tick) {
+  PINCER_ASSERT(arm.mass > 0 && tick > 0);
   Mat3 A = Mat3::Zero();
   A(0, 1) = 1;
   A(1, 0) = -arm.hand_stiffness / arm.mass;
@@ -29,6 +31,7 @@ Mat3 heldArm(const ArmPort& arm, double tick) {
 }  // namespace
 
 double requiredDamping(double stiffness, double damping, double tick, double lead) {
+  PINCER_ASSERT(-1 <= lead && lead <= 1);
   return 0.5 * stiffness * tick + std::abs(stiffness * lead * tick + damping);
 }
 

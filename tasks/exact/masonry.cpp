@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "contact/invariants.h"
+
 namespace pincer::exact {
 namespace {
 
@@ -13,6 +15,8 @@ struct HalfPlane {
 };
 
 std::vector<HalfPlane> thrustLimits(int voussoirs, double thickness) {
+  PINCER_ASSERT(voussoirs >= 1);
+  PINCER_ASSERT(0 < thickness && thickness < 2);  // of the mean radius
   const double inner = 1 - thickness / 2, outer = 1 + thickness / 2, angle = M_PI / voussoirs;
   const double weight = 0.5 * (outer * outer - inner * inner) * std::sin(angle);
   const double centroid = 2.0 / 3 * std::cos(angle / 2) * (std::pow(outer, 3) - std::pow(inner, 3)) / (outer * outer - inner * inner);

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "contact/invariants.h"
+
 namespace pincer::tasks {
 
 std::string problemWith(const StaircaseRule& r) {
@@ -39,6 +41,7 @@ bool Staircase::answer(bool correct) {
 }
 
 bool Staircase::move(int direction) {
+  PINCER_ASSERT(rule_.lowest <= level_ && level_ <= rule_.highest);
   right_ = wrong_ = 0;
   const bool reversed = direction_ != 0 && direction != direction_;
   direction_ = direction;
