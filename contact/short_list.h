@@ -4,6 +4,8 @@
 #include <memory>
 #include <type_traits>
 
+#include "contact/assert.h"
+
 namespace pincer::contact {
 
 template <class T, std::size_t N>
@@ -18,8 +20,14 @@ class ShortList {
   bool empty() const { return size_ == 0; }
   bool isFull() const { return size_ == N; }
   // Requires room.
-  void push_back(const T& value) { std::construct_at(begin() + size_++, value); }
-  void pop_back() { --size_; }
+  void push_back(const T& value) {
+    PINCER_ASSERT(!isFull());
+    std::construct_at(begin() + size_++, value);
+  }
+  void pop_back() {
+    PINCER_ASSERT(!empty());
+    --size_;
+  }
   void clear() { size_ = 0; }
 
   T* begin() { return reinterpret_cast<T*>(bytes_); }

@@ -3,6 +3,8 @@
 #include <limits>
 #include <type_traits>
 
+#include "contact/invariants.h"
+
 namespace pincer::grasp {
 namespace {
 
@@ -92,6 +94,7 @@ class FingerLook {
     engine::Contact* const c = engine::addContact(scratch_.world, found.phi);
     if (!c) return;
     const Vec3 n_W = mid.R_WB_mid * found.n_B;
+    PINCER_ASSERT(isUnitIfFinite(n_W));
     c->id = engine::contactId(1, finger_, body, found.feature);
     c->a = {SideKind::kPoint, finger_};
     c->b = {SideKind::kBody, body};
@@ -115,10 +118,12 @@ class FingerLook {
 
 contact::FingerContacts fingerOnBody(const GraspModel& model, GraspState& state, contact::PatchCache& patches, int finger, int body,
                                      const Pose& X_WB, const Pose& X_WF, double margin) {
+  PINCER_ASSERT(isIndex(finger, model.fingers.size()) && isIndex(body, model.world.bodies.size()));
   const FingerModel& f = model.fingers[finger];
   const contact::Shape& shape = model.world.bodies[body].shape;
   const std::size_t pair = static_cast<std::size_t>(finger) * model.world.bodies.size() + static_cast<std::size_t>(body);
   const Pose X_BF = X_WB.inverse() * X_WF;
+  PINCER_ASSERT(!f.shape || state.tips.size() == state.trackers.size());
   if (f.shape) return contact::queryFinger(shape, *f.shape, X_BF, margin, state.tips[pair], patches);
   const contact::SurfaceContacts found = contact::querySphere(shape, X_BF.p, f.radius, margin, state.trackers[pair], patches);
   contact::FingerContacts all;

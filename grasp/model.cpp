@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "contact/invariants.h"
+
 namespace pincer::grasp {
 namespace {
 
@@ -52,6 +54,7 @@ void check(const FingerModel& finger) {
 }  // namespace
 
 double patchRadius(const SoftPad& pad, double tip_radius, double f_n) {
+  PINCER_ASSERT(!(f_n < 0));
   if (pad.patch_radius > 0) return pad.patch_radius;
   if (!(pad.modulus > 0)) return 0;
   const double R = pad.effective_radius > 0 ? pad.effective_radius : tip_radius;

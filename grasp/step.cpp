@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact/invariants.h"
 #include "engine/motion/driven_motion.h"
 #include "grasp/baseline/baseline.h"
 #include "grasp/finger_contacts.h"
@@ -12,6 +13,7 @@ namespace {
 
 // The finger turns evenly from where it was at the end of the last tick.
 void setRotation(const FingerInput& input, const FingerState& last, double h, engine::PointInput& point, Quat& q_mid_WF) {
+  PINCER_ASSERT(isUnitIfFinite(input.q_WF));
   q_mid_WF = input.q_WF;
   if (!last.seen || last.q_WF.coeffs() == input.q_WF.coeffs()) return;
   const Vec3 turn_W = engine::rotationVectorOf(input.q_WF * last.q_WF.conjugate());
@@ -67,12 +69,14 @@ Vec3 sumContacts(const GraspScratch& scratch, int finger, double h, FingerReport
     report.p_WC = p_sum / normal;
     if (n_sum.squaredNorm() > 0) report.n_W = n_sum.normalized();
   }
+  PINCER_ASSERT(isUnitIfFinite(report.n_W) && report.body >= 0);
   const Vec3 to_mean = report.p_WC - scratch.world.points[finger].p_mid_W;
   return to_mean.squaredNorm() > 0 ? to_mean : Vec3(-report.n_W);
 }
 
 // Where the tick was cut, its last part doesn't speak for all of it: a landing in a short part would be felt as a blow.
 void averageOverTick(const engine::PointScratch& point, double tick, FingerReport& report) {
+  PINCER_ASSERT(tick > 0);
   report.f_contact_W = point.tick_impulse_W / tick;
   if (!report.touching) return;
   report.normal_force = std::max(report.f_contact_W.dot(report.n_W), 0.0);
@@ -161,6 +165,10 @@ GraspState makeState(const GraspModel& model, const std::vector<engine::BodyStar
 
 engine::StepReport step(const GraspModel& model, GraspState& state, GraspScratch& scratch, std::span<const FingerInput> inputs,
                         std::span<const engine::MotionInput> motions) {
+  PINCER_DEMAND(inputs.size() == model.fingers.size(), "step: one input per finger");
+  PINCER_DEMAND(state.fingers.size() == model.fingers.size() && state.trackers.size() == model.fingers.size() * model.world.bodies.size(),
+                "step: the state is one of this model (makeState)");
+  PINCER_DEMAND(scratch.fingers.size() == model.fingers.size(), "step: the scratch is one of this model");
   setInputs(model, state, inputs, scratch);
   renderBaselines(model, state, scratch, inputs);
   FingerContacts contacts(model, state, scratch, inputs);

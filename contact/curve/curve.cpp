@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "contact/error.h"
+#include "contact/invariants.h"
 
 namespace pincer::contact {
 
@@ -60,6 +61,7 @@ void Curve::addBends() {
     const double beta = math::atan2(turn_sine, turn_cosine);
     // O lies on both bisectors, at rho from M0: rho sin(beta) = a cos(beta) + b
     const double kappa = std::abs(beta) < kLeastBend ? 0 : turn_sine / (a * turn_cosine + b);
+    PINCER_ASSERT(a * turn_cosine + b > 0);  // paths turn by less than a right angle
     bends_.push_back(
         {before.start + a * before.e, after.start, after.start + b * after.e, before.e, before.n, beta, kappa, a + b * turn_cosine});
   }
@@ -176,6 +178,8 @@ CurveContact Curve::follow(const Vec2& C, double r, CurveTracker& tracker) const
 }
 
 CurveContact Curve::queryCircle(const Vec2& p_BC, double r, CurveTracker& tracker) const {
+  PINCER_ASSERT(r > 0 && p_BC.allFinite());
+  PINCER_ASSERT(tracker.cell <= static_cast<std::int32_t>(gates_.size()));
   if (tracker.cell >= 0) {
     const CurveContact followed = follow(p_BC, r, tracker);
     if (followed.phi <= 0) return followed;

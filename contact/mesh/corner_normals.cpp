@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "contact/invariants.h"
 #include "contact/mesh/connectivity.h"
 #include "contact/mesh/union_find.h"
 
@@ -206,6 +207,8 @@ class CornerNormalFinder {
 }  // namespace
 
 CornerNormals findCornerNormals(const TriangleMesh& mesh, const Neighbours& neighbours, double crease_angle, bool use_file_normals) {
+  PINCER_ASSERT(neighbours.size() == mesh.triangles.size());
+  PINCER_ASSERT(0 < crease_angle && crease_angle <= M_PI);
   return CornerNormalFinder(mesh, neighbours, use_file_normals).find(crease_angle);
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "contact/error.h"
+#include "contact/invariants.h"
 #include "contact/mesh/mesh_findings.h"
 #include "contact/mesh/union_find.h"
 
@@ -55,6 +56,7 @@ class EdgeBallFinder {
 
   void addCrease(std::size_t t, std::size_t i) {
     const auto [other, edge] = neighbours_[t][i];
+    PINCER_ASSERT(other >= 0);  // the mesh is closed
     const Fan left = balls_.fan_of[3 * t + i];
     const Fan right = balls_.fan_of[static_cast<std::size_t>(3 * other + (edge + 1) % 3)];
     const Vec3 facet = (corner(t, 1) - corner(t, 0)).cross(corner(t, 2) - corner(t, 0));

@@ -1,5 +1,7 @@
 #include "contact/mesh/mesh_pieces.h"
 
+#include "contact/invariants.h"
+
 namespace pincer::contact {
 
 namespace {
@@ -91,6 +93,7 @@ class Nesting {
 }  // namespace
 
 MeshPieces findPieces(const TriangleMesh& mesh, const std::vector<HalfEdge>& half_edges, const MeshTopology& topology) {
+  PINCER_ASSERT(topology.piece_of.size() == mesh.triangles.size());
   MeshPieces pieces;
   pieces.list.resize(static_cast<std::size_t>(topology.pieces));
   measure(mesh, topology, pieces.list);

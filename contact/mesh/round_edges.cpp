@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 
+#include "contact/invariants.h"
 #include "contact/mesh/cone_tips.h"
 #include "contact/mesh/connectivity.h"
 #include "contact/mesh/edge_balls.h"
@@ -22,6 +23,8 @@ using Chain = std::vector<std::int32_t>;  // points in a row
 
 // The unit vector at the share `x` of the way along the great circle from `a` to `b`.
 Vec3 onGreatCircle(const Vec3& a, const Vec3& b, double x) {
+  PINCER_ASSERT(isUnit(a) && isUnit(b));
+  PINCER_ASSERT(0 <= x && x <= 1);
   const double angle = math::atan2(a.cross(b).norm(), a.dot(b));
   return (math::sin((1 - x) * angle) * a + math::sin(x * angle) * b).normalized();
 }
@@ -207,6 +210,7 @@ class EdgeRounder {
     std::vector<Fan> fans = {ball.creases[0].right};
     while (fans.size() < ball.creases.size()) {
       const auto next = std::find_if(ball.creases.begin(), ball.creases.end(), [&](const CreaseEnd& c) { return c.right == fans.back(); });
+      PINCER_ASSERT(next != ball.creases.end());
       fans.push_back(next->left);
     }
     return fans;

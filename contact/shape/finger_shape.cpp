@@ -4,11 +4,14 @@
 
 #include <algorithm>
 
+#include "contact/invariants.h"
 #include "contact/shape/closed_forms.h"
 #include "contact/shape/polytope.h"
 
 namespace pincer::contact {
 namespace {
+
+[[maybe_unused]] constexpr double kUnitByHand = 1e-5;  // of a pad's axes as their author wrote them: buildGrasp takes lengths within 1e-6
 
 double leastCurvatureRadius(const Vec3& a) { return a.minCoeff() * a.minCoeff() / a.maxCoeff(); }
 
@@ -86,11 +89,19 @@ double boundingRadiusOf(const FingerShape& finger) {
 
 Vec3 coreSupportOf(const FingerShape& finger, const Vec3& d_F) { return std::visit(CoreSupport{d_F}, finger); }
 
-Vec3 supportOf(const FingerShape& finger, const Vec3& d_F) { return coreSupportOf(finger, d_F) + roundingOf(finger) * d_F; }
+Vec3 supportOf(const FingerShape& finger, const Vec3& d_F) {
+  PINCER_ASSERT(!(std::abs(d_F.squaredNorm() - 1) > kUnitByHand));
+  return coreSupportOf(finger, d_F) + roundingOf(finger) * d_F;
+}
 
-Vec3 nearestOnCore(const FingerShape& finger, const Vec3& p_F, const Vec3& d_F) { return std::visit(CoreOf{p_F, d_F}, finger); }
+Vec3 nearestOnCore(const FingerShape& finger, const Vec3& p_F, const Vec3& d_F) {
+  PINCER_ASSERT(isUnitIfFinite(d_F));
+  return std::visit(CoreOf{p_F, d_F}, finger);
+}
 
 double arcOverSkin(const FingerShape& finger, const Vec3& from_F, const Vec3& normal_F, const Vec3& to_F) {
+  PINCER_ASSERT(!(std::abs(from_F.squaredNorm() - 1) > kUnitByHand));
+  PINCER_ASSERT(isUnitIfFinite(normal_F));
   const double angle = angleBetween(from_F, normal_F), rho = roundingOf(finger);
   double arc = rho * angle;
   if (std::holds_alternative<Sphere>(finger)) return arc;

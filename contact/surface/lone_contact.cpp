@@ -1,5 +1,6 @@
 #include "contact/surface/lone_contact.h"
 
+#include "contact/invariants.h"
 #include "contact/surface/surface_search.h"
 
 namespace pincer::contact {
@@ -20,6 +21,8 @@ LoneContact::LoneContact(const Vec3& C, const Vec3& n, double h, double reach, d
       along_(n),
       hollowest_(LanesPoint::toLanes(kFits / reach)),
       rounding_(LanesPoint::toLanes(rounding)) {
+  PINCER_ASSERT(isUnitIfFinite(n));
+  PINCER_ASSERT(!(reach <= 0) && !(h <= most));
   setWay(most);
 }
 

@@ -1,5 +1,7 @@
 #include "engine/motion/free_motion.h"
 
+#include "contact/invariants.h"
+
 namespace pincer::engine {
 namespace {
 
@@ -88,6 +90,7 @@ Quat quatOfStep(const Vec3& a) {
 
 FreeRotation::FreeRotation(const Vec3& moments)
     : inverse_moments(moments.cwiseInverse()), root_inverse_moments(inverse_moments.cwiseSqrt()) {
+  PINCER_ASSERT((moments.array() > 0).all());
   double least = INFINITY;
   for (int axis = 0; axis < 3; ++axis) {
     const double difference = std::abs(inverse_moments[(axis + 1) % 3] - inverse_moments[(axis + 2) % 3]);
@@ -104,6 +107,7 @@ FreeRotation::FreeRotation(const Vec3& moments)
 }
 
 void rotateFreely(const FreeRotation& rotation, const Vec3& L_W, double h, Quat& q_WI) {
+  PINCER_ASSERT(isUnitIfFinite(q_WI));
   const Quat about_L = quatOfStep(h * rotation.inverse_moments[rotation.i] * L_W);
   if (rotation.kind != FreeRotation::Kind::kSpherical) turnAboutOwnAxes(rotation, q_WI.conjugate() * L_W, h, q_WI);
   q_WI = about_L * q_WI;
@@ -116,6 +120,7 @@ Vec3 angularVelocity(const FreeRotation& rotation, const Quat& q_WI, const Vec3&
 }
 
 Mat3 inverseInertia(const FreeRotation& rotation, const Quat& q_WI) {
+  PINCER_ASSERT(isUnitIfFinite(q_WI));
   if (rotation.kind == FreeRotation::Kind::kSpherical) return rotation.inverse_moments[0] * Mat3::Identity();
   const Mat3 R = q_WI.toRotationMatrix();
   return R * rotation.inverse_moments.asDiagonal() * R.transpose();

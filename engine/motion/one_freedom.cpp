@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "contact/functions/elementary.h"
+#include "contact/invariants.h"
 
 namespace pincer::engine {
 namespace {
@@ -69,6 +70,7 @@ OneFreedomCourse decayTurning(const OneFreedomLaw& law, double rate, double h) {
 }  // namespace
 
 OneFreedomCourse followFreedom(const OneFreedomLaw& law, double rate, double h) {
+  PINCER_ASSERT(law.c >= 0);
   if (!(h > 0)) return {0, rate};
   const double turning = law.turns ? h * (std::abs(rate) + std::sqrt(math::hypot(law.a, law.b))) / kLongestTurn : 0;
   const double steps = std::ceil(std::max({1.0, turning, h * law.c / kLargestDecay}));
@@ -88,6 +90,7 @@ OneFreedomCourse followFreedom(const OneFreedomLaw& law, double rate, double h) 
 }
 
 double dampedShare(double c, double h) {
+  PINCER_ASSERT(c >= 0);
   const double x = c * h;
   return x > 0 ? -math::expm1(-x) / x : 1;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "contact/invariants.h"
 #include "engine/world/rest.h"
 
 namespace pincer::engine {
@@ -54,6 +55,7 @@ void putContactsAside(const WorldState& state, WorldScratch& scratch) {
   int place = 0;
   for (SleepingContact& c : sleep.contacts) {
     while (state.contacts[static_cast<std::size_t>(place)].id != c.contact.id) ++place;
+    PINCER_ASSERT(place < state.contact_count);  // what sleeps was remembered
     c.place = place;
     c.memory = state.contacts[static_cast<std::size_t>(place)];
   }
@@ -83,6 +85,7 @@ bool sameMemories(const WorldState& state, const SleepScratch& sleep) {
 }
 
 void wake(int group, WorldScratch& scratch) {
+  PINCER_ASSERT(group > 0);  // 0 is of all that is awake
   SleepScratch& sleep = scratch.sleep;
   std::erase_if(sleep.contacts, [&](const SleepingContact& c) {
     bool is_of_group = false;
@@ -96,6 +99,7 @@ void wake(int group, WorldScratch& scratch) {
     sleep.idle[i] = false;
     --sleep.bodies;
   }
+  PINCER_ASSERT(sleep.bodies >= 0);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "contact/invariants.h"
 #include "engine/world/contact_rows.h"
 
 namespace pincer::engine {
@@ -76,6 +77,7 @@ void markBodies(const Contact& c, WorldScratch& scratch) {
 
 double wantedWay(const WorldModel& model, const WorldScratch& scratch, Contact& c) {
   const double phi = gapOf(c);
+  PINCER_ASSERT(thinner(model, c) > 0);
   if (!isDeep(model, c, phi)) return -std::max(phi - deepGap(model), 0.0);
   const double share = scratch.h / model.options.h;  // of the tick
   const double buried = -phi - thinner(model, c);

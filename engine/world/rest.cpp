@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "contact/invariants.h"
+
 namespace pincer::engine {
 namespace {
 
@@ -47,6 +49,8 @@ bool sameState(const WorldState& a, const WorldState& b) {
 }
 
 void copyState(const WorldState& from, WorldState& to) {
+  PINCER_ASSERT(from.bodies.size() == to.bodies.size() && from.points.size() == to.points.size());
+  PINCER_ASSERT(from.contact_count <= static_cast<int>(to.contacts.size()));
   to.h_last = from.h_last;
   to.parts = from.parts;
   to.contact_count = from.contact_count;

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "contact/invariants.h"
+#include "engine/world/most_numbered.h"
+
 namespace pincer::engine {
 namespace {
 
@@ -71,12 +74,15 @@ WorldScratch::WorldScratch(const WorldModel& model) : h(model.options.h), patche
 }
 
 std::uint64_t contactId(int kind, int a, int b, std::uint32_t feature) {
-  return static_cast<std::uint64_t>(kind) << 62 | static_cast<std::uint64_t>(a & 0x7fff) << 47 |
-         static_cast<std::uint64_t>(b & 0x7fff) << 32 | feature;
+  PINCER_ASSERT(kind == 0 || kind == 1);
+  PINCER_ASSERT(isIndex(a, kMostNumbered) && isIndex(b, kMostNumbered));
+  return static_cast<std::uint64_t>(kind) << 62 | static_cast<std::uint64_t>(a & (kMostNumbered - 1)) << 47 |
+         static_cast<std::uint64_t>(b & (kMostNumbered - 1)) << 32 | feature;
 }
 
 Contact* addContact(WorldScratch& scratch, double phi) {
   std::vector<Contact>& contacts = scratch.contacts;
+  PINCER_ASSERT(scratch.sleep.room <= contacts.capacity());  // the tick allocates nothing
   if (contacts.size() < scratch.sleep.room) {
     contacts.emplace_back().phi = phi;
     return &contacts.back();

@@ -4,6 +4,7 @@
 
 #include <bit>
 
+#include "contact/invariants.h"
 #include "engine/world/joints.h"
 
 namespace pincer::engine {
@@ -56,6 +57,7 @@ WorldState makeState(const WorldModel& model, const std::vector<BodyStart>& star
   for (std::size_t i = 0; i < starts.size(); ++i) {
     const BodyModel& body = model.bodies[i];
     if (!isFinite(starts[i])) throw InputError(fmt::format("body \"{}\": its start isn't finite.", body.name));
+    PINCER_DEMAND(isUnit(starts[i].X_WB.q), "makeState: the starts' quaternions have length 1; normalise them");
     BodyState s;
     s.X_WI = starts[i].X_WB * body.X_BI;
     s.X_WI.q.normalize();
@@ -84,7 +86,10 @@ WorldState makeState(const WorldModel& model, const std::vector<BodyStart>& star
   return state;
 }
 
-Pose bodyPose(const WorldModel& model, const WorldState& state, int body) { return state.bodies[body].X_WI * model.bodies[body].X_IB; }
+Pose bodyPose(const WorldModel& model, const WorldState& state, int body) {
+  PINCER_ASSERT(isIndex(body, state.bodies.size()));
+  return state.bodies[body].X_WI * model.bodies[body].X_IB;
+}
 
 Vec3 bodyAngularVelocity(const WorldModel& model, const WorldState& state, int body) {
   if (!model.bodies[body].dynamic) return state.bodies[body].L_W;
@@ -92,6 +97,7 @@ Vec3 bodyAngularVelocity(const WorldModel& model, const WorldState& state, int b
 }
 
 double kineticEnergy(const WorldModel& model, const WorldState& state) {
+  PINCER_DEMAND(state.bodies.size() == model.bodies.size(), "the state is one of this model");
   double energy = 0;
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
     if (!model.bodies[i].dynamic) continue;
@@ -102,6 +108,7 @@ double kineticEnergy(const WorldModel& model, const WorldState& state) {
 }
 
 double potentialEnergy(const WorldModel& model, const WorldState& state) {
+  PINCER_DEMAND(state.bodies.size() == model.bodies.size(), "the state is one of this model");
   double energy = 0;
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
     energy -= model.bodies[i].mass * model.options.gravity_W.dot(state.bodies[i].X_WI.p);
@@ -110,6 +117,7 @@ double potentialEnergy(const WorldModel& model, const WorldState& state) {
 }
 
 std::uint64_t hashOf(const WorldState& state) {
+  PINCER_ASSERT(state.contact_count >= 0 && static_cast<std::size_t>(state.contact_count) <= state.contacts.size());
   Fnv1a hash;
   hash.add(state.time);
   hash.add(static_cast<std::uint64_t>(state.tick));

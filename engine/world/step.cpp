@@ -1,5 +1,6 @@
 #include "engine/world/step.h"
 
+#include "contact/invariants.h"
 #include "engine/solve/cone.h"
 #include "engine/world/contact_rows.h"
 
@@ -24,6 +25,8 @@ bool isResidue(const WorldModel& model, const WorldScratch& scratch, const Conta
 void readSolution(const WorldModel& model, const WorldScratch& scratch, int i, Contact& c) {
   const int first = scratch.first_row[i], count = scratch.first_row[i + 1] - first;
   const double *const r = scratch.r.data() + first, *const u = scratch.u.data() + first;
+  PINCER_ASSERT(!scratch.solve.converged || r[kNormalRow] >= 0);
+  PINCER_ASSERT(!scratch.solve.converged || isInCone(r, count, c.mu, 1e-6) || scratch.h == 0);
   c.r.setZero();
   withRows(count, [&](auto rows) {
     for (int k = 0; k < rows; ++k) c.r[k] = r[k];

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact/invariants.h"
 #include "engine/world/budget.h"
 #include "engine/world/impact.h"
 #include "engine/world/island_sleep.h"
@@ -249,6 +250,7 @@ class Tick {
 
   // `landings`: what lands is held back.
   void attempt(double h, bool landings = true) {
+    PINCER_ASSERT(h > 0 && h <= model_.options.h);
     scratch_.h = h;
     setInputs(h);
     if (isSomethingAsleep(scratch_) && h != model_.options.h) wakeAll(scratch_);
@@ -311,6 +313,7 @@ class Tick {
       return;
     }
     out = inputs_.motions[i];
+    PINCER_ASSERT(isUnit(out.X_WB.q));
     if (share < 1) out = drivenPlace({now.X_WI, {now.v_W, now.L_W}}, inputs_.motions[i], left_, share);
   }
 
@@ -331,6 +334,14 @@ class Tick {
 }  // namespace
 
 StepReport step(const WorldModel& model, WorldState& state, WorldScratch& scratch, const StepInputs& inputs, ContactSource* source) {
+  PINCER_DEMAND(inputs.points.size() == model.points.size(), "step: one input per driven point");
+  PINCER_DEMAND(inputs.motions.size() <= static_cast<std::size_t>(model.driven_count), "step: no more motions than driven bodies");
+  PINCER_DEMAND(state.bodies.size() == model.bodies.size() && state.points.size() == model.points.size() &&
+                    state.contacts.size() == static_cast<std::size_t>(model.options.max_contacts),
+                "step: the state is one of this model (makeState)");
+  PINCER_DEMAND(scratch.bodies.size() == model.bodies.size() && scratch.points.size() == model.points.size() &&
+                    scratch.mu.size() == static_cast<std::size_t>(model.options.max_contacts),
+                "step: the scratch is one of this model");
   if (scratch.clock) scratch.clock->start();
   return Tick(model, state, scratch, inputs, source).run();
 }

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "contact/invariants.h"
 #include "contact/shape/pair_query.h"
 #include "engine/world/budget.h"
 #include "engine/world/held_body.h"
@@ -32,6 +33,7 @@ struct Moment {
 };
 
 Moment momentOf(const WorldModel& model, const WorldState& state, const WorldScratch& scratch, int i, double t) {
+  PINCER_ASSERT(scratch.h > 0 && t >= 0);
   const BodyModel& body = model.bodies[i];
   const BodyState& s = state.bodies[i];
   const BodyScratch& now = scratch.bodies[i];

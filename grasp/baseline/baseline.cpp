@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "contact/invariants.h"
 #include "grasp/baseline/nearest_outside.h"
 #include "grasp/finger_contacts.h"
 
@@ -48,6 +49,7 @@ class BaselineFinger {
         k_(finger_.coupling.stiffness.x()) {}
 
   FingerReport run() {
+    PINCER_ASSERT(isUnitIfFinite(input_.q_WF));
     if (finger_.method == FingerMethod::kPenalty) {
       penalty();
     } else {
@@ -157,6 +159,7 @@ class BaselineFinger {
       const double share = placed.lambda[static_cast<std::size_t>(i)] / sum;
       if (share > 0) push(s, share * f_W, share * f_W.dot(s.n_W));
     }
+    PINCER_ASSERT(sum > 0);
     memory_.body = near.all[static_cast<std::size_t>(main)].body;
     memory_.p_P = engine::bodyPose(model_.world, state_.world, memory_.body).inverse() * proxy_W;
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <complex>
 
+#include "contact/invariants.h"
 #include "contact/math.h"
 
 namespace pincer::grasp {
@@ -12,6 +13,7 @@ namespace {
 
 // exp(A T) of the arm with the held force as a third, constant state: x, v, f.
 Mat3 heldArm(const ArmPort& arm, double tick) {
+  PINCER_ASSERT(arm.mass > 0 && tick > 0);
   Mat3 A = Mat3::Zero();
   A(0, 1) = 1;
   A(1, 0) = -arm.hand_stiffness / arm.mass;
@@ -31,6 +33,7 @@ Mat3 heldArm(const ArmPort& arm, double tick) {
 }  // namespace
 
 double requiredDamping(double stiffness, double damping, double tick, double lead) {
+  PINCER_ASSERT(-1 <= lead && lead <= 1);
   return 0.5 * stiffness * tick + std::abs(stiffness * lead * tick + damping);
 }
 

@@ -9,6 +9,8 @@
 #include <limits>
 #include <numbers>
 
+#include "contact/invariants.h"
+
 namespace pincer::grasp {
 namespace {
 
@@ -124,6 +126,7 @@ WrenchSet::WrenchSet(const std::vector<GraspContact>& contacts, const Vec3& p_WC
     size_ = std::max(size_, columns_.back().col(0).norm() + c.mu * columns_.back().rightCols<3>().norm());
   }
   basis_ = spanOf(columns_, mu_);
+  PINCER_ASSERT((basis_.transpose() * basis_).isIdentity(1e-12));
 }
 
 double WrenchSet::support(const Vec6& d) const {
@@ -149,6 +152,7 @@ Eigen::VectorXd WrenchSet::extreme(const Vec6& d, double& h) const {
 }
 
 WrenchSet::Exit WrenchSet::shoot(const Vec6& w) const {
+  PINCER_ASSERT(w.allFinite() && !w.isZero(0));  // a direction
   const Eigen::VectorXd d = basis_.transpose() * w.normalized();
   if (rank() == 0 || (basis_ * d - w.normalized()).norm() > kFlat) return {};
   RayProgramme programme(d, size_);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "contact/invariants.h"
+
 namespace pincer::tasks {
 namespace {
 
@@ -62,6 +64,7 @@ double PathFigures::meanIterations() const {
 }
 
 int PathFigures::iterationsQuantile(double q) const {
+  PINCER_ASSERT(0 <= q && q <= 1);
   const double rank = std::max(1.0, std::ceil(q * static_cast<double>(queries)));
   double seen = 0;
   for (std::size_t i = 0; i < by_iterations.size(); ++i) {

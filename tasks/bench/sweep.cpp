@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact/invariants.h"
 #include "tasks/bench/path_figures.h"
 
 namespace pincer::tasks {
@@ -30,6 +31,7 @@ FingerPath sweepAround(const contact::SmoothMesh& mesh, const SweepPlane& plane,
 }
 
 FingerPath circleAround(const SweepPlane& plane, double R) {
+  PINCER_ASSERT(isUnit(plane.axis) && R > 0);
   const Mat3 frame = frameFromNormal(plane.axis);
   FingerPath path{{}, static_cast<int>(2 * M_PI * R / kSweepStep)};
   for (int i = 0; i < path.restart_every; ++i) {

@@ -13,6 +13,7 @@
 #include <array>
 #include <vector>
 
+#include "contact/invariants.h"
 #include "contact/math.h"
 #include "contact/shape/polytope.h"
 #include "contact/shape/shape.h"
@@ -231,6 +232,7 @@ inline ConvexGap convexGap(const contact::Shape& a, const Pose& X_WA, const cont
 
 // Along the unit vector `n`.
 inline double convexGapAlong(const contact::Shape& a, const Pose& X_WA, const contact::Shape& b, const Pose& X_WB, const Vec3& n) {
+  PINCER_ASSERT(isUnit(n));
   const PlainSolid sa = plainSolid(a, X_WA), sb = plainSolid(b, X_WB);
   return convex_gap::Search(sa, sb).gapAlong(n);
 }

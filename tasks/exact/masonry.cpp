@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "contact/functions/elementary.h"
+#include "contact/invariants.h"
 
 namespace pincer::exact {
 namespace {
@@ -15,6 +16,8 @@ struct HalfPlane {
 };
 
 std::vector<HalfPlane> thrustLimits(int voussoirs, double thickness) {
+  PINCER_ASSERT(voussoirs >= 1);
+  PINCER_ASSERT(0 < thickness && thickness < 2);  // of the mean radius
   const double inner = 1 - thickness / 2, outer = 1 + thickness / 2, angle = M_PI / voussoirs;
   const double weight = 0.5 * (outer * outer - inner * inner) * math::sin(angle);
   const double centroid = 2.0 / 3 * math::cos(angle / 2) * (math::cube(outer) - math::cube(inner)) / (outer * outer - inner * inner);

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "contact/invariants.h"
 #include "tasks/exact/runge_kutta.h"
 
 namespace pincer::exact {
@@ -22,6 +23,7 @@ Target minimumJerk(double height, double reach_time, double t) {
 
 double SlidingPinch::acceleration(double d, double v) const {
   const double L = sphere_radius + finger_radius;
+  PINCER_ASSERT(std::abs(d) < L);  // else the fingers have met
   const double x = std::sqrt(L * L - d * d);
   const double s = d / L, c = x / L;
   // [sphere_mass, -2 (s - mu c); finger_mass d/x, c + mu s] [d''; N] = [sphere_mass g; F - finger_mass (v^2/x + d^2 v^2/x^3)]

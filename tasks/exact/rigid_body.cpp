@@ -2,11 +2,13 @@
 
 #include <cmath>
 
+#include "contact/invariants.h"
 #include "tasks/exact/runge_kutta.h"
 
 namespace pincer::exact {
 
 Quat freeRotation(const Vec3& moments, const Vec3& w_B, double time) {
+  PINCER_ASSERT(moments.minCoeff() > 0);
   using State = Eigen::Matrix<double, 7, 1>;  // (w, q as x y z w)
   const auto slope = [&](double, const State& y) {
     const Vec3 w = y.head<3>();
@@ -30,6 +32,7 @@ Quat symmetricTop(double I, double I3, const Vec3& w, double time) {
 
 double HeavyTop::slowPrecession(double angle) const {
   const double L3 = I3 * w3, c = math::cos(angle);
+  PINCER_ASSERT(L3 * L3 >= 4 * I * mass * g * lever * c);  // slower tops fall
   return 2 * mass * g * lever / (L3 + std::sqrt(L3 * L3 - 4 * I * mass * g * lever * c));
 }
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "contact/invariants.h"
 #include "tasks/exact/runge_kutta.h"
 
 namespace pincer::exact {
@@ -36,6 +37,7 @@ double leastAngleOfLadder(double mu, double length, double end_radius) {
 }
 
 Jam jamOfTip(double mass, double inertia, const Vec2& tip, const Vec2& v) {
+  PINCER_ASSERT(mass > 0 && inertia > 0);
   const double x = tip[0], z = tip[1];
   Eigen::Matrix2d W;
   W << 1 / mass + z * z / inertia, -x * z / inertia, -x * z / inertia, 1 / mass + x * x / inertia;

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "contact/functions/elementary.h"
+#include "contact/invariants.h"
 #include "tasks/report/figures.h"
 #include "tasks/session/csv.h"
 
@@ -66,6 +67,7 @@ Figure alignmentFigure(const SessionSummary& summary, const std::vector<TrialRec
 }
 
 Figure turnFigure(const TrialTrace& trace) {
+  PINCER_ASSERT(!trace.samples.empty());
   Figure figure;
   figure.name = "turn_" + fileNamePart(trace.trial.condition);
   figure.title = fmt::format("{}: a trial of alignment", conditionLabel(trace.trial.condition));

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "contact/functions/elementary.h"
+#include "contact/invariants.h"
 
 namespace pincer::tasks {
 
@@ -27,9 +28,13 @@ double twoSidedOfAngle(double theta, int dof) {
 
 }  // namespace
 
-double studentTwoSided(double t, int dof) { return twoSidedOfAngle(math::atan(t / std::sqrt(dof)), dof); }
+double studentTwoSided(double t, int dof) {
+  PINCER_ASSERT(!(t < 0) && dof >= 1);
+  return twoSidedOfAngle(math::atan(t / std::sqrt(dof)), dof);
+}
 
 double studentQuantile(double probability, int dof) {
+  PINCER_ASSERT(0 < probability && probability < 1 && dof >= 1);
   double low = 0, high = std::numbers::pi / 2;
   for (int k = 0; k < std::numeric_limits<double>::digits; ++k) {
     const double middle = 0.5 * (low + high);
@@ -50,6 +55,7 @@ Estimate estimateMean(const std::vector<double>& values) {
 }
 
 double percentile(std::vector<double> values, double p) {
+  PINCER_ASSERT(0 <= p && p <= 1);
   if (values.empty()) return kNaN;
   const double last = static_cast<double>(values.size()) - 1;
   const auto rank = static_cast<std::ptrdiff_t>(std::clamp(std::ceil(p * static_cast<double>(values.size())) - 1, 0.0, last));

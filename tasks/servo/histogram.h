@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "contact/assert.h"
 #include "contact/functions/elementary.h"
 
 namespace pincer::tasks {
@@ -27,6 +28,7 @@ class Histogram {
   // Upper edge of the bin in which the share `q` (0 .. 1) is reached [s]; 0 when empty. From 1 ns to 18 s at most 9 % above the true
   // quantile (nearest rank).
   double quantile(double q) const {
+    PINCER_ASSERT(0 <= q && q <= 1);
     const auto wanted = static_cast<std::int64_t>(std::ceil(q * static_cast<double>(count_)));
     std::int64_t seen = 0;
     for (int i = 0; i < kBins; ++i) {

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <chrono>
 
+#include "contact/assert.h"
 #include "tasks/servo/servo.h"
 
 namespace pincer::tasks {
@@ -22,7 +23,9 @@ struct PaceControl {
 class PacedCycle final : public ServoCycle {
  public:
   // `rate` of the inner ticks [Hz]; both must outlive this.
-  PacedCycle(ServoCycle& inner, PaceControl& control, double rate) : inner_(inner), control_(control), rate_(rate) {}
+  PacedCycle(ServoCycle& inner, PaceControl& control, double rate) : inner_(inner), control_(control), rate_(rate) {
+    PINCER_ASSERT(rate > 0);
+  }
 
   bool tick(double) override {
     if (control_.stop) return false;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "contact/invariants.h"
 #include "grasp/passivity/energy_ledger.h"
 
 namespace pincer::tasks {
@@ -15,6 +16,7 @@ Vec3 filteredVelocity(const TickModel& model, const MountState& mount, const dev
   const double dt = sample.time - mount.sample_time;
   if (!mount.seen || !(dt > 0)) return mount.v_WF;
   const Vec3 raw_W = sample.v_DF ? Vec3(R_WD * *sample.v_DF) : Vec3((p_WF - mount.p_WF) / dt);
+  PINCER_ASSERT(model.velocity_cutoff > 0);
   const double share = -math::expm1(-2 * std::numbers::pi * model.velocity_cutoff * dt);
   return mount.v_WF + share * (raw_W - mount.v_WF);
 }
@@ -24,6 +26,7 @@ void locateFinger(const TickModel& model, TickState& state, int i, const devices
                   grasp::FingerInput& input) {
   MountState& mount = state.mounts[i];
   const Pose& X_WD = model.mounts[i].X_WD;
+  PINCER_ASSERT(X_WD.p.allFinite() && isUnit(X_WD.q));
   const bool usable = sample.valid && devices::isFinite(sample);
   if (usable) {
     const Vec3 p_WF = X_WD * sample.p_DF;
@@ -98,6 +101,10 @@ TickScratch::TickScratch(const TickModel& model)
 
 engine::StepReport tick(const TickModel& model, TickState& state, TickScratch& scratch, const std::vector<FingerInputs>& inputs,
                         double now) {
+  PINCER_DEMAND(model.mounts.size() == model.grasp.fingers.size(), "tick: one mount per finger");
+  PINCER_DEMAND(inputs.size() == model.mounts.size(), "tick: one pair of samples per finger");
+  PINCER_DEMAND(state.mounts.size() == model.mounts.size() && scratch.outputs.size() == model.mounts.size(),
+                "tick: state and scratch are those of this model");
   const int n = static_cast<int>(model.mounts.size());
   for (int i = 0; i < n; ++i) locateFinger(model, state, i, inputs[i].arm, now, scratch.inputs[i]);
   const engine::StepReport report = grasp::step(model.grasp, state.grasp, scratch.grasp, scratch.inputs);

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "contact/functions/elementary.h"
+#include "contact/invariants.h"
 
 namespace pincer::tasks {
 namespace {
@@ -45,6 +46,7 @@ class ThresholdLikelihood {
       : counts_(counts), shape_(shape), gamma_(gamma), p_(p) {
     const auto [least, most] = std::minmax_element(counts.begin(), counts.end(), [](auto& a, auto& b) { return a.level < b.level; });
     low_ = least->level, range_ = most->level - least->level;
+    PINCER_ASSERT(range_ > 0);  // two levels at least
   }
   double low() const { return low_ - range_; }
   double high() const { return low_ + 2 * range_; }
@@ -98,6 +100,7 @@ double crossing(const ThresholdLikelihood& profile, double inside, double outsid
 double normalCdf(double z) { return 0.5 * math::erfc(-z * std::numbers::sqrt2 / 2); }
 
 double normalQuantile(double p) {
+  PINCER_ASSERT(0 < p && p < 1);
   double low = -40, high = 40;
   for (int i = 0; i < 60; ++i) {  // 80 / 2^60 is below round-off
     const double middle = 0.5 * (low + high);
@@ -106,11 +109,17 @@ double normalQuantile(double p) {
   return 0.5 * (low + high);
 }
 
-double PsychometricFunction::at(double x) const { return gamma + (1 - gamma - lambda) * sigmoidAt(shape, (x - alpha) / beta); }
+double PsychometricFunction::at(double x) const {
+  PINCER_ASSERT(beta > 0);
+  return gamma + (1 - gamma - lambda) * sigmoidAt(shape, (x - alpha) / beta);
+}
 
 double PsychometricFunction::levelOf(double p) const { return alpha + beta * sigmoidQuantile(shape, (p - gamma) / (1 - gamma - lambda)); }
 
 PsychometricFit fitPsychometric(std::span<const LevelCount> counts, Sigmoid shape, double gamma, double p, double confidence) {
+  PINCER_ASSERT(!counts.empty());
+  PINCER_ASSERT(gamma < p && p < 0.94);  // with the most lapses
+  PINCER_ASSERT(0 < confidence && confidence < 1);
   const ThresholdLikelihood profile(counts, shape, gamma, p);
   const Peak peak = goldenSection(profile.low(), profile.high(), [&](double threshold) { return profile.at(threshold); });
   PsychometricFit fit = profile.best(peak.at);

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "contact/functions/elementary.h"
+#include "contact/invariants.h"
 
 namespace pincer::tasks {
 
@@ -41,6 +42,7 @@ bool Staircase::answer(bool correct) {
 }
 
 bool Staircase::move(int direction) {
+  PINCER_ASSERT(rule_.lowest <= level_ && level_ <= rule_.highest);
   right_ = wrong_ = 0;
   const bool reversed = direction_ != 0 && direction != direction_;
   direction_ = direction;

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "contact/invariants.h"
+
 namespace pincer::tasks {
 
 void addArc(Profile& profile, double z, double r, double from, double to, int parts, bool inside) {
@@ -13,6 +15,7 @@ void addArc(Profile& profile, double z, double r, double from, double to, int pa
 }
 
 ViewMesh revolve(const Profile& profile, int segments) {
+  PINCER_ASSERT(profile.size() >= 2 && segments >= 3);
   ViewMesh mesh;
   for (const ProfilePoint& at : profile) {
     for (int k = 0; k <= segments; ++k) {
