@@ -4,7 +4,7 @@
 #include <cmath>
 #include <type_traits>
 
-#include "contact/shape/polytope.h"
+#include "contact/polytope.h"
 
 namespace pincer::contact {
 namespace {

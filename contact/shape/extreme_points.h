@@ -18,7 +18,7 @@
 #include <span>
 
 #include "contact/math.h"
-#include "contact/shape/shape.h"
+#include "contact/shape.h"
 
 namespace pincer::contact {
 

@@ -1,11 +1,11 @@
-#include "contact/shape/finger_shape.h"
+#include "contact/finger_shape.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
+#include "contact/polytope.h"
 #include "contact/shape/closed_forms.h"
-#include "contact/shape/polytope.h"
 
 namespace pincer::contact {
 namespace {

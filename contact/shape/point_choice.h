@@ -19,9 +19,9 @@
 #include <array>
 #include <limits>
 
+#include "contact/pair_query.h"
 #include "contact/shape/direction.h"
 #include "contact/shape/extreme_points.h"
-#include "contact/shape/pair_query.h"
 
 namespace pincer::contact {
 

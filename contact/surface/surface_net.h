@@ -14,10 +14,10 @@
 #include <vector>
 
 #include "contact/mesh/connectivity.h"
-#include "contact/mesh/triangle_mesh.h"
 #include "contact/surface/patch_cache.h"
 #include "contact/surface/surface_cell.h"
-#include "contact/surface/surface_contact.h"
+#include "contact/surface_contact.h"
+#include "contact/triangle_mesh.h"
 
 namespace pincer::contact {
 

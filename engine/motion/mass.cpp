@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "contact/error.h"
-#include "contact/shape/polytope.h"
-#include "contact/surface/smooth_mesh.h"
+#include "contact/polytope.h"
+#include "contact/smooth_mesh.h"
 
 namespace pincer::engine {
 namespace {

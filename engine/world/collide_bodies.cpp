@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "contact/shape/pair_query.h"
+#include "contact/pair_query.h"
 #include "engine/world/budget.h"
 #include "engine/world/impact.h"
 #include "engine/world/island_sleep.h"

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "engine/motion/free_motion.h"
 #include "engine/motion/one_freedom.h"
 
 namespace pincer::engine {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/motion/free_motion.h"
 #include "engine/solve/linear.h"
 #include "engine/world/held_body.h"
 

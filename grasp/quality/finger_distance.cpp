@@ -1,6 +1,6 @@
-#include "grasp/quality/finger_distance.h"
+#include "grasp/finger_distance.h"
 
-#include "grasp/finger_contacts.h"
+#include "grasp/tick/finger_contacts.h"
 
 namespace pincer::grasp {
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "grasp/tick/scratch.h"
+
 namespace pincer::grasp {
 
 std::vector<GraspContact> graspContacts(const GraspModel& model, const GraspScratch& scratch, int body) {

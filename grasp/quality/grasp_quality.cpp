@@ -1,8 +1,10 @@
-#include "grasp/quality/grasp_quality.h"
+#include "grasp/grasp_quality.h"
 
 #include <Eigen/QR>
 #include <algorithm>
 #include <limits>
+
+#include "grasp/quality/wrench_set.h"
 
 namespace pincer::grasp {
 namespace {

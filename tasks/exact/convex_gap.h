@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "contact/math.h"
-#include "contact/shape/polytope.h"
-#include "contact/shape/shape.h"
+#include "contact/polytope.h"
+#include "contact/shape.h"
 
 namespace pincer::tasks {
 

@@ -1,7 +1,6 @@
-#include "engine/world/step.h"
-
 #include "engine/solve/cone.h"
 #include "engine/world/contact_rows.h"
+#include "engine/world/stages.h"
 
 namespace pincer::engine {
 namespace {
