@@ -1,4 +1,4 @@
-#include "contact/mesh/generated_meshes.h"
+#include "contact/generated_meshes.h"
 
 #include <algorithm>
 #include <array>

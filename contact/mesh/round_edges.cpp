@@ -10,8 +10,8 @@
 #include "contact/mesh/connectivity.h"
 #include "contact/mesh/edge_balls.h"
 #include "contact/mesh/mesh_findings.h"
-#include "contact/mesh/mesh_report.h"
 #include "contact/mesh/moving_mesh.h"
+#include "contact/mesh_report.h"
 
 namespace pincer::contact {
 

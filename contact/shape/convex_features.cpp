@@ -5,7 +5,7 @@
 #include <type_traits>
 
 #include "contact/invariants.h"
-#include "contact/shape/polytope.h"
+#include "contact/polytope.h"
 
 namespace pincer::contact {
 namespace {

@@ -19,7 +19,7 @@
 
 #include "contact/assert.h"
 #include "contact/math.h"
-#include "contact/shape/shape.h"
+#include "contact/shape.h"
 
 namespace pincer::contact {
 

@@ -1,11 +1,11 @@
-#include "contact/shape/finger_query.h"
+#include "contact/finger_query.h"
 
 #include <type_traits>
 
 #include "contact/invariants.h"
+#include "contact/pair_query.h"
 #include "contact/shape/closed_forms.h"
-#include "contact/shape/pair_query.h"
-#include "contact/surface/smooth_mesh.h"
+#include "contact/smooth_mesh.h"
 
 namespace pincer::contact {
 namespace {

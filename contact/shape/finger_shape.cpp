@@ -1,12 +1,12 @@
-#include "contact/shape/finger_shape.h"
+#include "contact/finger_shape.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "contact/invariants.h"
+#include "contact/polytope.h"
 #include "contact/shape/closed_forms.h"
-#include "contact/shape/polytope.h"
 
 namespace pincer::contact {
 namespace {

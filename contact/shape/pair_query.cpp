@@ -1,19 +1,19 @@
-#include "contact/shape/pair_query.h"
+#include "contact/pair_query.h"
 
 #include <limits>
 
+#include "contact/finger_query.h"
 #include "contact/invariants.h"
+#include "contact/polytope.h"
 #include "contact/shape/convex_features.h"
 #include "contact/shape/convex_pairs.h"
 #include "contact/shape/direction.h"
 #include "contact/shape/extreme_points.h"
-#include "contact/shape/finger_query.h"
 #include "contact/shape/mesh_mesh.h"
 #include "contact/shape/mesh_pairs.h"
 #include "contact/shape/point_choice.h"
-#include "contact/shape/polytope.h"
 #include "contact/shape/support.h"
-#include "contact/surface/smooth_mesh.h"
+#include "contact/smooth_mesh.h"
 
 namespace pincer::contact {
 namespace {

@@ -20,9 +20,9 @@
 #include <limits>
 
 #include "contact/assert.h"
+#include "contact/pair_query.h"
 #include "contact/shape/direction.h"
 #include "contact/shape/extreme_points.h"
-#include "contact/shape/pair_query.h"
 
 namespace pincer::contact {
 

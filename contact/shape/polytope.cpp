@@ -1,4 +1,4 @@
-#include "contact/shape/polytope.h"
+#include "contact/polytope.h"
 
 #include <fmt/format.h>
 

@@ -14,4 +14,7 @@ PatchCache::PatchCache(int cells) : places_(std::bit_ceil(static_cast<std::size_
   }
 }
 
+void DeletePatchCache::operator()(PatchCache* cache) const { delete cache; }
+PatchCacheHandle makePatchCache(int cells) { return PatchCacheHandle(new PatchCache(cells)); }
+
 }  // namespace pincer::contact

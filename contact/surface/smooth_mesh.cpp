@@ -1,13 +1,14 @@
-#include "contact/surface/smooth_mesh.h"
+#include "contact/smooth_mesh.h"
 
 #include <fmt/format.h>
 
 #include <mutex>
 
 #include "contact/invariants.h"
-#include "contact/mesh/mesh_report.h"
+#include "contact/mesh_report.h"
 #include "contact/surface/contact_slots.h"
 #include "contact/surface/convex_hull.h"
+#include "contact/surface/mesh_features.h"
 #include "contact/surface/surface_net.h"
 #include "contact/surface/surface_search.h"
 

@@ -15,10 +15,10 @@
 
 #include "contact/assert.h"
 #include "contact/mesh/connectivity.h"
-#include "contact/mesh/triangle_mesh.h"
 #include "contact/surface/patch_cache.h"
 #include "contact/surface/surface_cell.h"
-#include "contact/surface/surface_contact.h"
+#include "contact/surface_contact.h"
+#include "contact/triangle_mesh.h"
 
 namespace pincer::contact {
 

@@ -4,8 +4,8 @@
 
 #include "contact/error.h"
 #include "contact/invariants.h"
-#include "contact/shape/polytope.h"
-#include "contact/surface/smooth_mesh.h"
+#include "contact/polytope.h"
+#include "contact/smooth_mesh.h"
 
 namespace pincer::engine {
 namespace {

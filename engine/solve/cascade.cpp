@@ -269,7 +269,7 @@ SolverScratch::SolverScratch(int contacts, int movers)
   y.resize(kMoverFreedoms * static_cast<std::size_t>(movers));
   weight.resize(n);
   rhs.resize(std::max(m, y.size()));
-  interior.resize(kInteriorPointVectors * m);
+  workspace.resize(kInteriorPointVectors * m);
   pivots.resize(rows);
   node.resize(static_cast<std::size_t>(movers));
   sides.resize(n);

@@ -18,7 +18,7 @@ class CentralPath {
   CentralPath(const ScaledProblem& problem, const double* shift, ContactEquations& equations, SolverScratch& scratch, Iterate& it)
       : problem_(problem), shift_(shift), equations_(equations), scratch_(scratch), it_(it) {
     double** const vectors[] = {&x_, &z_, &dx_, &dz_, &lambda_, &target_, &defect_, &t_};
-    double* memory = scratch.interior.data();
+    double* memory = scratch.workspace.data();
     for (double** vector : vectors) {
       *vector = memory;
       memory += problem.rowCount();

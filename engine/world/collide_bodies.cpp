@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "contact/invariants.h"
-#include "contact/shape/pair_query.h"
+#include "contact/pair_query.h"
 #include "engine/world/budget.h"
 #include "engine/world/impact.h"
 #include "engine/world/island_sleep.h"

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "contact/invariants.h"
+#include "engine/motion/free_motion.h"
 #include "engine/motion/one_freedom.h"
 
 namespace pincer::engine {

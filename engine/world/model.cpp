@@ -1,4 +1,4 @@
-#include "engine/world/model.h"
+#include "engine/model.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,9 @@
 #include <limits>
 
 #include "contact/invariants.h"
-#include "contact/shape/pair_query.h"
+#include "contact/pair_query.h"
+#include "engine/motion/mass.h"
+#include "engine/solve/contact_problem.h"
 #include "engine/world/broad_phase.h"
 #include "engine/world/most_numbered.h"
 

@@ -1,10 +1,11 @@
-#include "engine/world/state.h"
+#include "engine/state.h"
 
 #include <fmt/format.h>
 
 #include <bit>
 
 #include "contact/invariants.h"
+#include "engine/motion/free_motion.h"
 #include "engine/world/joints.h"
 
 namespace pincer::engine {
@@ -62,10 +63,8 @@ WorldState makeState(const WorldModel& model, const std::vector<BodyStart>& star
     s.X_WI = starts[i].X_WB * body.X_BI;
     s.X_WI.q.normalize();
     s.v_W = starts[i].v_W;
-    if (!body.dynamic)
-      s.L_W = starts[i].w_W;
-    else
-      s.L_W = s.X_WI.q * body.moments.cwiseProduct(s.X_WI.q.conjugate() * starts[i].w_W);
+    if (body.driven) state.driven_w_W.push_back(starts[i].w_W);
+    if (body.dynamic) s.L_W = s.X_WI.q * body.moments.cwiseProduct(s.X_WI.q.conjugate() * starts[i].w_W);
     state.bodies.push_back(s);
   }
   for (const Vec3& p : points) {
@@ -92,7 +91,8 @@ Pose bodyPose(const WorldModel& model, const WorldState& state, int body) {
 }
 
 Vec3 bodyAngularVelocity(const WorldModel& model, const WorldState& state, int body) {
-  if (!model.bodies[body].dynamic) return state.bodies[body].L_W;
+  if (model.bodies[body].driven) return state.driven_w_W[model.bodies[body].motion];
+  if (!model.bodies[body].dynamic) return Vec3::Zero();
   return angularVelocity(model.bodies[body].rotation, state.bodies[body].X_WI.q, state.bodies[body].L_W);
 }
 
@@ -127,6 +127,7 @@ std::uint64_t hashOf(const WorldState& state) {
     hash.add(b.X_WI.q);
     for (const Vec3& v : {b.X_WI.p, b.v_W, b.L_W}) hash.add(v);
   }
+  for (const Vec3& w_W : state.driven_w_W) hash.add(w_W);
   for (const PointState& p : state.points) {
     for (const Vec3& v : {p.p_W, p.v_W, p.p_target_W, p.v_target_W}) hash.add(v);
     hash.add(static_cast<std::uint64_t>(p.touching));

@@ -3,7 +3,9 @@
 #include <limits>
 
 #include "contact/invariants.h"
-#include "contact/shape/pair_query.h"
+#include "contact/pair_query.h"
+#include "engine/motion/driven_motion.h"
+#include "engine/motion/free_motion.h"
 #include "engine/world/budget.h"
 #include "engine/world/held_body.h"
 #include "engine/world/impact.h"
@@ -39,7 +41,8 @@ Moment momentOf(const WorldModel& model, const WorldState& state, const WorldScr
   const BodyScratch& now = scratch.bodies[i];
   if (!body.dynamic) {
     if (!body.driven) return {s.X_WI, {}};
-    const DrivenPlace place = drivenPlace({s.X_WI, {s.v_W, s.L_W}}, {now.X_WB_end, now.free}, scratch.h, t / scratch.h);
+    const DrivenPlace place =
+        drivenPlace({s.X_WI, {s.v_W, state.driven_w_W[body.motion]}}, {now.X_WB_end, now.free}, scratch.h, t / scratch.h);
     return {place.X_WB, place.motion};
   }
   if (isHeldBody(model, body)) {

@@ -1,4 +1,4 @@
-#include "grasp/coupling/hold_bounds.h"
+#include "grasp/hold_bounds.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

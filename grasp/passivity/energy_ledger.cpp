@@ -1,4 +1,6 @@
-#include "grasp/passivity/energy_ledger.h"
+#include "grasp/energy_ledger.h"
+
+#include "grasp/tick/scratch.h"
 
 #include "contact/invariants.h"
 

@@ -1,4 +1,4 @@
-#include "grasp/passivity/passivity.h"
+#include "grasp/passivity.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
-#include "grasp/quality/finger_distance.h"
+#include "grasp/finger_distance.h"
 
 #include "contact/invariants.h"
-#include "grasp/finger_contacts.h"
+#include "grasp/tick/finger_contacts.h"
 
 namespace pincer::grasp {
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "contact/invariants.h"
+#include "grasp/tick/scratch.h"
 
 namespace pincer::grasp {
 

@@ -1,10 +1,11 @@
-#include "grasp/quality/grasp_quality.h"
+#include "grasp/grasp_quality.h"
 
 #include <Eigen/QR>
 #include <algorithm>
 #include <limits>
 
 #include "contact/invariants.h"
+#include "grasp/quality/wrench_set.h"
 
 namespace pincer::grasp {
 namespace {

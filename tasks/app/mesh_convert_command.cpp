@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <memory>
 
-#include "contact/mesh/mesh_repair.h"
+#include "contact/mesh_repair.h"
 #include "tasks/app/app.h"
 #include "tasks/app/mesh_commands.h"
 #include "tasks/app/print.h"

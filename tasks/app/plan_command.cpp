@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 
+#include "engine/world/stage_clock.h"
 #include "tasks/app/app.h"
 #include "tasks/app/commands.h"
 #include "tasks/app/interrupt.h"
@@ -73,7 +74,7 @@ PlanTimes measureStages(const Scene& scene, std::int64_t ticks) {
   engine::StageClock clock;
   repeatScene(scene, ticks, times, progress, ticks, [&](Simulation& s) {
     clock.seconds = {};
-    s.scratch().world.clock = &clock;
+    engine::timeStages(&clock, grasp::worldOf(s.scratch()));
     s.tick();
     for (std::size_t i = 0; i < times.stages.size(); ++i) times.stages[i].add(clock.seconds[i]);
   });
@@ -116,7 +117,7 @@ std::string planJson(const Scene& scene, const std::vector<PlanLine>& plan, cons
 
 int runPlan(const PlanArguments& arguments) {
   const Scene scene = readSceneOrBuiltin(arguments.scene);
-  const std::vector<PlanLine> plan = describePlan(buildWorld(scene));
+  const std::vector<PlanLine> plan = describePlan(buildWorld(scene), methodsOf(scene));
   const PlanTimes times = measureStages(scene, arguments.ticks);
   print("{}", arguments.json ? planJson(scene, plan, times) : planText(scene, plan, times));
   if (!times.interrupted) return kExitOk;

@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <memory>
 
-#include "contact/mesh/generated_meshes.h"
-#include "contact/mesh/mesh_reader.h"
+#include "contact/generated_meshes.h"
 #include "contact/mesh/mesh_writer.h"
+#include "contact/mesh_reader.h"
 #include "tasks/bench/contact_bench.h"
 #include "tasks/bench/flat_distance.h"
 #include "tasks/bench/objects.h"

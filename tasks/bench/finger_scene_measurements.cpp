@@ -6,7 +6,7 @@
 #include <limits>
 #include <memory>
 
-#include "contact/mesh/generated_meshes.h"
+#include "contact/generated_meshes.h"
 #include "tasks/bench/contact_bench.h"
 #include "tasks/bench/finger_scene.h"
 #include "tasks/bench/objects.h"

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <random>
 
-#include "contact/mesh/generated_meshes.h"
-#include "contact/shape/pair_query.h"
-#include "contact/surface/smooth_mesh.h"
+#include "contact/generated_meshes.h"
+#include "contact/pair_query.h"
+#include "contact/smooth_mesh.h"
 #include "tasks/bench/contact_bench.h"
 #include "tasks/exact/convex_gap.h"
 #include "tasks/measure/timing.h"
@@ -68,11 +68,11 @@ class Draws {
 };
 
 struct PairQuery {
-  contact::PatchCache cache;
+  const contact::PatchCacheHandle cache = contact::makePatchCache();
   PairPoints found;
 
   const PairPoints& of(const Shape& a, const Pose& X_WA, const Shape& b, const Vec3& last_n_W, double margin) {
-    contact::collideShapes(a, X_WA, b, Pose{}, margin, cache, found, last_n_W);
+    contact::collideShapes(a, X_WA, b, Pose{}, margin, *cache, found, last_n_W);
     return found;
   }
 };

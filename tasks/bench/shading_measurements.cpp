@@ -8,7 +8,7 @@
 #include <functional>
 #include <memory>
 
-#include "contact/mesh/generated_meshes.h"
+#include "contact/generated_meshes.h"
 #include "tasks/bench/contact_bench.h"
 #include "tasks/bench/objects.h"
 #include "tasks/bench/sweep.h"

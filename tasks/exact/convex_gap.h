@@ -15,8 +15,8 @@
 
 #include "contact/invariants.h"
 #include "contact/math.h"
-#include "contact/shape/polytope.h"
-#include "contact/shape/shape.h"
+#include "contact/polytope.h"
+#include "contact/shape.h"
 
 namespace pincer::tasks {
 

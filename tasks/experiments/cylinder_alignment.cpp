@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/world/state.h"
+#include "engine/state.h"
 #include "tasks/experiments/study_parameters.h"
 #include "tasks/participants/random.h"
 

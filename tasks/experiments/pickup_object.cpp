@@ -6,12 +6,12 @@
 #include <cmath>
 #include <limits>
 
-#include "contact/mesh/mesh_reader.h"
-#include "contact/mesh/mesh_report.h"
-#include "contact/surface/smooth_mesh.h"
+#include "contact/mesh_reader.h"
+#include "contact/mesh_report.h"
+#include "contact/smooth_mesh.h"
 #include "engine/motion/mass.h"
-#include "engine/world/state.h"
-#include "engine/world/step.h"
+#include "engine/state.h"
+#include "engine/step.h"
 
 namespace pincer::tasks {
 namespace {
@@ -80,12 +80,12 @@ Pose settle(const SpherePickupOptions& options, const contact::Shape& shape, dou
   const double mu = options.frictions.front();
   const engine::WorldModel model = pickupWorld(options, shape, mu, options.dynamic_ratio * mu).build();
   engine::WorldState state = engine::makeState(model, {{}, {{Quat::Identity(), Vec3(0, 0, height)}, Vec3::Zero(), Vec3::Zero()}}, {});
-  engine::WorldScratch scratch(model);
+  const engine::ScratchHandle scratch = engine::makeScratch(model);
   engine::BodyState& body = state.bodies[kObjectBody];
   const double keep = math::exp(-model.options.h / kDampingTime);
   Pose last = engine::bodyPose(model, state, kObjectBody);
   for (double next = kRestTime; state.time < kSettleTime;) {
-    engine::step(model, state, scratch);
+    engine::step(model, state, *scratch);
     body.v_W *= keep;
     body.L_W *= keep;
     if (state.time < next) continue;

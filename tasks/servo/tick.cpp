@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "contact/invariants.h"
-#include "grasp/passivity/energy_ledger.h"
+#include "grasp/energy_ledger.h"
 
 namespace pincer::tasks {
 namespace {
@@ -93,11 +93,12 @@ devices::TactileCommand tactorTarget(const TickModel& model, MountState& mount, 
 }  // namespace
 
 TickScratch::TickScratch(const TickModel& model)
-    : grasp(model.grasp),
+    : grasp(grasp::makeScratch(model.grasp)),
       inputs(model.mounts.size()),
       p_WF(model.mounts.size()),
       f_user_W(model.mounts.size()),
-      outputs(model.mounts.size()) {}
+      outputs(model.mounts.size()),
+      fingers(grasp::fingersOf(*grasp)) {}
 
 engine::StepReport tick(const TickModel& model, TickState& state, TickScratch& scratch, const std::vector<FingerInputs>& inputs,
                         double now) {
@@ -107,11 +108,12 @@ engine::StepReport tick(const TickModel& model, TickState& state, TickScratch& s
                 "tick: state and scratch are those of this model");
   const int n = static_cast<int>(model.mounts.size());
   for (int i = 0; i < n; ++i) locateFinger(model, state, i, inputs[i].arm, now, scratch.inputs[i]);
-  const engine::StepReport report = grasp::step(model.grasp, state.grasp, scratch.grasp, scratch.inputs);
-  for (int i = 0; i < n; ++i) scratch.f_user_W[i] = scratch.grasp.fingers[i].f_user_W;
+  const grasp::GraspReport report = grasp::step(model.grasp, state.grasp, *scratch.grasp, scratch.inputs);
+  scratch.fingers = report.fingers;
+  for (int i = 0; i < n; ++i) scratch.f_user_W[i] = scratch.fingers[i].f_user_W;
   keepPassive(model, state, scratch);
   for (int i = 0; i < n; ++i) {
-    const grasp::FingerReport& finger = scratch.grasp.fingers[i];
+    const grasp::FingerReport& finger = scratch.fingers[i];
     scratch.outputs[i].f_D = gatedForce(model, state.mounts[i], model.mounts[i], inputs[i].arm,
                                         scratch.f_user_W[i] + state.mounts[i].f_lead_W, now, report.status);
     scratch.outputs[i].tactile = tactorTarget(model, state.mounts[i], model.mounts[i], model.grasp.fingers[i], finger);

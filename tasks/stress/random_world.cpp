@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "contact/shape/pair_query.h"
+#include "contact/pair_query.h"
 
 namespace pincer::tasks {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <map>
 
-#include "contact/shape/polytope.h"
+#include "contact/polytope.h"
 #include "tasks/verify/scene_run.h"
 #include "tasks/verify/verify.h"
 
@@ -84,11 +84,14 @@ std::vector<Record> massRatio(MeasureContext& context) {
       sunk = std::max(sunk, std::abs(sim.bodyPose(static_cast<int>(i)).p.z() - sim.scene().starts[i].X_WB.p.z()));
     if (sim.time() < 1) return;
     std::map<int, double> carried;  // by the upper body of a face: its lower body pushes it up
-    engine::forEachContact(sim.scratch().world,
-                           [&](const engine::Contact& c) { carried[std::max(c.a.index, c.b.index)] += std::abs(c.impulse_W.z()); });
+    const engine::WorldScratch& world = grasp::worldOf(sim.scratch());
+    for (int k = 0; k < engine::contactCount(world); ++k) {
+      const engine::ContactReport c = engine::contactAt(world, k);
+      carried[std::max(c.other_body, c.body)] += std::abs(c.f_W.z());
+    }
     double weight = 0;
     for (int i = static_cast<int>(bodies.size()) - 1; i > 0; --i) {
-      weight += bodies[static_cast<std::size_t>(i)].mass * kVerifyG * sim.scene().options.h;
+      weight += bodies[static_cast<std::size_t>(i)].mass * kVerifyG;
       force_error = std::max(force_error, std::abs(carried[i] / weight - 1));
     }
   });

@@ -2,6 +2,7 @@
 #include "tasks/exact/toppling.h"
 
 #include "engine/motion/mass.h"
+#include "engine/world/scratch.h"
 #include "tasks/verify/scene_run.h"
 #include "tasks/verify/verify.h"
 
@@ -78,7 +79,7 @@ std::vector<Record> painleve(MeasureContext&) {
     const engine::BodyState& state = sim.state().world.bodies[1];
     worst = std::max(worst, (Vec2(state.v_W.x(), state.v_W.z()) - exact.v).norm());
     gained = std::max(gained, engine::kineticEnergy(sim.model().world, sim.state().world) / energy - 1);
-    sinking = std::max(sinking, -sim.scratch().world.contacts.front().u_C.z());
+    sinking = std::max(sinking, -grasp::worldOf(sim.scratch()).contacts.front().u_C.z());
   }
   // In one tick of 0.1 ms gravity alone changes a velocity by 1e-3 m/s, and the tick's geometry is that of its middle.
   return {atMost("velocity after the jam over three ticks, error", worst, "m/s", 5e-3), atMost("energy gained, relative", gained, "-", 0),

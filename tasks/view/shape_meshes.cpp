@@ -4,8 +4,9 @@
 #include <cmath>
 
 #include "contact/mesh/mesh_pieces.h"
-#include "contact/shape/polytope.h"
-#include "contact/surface/smooth_mesh.h"
+#include "contact/polytope.h"
+#include "contact/smooth_mesh.h"
+#include "contact/surface/patch.h"
 #include "tasks/view/revolved.h"
 
 namespace pincer::tasks {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/world/stage_clock.h"
 #include "grasp/step.h"
 #include "tasks/bench/engine/engine_bench.h"
 #include "tasks/measure/timing.h"
@@ -27,9 +28,9 @@ struct SolveTimes {
 // One round.
 SolveTimes timeSolves(grasp::GraspModel model, grasp::GraspState state, const std::vector<Vec3>& devices, MeasureContext& context) {
   const Vec3 gravity_W = model.world.options.gravity_W;
-  grasp::GraspScratch scratch(model);
+  const grasp::ScratchHandle scratch = grasp::makeScratch(model);
   engine::StageClock clock;
-  scratch.world.clock = &clock;
+  engine::timeStages(&clock, grasp::worldOf(*scratch));
   std::vector<grasp::FingerInput> inputs(devices.size());
   SolveTimes times;
   for (int k = 0; k < kWarmTicks + kSolveTicks && !context.interrupted(); ++k) {
@@ -38,7 +39,7 @@ SolveTimes timeSolves(grasp::GraspModel model, grasp::GraspState state, const st
     for (std::size_t i = 0; i < devices.size(); ++i)
       inputs[i] = {devices[i] + 1e-3 * math::sin(phase) * Vec3::UnitZ(), 1e-2 * math::cos(phase) * Vec3::UnitZ()};
     if (devices.empty()) model.world.options.gravity_W = gravity_W + 0.5 * Vec3(math::sin(phase), math::cos(1.7 * phase), 0);
-    const engine::StepReport report = grasp::step(model, state, scratch, inputs);
+    const engine::StepReport report = grasp::step(model, state, *scratch, inputs);
     if (k < kWarmTicks) continue;
     times.us.push_back(1e6 * clock.seconds[static_cast<std::size_t>(engine::Stage::kSolve)]);
     times.residual = std::max(times.residual, report.solve.residual);

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <memory>
 
-#include "contact/mesh/generated_meshes.h"
-#include "contact/surface/smooth_mesh.h"
-#include "grasp/passivity/energy_ledger.h"
-#include "grasp/passivity/passivity.h"
+#include "contact/generated_meshes.h"
+#include "contact/smooth_mesh.h"
+#include "grasp/energy_ledger.h"
+#include "grasp/passivity.h"
 #include "tasks/bench/grasp/bench_grasp.h"
 #include "tasks/bench/grasp/grasp_bench.h"
 #include "tasks/measure/timing.h"
@@ -39,7 +39,7 @@ class FeatureHand {
     model_ = grasp::buildGrasp(std::move(builder), fingers);
     state_ = grasp::makeState(model_, {engine::BodyStart{{Quat::Identity(), Vec3(0, 0, kFeatureHeight)}}, engine::BodyStart{}},
                               {device(0), device(1)});
-    scratch_ = std::make_unique<grasp::GraspScratch>(model_);
+    scratch_ = grasp::makeScratch(model_);
     passivity_.on = features.passive;
     run(2000);
   }
@@ -70,7 +70,7 @@ class FeatureHand {
     std::vector<Vec3>&p = places_, &f = forces_;
     for (std::size_t i = 0; i < 2; ++i) {
       p[i] = inputs_[i].p_WF;
-      f[i] = scratch_->fingers[i].f_user_W;
+      f[i] = grasp::fingersOf(*scratch_)[i].f_user_W;
     }
     grasp::observePorts(passivity_, p, grasp::storedEnergy(model_, state_), kGraspTick, ports);
     grasp::controlPorts(passivity_, kGraspTick, ports, f);
@@ -80,7 +80,7 @@ class FeatureHand {
   Features features_;
   grasp::GraspModel model_;
   grasp::GraspState state_;
-  std::unique_ptr<grasp::GraspScratch> scratch_;
+  grasp::ScratchHandle scratch_;
   std::vector<grasp::FingerInput> inputs_ = std::vector<grasp::FingerInput>(2);
   std::vector<Vec3> places_ = std::vector<Vec3>(2), forces_ = std::vector<Vec3>(2);
   grasp::PassivityOptions passivity_;
@@ -101,7 +101,7 @@ class FeatureMarbles {
     }
     model_ = builder.build();
     state_ = engine::makeState(model_, starts, {});
-    scratch_ = std::make_unique<engine::WorldScratch>(model_);
+    scratch_ = engine::makeScratch(model_);
   }
 
   void run(int ticks) {
@@ -115,7 +115,7 @@ class FeatureMarbles {
  private:
   engine::WorldModel model_;
   engine::WorldState state_;
-  std::unique_ptr<engine::WorldScratch> scratch_;
+  engine::ScratchHandle scratch_;
   std::int64_t tick_ = 0;
 };
 

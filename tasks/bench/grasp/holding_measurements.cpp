@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "contact/mesh/generated_meshes.h"
-#include "contact/surface/smooth_mesh.h"
+#include "contact/generated_meshes.h"
+#include "contact/smooth_mesh.h"
+#include "engine/world/scratch.h"
 #include "tasks/bench/finger_path.h"
 #include "tasks/bench/grasp/bench_grasp.h"
 #include "tasks/bench/grasp/grasp_bench.h"
@@ -93,8 +94,8 @@ std::vector<Record> twoContactsOnOneBody(MeasureContext&) {
     grasp.leadFinger(0, Vec3(1e-3 * math::sin(0.05 * k), 0, 0.03 - 1e-4 * k));
     const Vec3 before = grasp.state.world.bodies[0].v_W;
     grasp.tick();
-    both += std::count_if(grasp.scratch.world.contacts.begin(), grasp.scratch.world.contacts.end(),
-                          [](const auto& c) { return c.active(); }) > 1;
+    const auto& contacts = grasp::worldOf(*grasp.scratch).contacts;
+    both += std::count_if(contacts.begin(), contacts.end(), [](const auto& c) { return c.active(); }) > 1;
     const Vec3 change = kMass * (grasp.state.world.bodies[0].v_W - before) / kGraspTick;
     momentum = std::max(momentum, (change + grasp.felt(0).f_contact_W).norm());
   }
@@ -190,7 +191,7 @@ NoisyHold holdInNoise(const contact::Shape& shape, double twist_stiffness, Measu
       mean += ring.grasp.body(0).p / kSecond;
       if (s == 0) continue;  // it settles
       bool slides = false;
-      for (const engine::Contact& c : ring.grasp.scratch.world.contacts) {
+      for (const engine::Contact& c : grasp::worldOf(*ring.grasp.scratch).contacts) {
         hold.slip = std::max(hold.slip, c.offset_C.head<2>().norm());
         slides = slides || c.sliding;
       }

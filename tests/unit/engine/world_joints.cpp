@@ -3,9 +3,10 @@
 
 #include <cmath>
 
+#include "engine/motion/driven_motion.h"
 #include "engine/motion/one_freedom.h"
+#include "engine/step.h"
 #include "engine/world/joints.h"
-#include "engine/world/step.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/constants.h"
 #include "tests/support/worlds.h"

@@ -13,8 +13,8 @@
 #include <string_view>
 
 #include "contact/error.h"
-#include "contact/mesh/mesh_format.h"
-#include "contact/mesh/triangle_mesh.h"
+#include "contact/mesh_format.h"
+#include "contact/triangle_mesh.h"
 
 namespace pincer::contact {
 

@@ -1,6 +1,5 @@
-#include "engine/world/step.h"
-
 #include "contact/invariants.h"
+#include "engine/world/stages.h"
 #include "engine/solve/cone.h"
 #include "engine/world/contact_rows.h"
 

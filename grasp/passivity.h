@@ -14,7 +14,7 @@
 // A finger slower than `still_speed` isn't damped: no damping has an effect there, and nothing is divided by its speed.
 //
 // The arm's own friction is what makes sampled walls passive at all (Colgate & Schenkel); its dissipation is credit, so that a coupling within
-// the bound of coupling/hold_bounds.h is left alone.
+// the bound of hold_bounds.h is left alone.
 //
 // Energy may pass from one finger to another through what they hold: only the sum must not become negative (an n-port). With `each`, every
 // finger must be passive alone.
@@ -30,7 +30,7 @@
 #include <vector>
 
 #include "contact/math.h"
-#include "grasp/coupling/hold_bounds.h"
+#include "grasp/hold_bounds.h"
 
 namespace pincer::grasp {
 

@@ -4,14 +4,15 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/world/model.h"
+#include "engine/model.h"
+#include "engine/solver.h"
 
 namespace pincer::engine {
 
 struct BodyState {
   Pose X_WI;                // inertial frame in W
   Vec3 v_W = Vec3::Zero();  // of the centre of mass [m/s]
-  Vec3 L_W = Vec3::Zero();  // angular momentum about the centre of mass [kg m^2/s]; of a driven body its angular velocity [rad/s]
+  Vec3 L_W = Vec3::Zero();  // angular momentum about the centre of mass [kg m^2/s]; zero of what isn't dynamic
 };
 
 struct PointState {
@@ -43,8 +44,9 @@ struct WorldState {
   double time = 0;  // [s]
   std::int64_t tick = 0;
   int parts = 1;      // that the last tick was cut into by the tolerance
-  double h_last = 0;  // length of the last part of a tick [s], see step.h; 0 before the first
+  double h_last = 0;  // length of the last part of a tick [s], see world/stages.h; 0 before the first
   std::vector<BodyState> bodies;
+  std::vector<Vec3> driven_w_W;  // angular velocities of driven bodies, by BodyModel::motion [rad/s]
   std::vector<PointState> points;
   std::vector<ContactMemory> contacts;  // always options.max_contacts of them, so that no tick allocates; the first contact_count count
   int contact_count = 0;

@@ -18,12 +18,13 @@
 #include <vector>
 
 #include "contact/math.h"
-#include "contact/mesh/triangle_mesh.h"
-#include "contact/surface/mesh_features.h"
-#include "contact/surface/patch_cache.h"
-#include "contact/surface/surface_contact.h"
+#include "contact/surface_contact.h"
+#include "contact/triangle_mesh.h"
 
 namespace pincer::contact {
+
+class MeshFeatures;  // contact/surface/mesh_features.h
+struct Patch;        // contact/surface/patch.h
 
 struct SurfaceOptions {
   double crease_angle = 0.6981317007977318;         // [rad], 40 degrees; in (0, pi]: edges with a sharper angle between facets stay sharp

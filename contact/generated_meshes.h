@@ -5,7 +5,7 @@
 #pragma once
 #include <cstdint>
 
-#include "contact/mesh/triangle_mesh.h"
+#include "contact/triangle_mesh.h"
 
 namespace pincer::contact {
 

@@ -1,4 +1,4 @@
-#include "grasp/finger_contacts.h"
+#include "grasp/tick/finger_contacts.h"
 
 #include <limits>
 #include <type_traits>
@@ -135,16 +135,13 @@ contact::FingerContacts fingerOnBody(const GraspModel& model, GraspState& state,
   return all;
 }
 
-void findFingerContacts(const GraspModel& model, GraspState& state, GraspScratch& scratch) {
-  const int fingers = static_cast<int>(model.fingers.size()), bodies = static_cast<int>(model.world.bodies.size());
-  for (int finger = 0; finger < fingers; ++finger) {
-    scratch.fingers[finger] = {};
-    scratch.fingers[finger].gap = std::numeric_limits<double>::max();
-    scratch.nearest_n_W[finger].setZero();
-    if (model.fingers[finger].method != FingerMethod::kProxy) continue;
-    FingerLook look(model, state, scratch, finger);
-    for (int body = 0; body < bodies; ++body) look.at(body);
-  }
+void findFingerContacts(const GraspModel& model, int finger, GraspState& state, GraspScratch& scratch) {
+  scratch.fingers[finger] = {};
+  scratch.fingers[finger].gap = std::numeric_limits<double>::max();
+  scratch.nearest_n_W[finger].setZero();
+  FingerLook look(model, state, scratch, finger);
+  const int bodies = static_cast<int>(model.world.bodies.size());
+  for (int body = 0; body < bodies; ++body) look.at(body);
 }
 
 }  // namespace pincer::grasp

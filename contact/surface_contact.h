@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string_view>
 
 #include "contact/math.h"
@@ -18,6 +19,16 @@ enum class SurfaceVariant : std::uint8_t {
 
 // As scenes and the command line name them, in the order of the enumeration.
 inline constexpr std::array<std::string_view, 4> kSurfaceVariantNames = {"smooth", "facet", "force", "smooth_published"};
+
+// Working memory of queries, for one thread at a time: patches that they touched. No answer depends on what it holds.
+class PatchCache;
+struct DeletePatchCache {
+  void operator()(PatchCache* cache) const;
+};
+using PatchCacheHandle = std::unique_ptr<PatchCache, DeletePatchCache>;
+
+// Room for `cells` > 0 patches, rounded up to a power of two, about half a kilobyte each. A finger needs some dozens.
+PatchCacheHandle makePatchCache(int cells = 1024);
 
 constexpr int kMaxSurfaceContacts = 3;
 

@@ -13,7 +13,7 @@
 #include <variant>
 
 #include "contact/math.h"
-#include "contact/shape/shape.h"
+#include "contact/shape.h"
 
 namespace pincer::contact {
 

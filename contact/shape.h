@@ -7,8 +7,8 @@
 
 namespace pincer::contact {
 
-class Polytope;    // contact/shape/polytope.h
-class SmoothMesh;  // contact/surface/smooth_mesh.h
+class Polytope;    // contact/polytope.h
+class SmoothMesh;  // contact/smooth_mesh.h
 
 struct Sphere {
   double radius;  // > 0 [m]; centre at B's origin

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "contact/error.h"
-#include "contact/mesh/triangle_mesh.h"
+#include "contact/triangle_mesh.h"
 
 namespace pincer::contact {
 

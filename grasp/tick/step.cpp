@@ -5,8 +5,8 @@
 
 #include "contact/invariants.h"
 #include "engine/motion/driven_motion.h"
-#include "grasp/baseline/baseline.h"
-#include "grasp/finger_contacts.h"
+#include "grasp/tick/finger_contacts.h"
+#include "grasp/tick/finger_tick.h"
 
 namespace pincer::grasp {
 namespace {
@@ -20,6 +20,8 @@ void setRotation(const FingerInput& input, const FingerState& last, double h, en
   point.w_W = turn_W / h;
   q_mid_WF = quatFromRotationVector(0.5 * turn_W) * last.q_WF;
 }
+
+}  // namespace
 
 void setInputs(const GraspModel& model, const GraspState& state, std::span<const FingerInput> inputs, GraspScratch& scratch) {
   for (std::size_t i = 0; i < inputs.size(); ++i) {
@@ -35,6 +37,8 @@ void setInputs(const GraspModel& model, const GraspState& state, std::span<const
     point.n_W = has_axis ? state.fingers[i].n_W : Vec3(Vec3::UnitZ());
   }
 }
+
+namespace {
 
 // Sums the contacts of one finger into its report; returns the way from its centre to their force-weighted mean place, or its direction.
 Vec3 sumContacts(const GraspScratch& scratch, int finger, double h, FingerReport& report) {
@@ -96,16 +100,7 @@ void reportTouch(const GraspModel& model, int finger, const Vec3& touch_W, Grasp
   }
 }
 
-// What the next tick needs to know of this one.
-void rememberFinger(const FingerInput& input, FingerReport& report, const FingerModel& finger, FingerState& memory) {
-  report.last_touch = memory.touch;
-  if (finger.pad.isSoft()) report.patch_radius = patchRadius(finger.pad, finger.radius, report.normal_force);
-  memory.seen = true;
-  memory.q_WF = input.q_WF;
-  memory.normal_force = report.normal_force;
-  memory.touch = report.touch;
-  if (report.touching) memory.n_W = report.n_W;
-}
+}  // namespace
 
 void reportFinger(const GraspModel& model, const GraspState& state, int finger, GraspScratch& scratch) {
   const double h = scratch.world.h;
@@ -120,20 +115,37 @@ void reportFinger(const GraspModel& model, const GraspState& state, int finger, 
   if (mass > 0) report.f_user_W -= mass / tick * (state.world.points[finger].v_W - point.v_tick_W);
 }
 
+void rememberFinger(const GraspModel& model, const FingerInput& input, int finger, GraspState& state, GraspScratch& scratch) {
+  const FingerModel& f = model.fingers[finger];
+  FingerReport& report = scratch.fingers[finger];
+  FingerState& memory = state.fingers[finger];
+  report.last_touch = memory.touch;
+  if (f.pad.isSoft()) report.patch_radius = patchRadius(f.pad, f.radius, report.normal_force);
+  memory.seen = true;
+  memory.q_WF = input.q_WF;
+  memory.normal_force = report.normal_force;
+  memory.touch = report.touch;
+  if (report.touching) memory.n_W = report.n_W;
+  scratch.orientations[finger] = input.q_WF;
+}
+
+bool keepOrientations(std::span<const FingerInput> inputs, const GraspScratch& scratch) {
+  return std::equal(inputs.begin(), inputs.end(), scratch.orientations.begin(), scratch.orientations.end(),
+                    [](const FingerInput& input, const Quat& last) { return input.q_WF.coeffs() == last.coeffs(); });
+}
+
+namespace {
+
 // The fingers' contacts, for each part of the tick.
 class FingerContacts final : public engine::ContactSource {
  public:
   FingerContacts(const GraspModel& model, GraspState& state, GraspScratch& scratch, std::span<const FingerInput> inputs)
       : model_(model), state_(state), scratch_(scratch), inputs_(inputs) {}
   void addContacts(engine::WorldScratch&) override {
-    findFingerContacts(model_, state_, scratch_);
+    for (int i = 0; i < static_cast<int>(model_.fingers.size()); ++i) findFingerContacts(model_, i, state_, scratch_);
     engine::mark(scratch_.world, engine::Stage::kFingerContacts);
   }
-  // What the pads feel turns with them.
-  bool repeatsItself() const override {
-    return std::equal(inputs_.begin(), inputs_.end(), scratch_.orientations.begin(), scratch_.orientations.end(),
-                      [](const FingerInput& input, const Quat& last) { return input.q_WF.coeffs() == last.coeffs(); });
-  }
+  bool repeatsItself() const override { return keepOrientations(inputs_, scratch_); }
 
  private:
   const GraspModel& model_;
@@ -147,12 +159,18 @@ class FingerContacts final : public engine::ContactSource {
 GraspScratch::GraspScratch(const GraspModel& model)
     : world(model.world),
       inputs(model.fingers.size()),
-      nearest_n_W(model.fingers.size()),
-      fingers(model.fingers.size()),
-      baselines(model.fingers.size()),
-      orientations(model.fingers.size()),
       q_mid_WF(model.fingers.size(), Quat::Identity()),
-      nearest_d_W(model.fingers.size()) {}
+      nearest_n_W(model.fingers.size()),
+      nearest_d_W(model.fingers.size()),
+      fingers(model.fingers.size()),
+      orientations(model.fingers.size()) {}
+
+void DeleteScratch::operator()(GraspScratch* scratch) const { delete scratch; }
+ScratchHandle makeScratch(const GraspModel& model) { return ScratchHandle(new GraspScratch(model)); }
+
+std::span<const FingerReport> fingersOf(const GraspScratch& scratch) { return scratch.fingers; }
+engine::WorldScratch& worldOf(GraspScratch& scratch) { return scratch.world; }
+const engine::WorldScratch& worldOf(const GraspScratch& scratch) { return scratch.world; }
 
 GraspState makeState(const GraspModel& model, const std::vector<engine::BodyStart>& starts, const std::vector<Vec3>& fingers) {
   GraspState state{engine::makeState(model.world, starts, fingers), {}, {}, {}};
@@ -163,28 +181,22 @@ GraspState makeState(const GraspModel& model, const std::vector<engine::BodyStar
   return state;
 }
 
-engine::StepReport step(const GraspModel& model, GraspState& state, GraspScratch& scratch, std::span<const FingerInput> inputs,
-                        std::span<const engine::MotionInput> motions) {
+GraspReport step(const GraspModel& model, GraspState& state, GraspScratch& scratch, std::span<const FingerInput> inputs,
+                 std::span<const engine::MotionInput> motions) {
   PINCER_DEMAND(inputs.size() == model.fingers.size(), "step: one input per finger");
   PINCER_DEMAND(state.fingers.size() == model.fingers.size() && state.trackers.size() == model.fingers.size() * model.world.bodies.size(),
                 "step: the state is one of this model (makeState)");
   PINCER_DEMAND(scratch.fingers.size() == model.fingers.size(), "step: the scratch is one of this model");
   setInputs(model, state, inputs, scratch);
-  renderBaselines(model, state, scratch, inputs);
   FingerContacts contacts(model, state, scratch, inputs);
   const engine::StepReport report = engine::step(model.world, state.world, scratch.world, {scratch.inputs, motions}, &contacts);
-  if (report.asleep) return report;  // and the fingers' reports are those of the last tick
+  if (report.asleep) return {report, scratch.fingers};  // those of the last tick
   for (int i = 0; i < static_cast<int>(inputs.size()); ++i) {
-    if (model.fingers[i].method == FingerMethod::kProxy) {
-      reportFinger(model, state, i, scratch);
-    } else {
-      scratch.fingers[i] = scratch.baselines[i];
-    }
-    rememberFinger(inputs[i], scratch.fingers[i], model.fingers[i], state.fingers[i]);
-    scratch.orientations[i] = inputs[i].q_WF;
+    reportFinger(model, state, i, scratch);
+    rememberFinger(model, inputs[i], i, state, scratch);
   }
   engine::mark(scratch.world, engine::Stage::kFingerReport);
-  return report;
+  return {report, scratch.fingers};
 }
 
 }  // namespace pincer::grasp

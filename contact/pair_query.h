@@ -17,8 +17,8 @@
 #include <cstdint>
 
 #include "contact/math.h"
-#include "contact/shape/shape.h"
-#include "contact/surface/patch_cache.h"
+#include "contact/shape.h"
+#include "contact/surface_contact.h"
 
 namespace pincer::contact {
 

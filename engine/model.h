@@ -1,7 +1,7 @@
 // model: what a world is made of. Built once by WorldBuilder, checked once, then constant; many states may step one model in parallel.
 //
 // Frames: B as the shape's author chose it; I the body's inertial frame, at its centre of mass, axes principal. Dynamics works in I,
-// people read B (bodyPose, world/state.h).
+// people read B (bodyPose, state.h).
 #pragma once
 #include <array>
 #include <string>
@@ -9,10 +9,9 @@
 #include <vector>
 
 #include "contact/error.h"
-#include "contact/shape/shape.h"
-#include "engine/motion/free_motion.h"
-#include "engine/motion/mass.h"
-#include "engine/solve/cascade.h"
+#include "contact/shape.h"
+#include "engine/motion.h"
+#include "engine/solver.h"
 
 namespace pincer::engine {
 
@@ -23,11 +22,11 @@ struct Material {
   double mu_d = 0.5;          // dynamic friction [-], 0 <= mu_d <= mu_s
   double restitution = 0;     // of the normal velocity [-], 0 .. 1
   double torsion_radius = 0;  // e_t [m]: the contact carries a torsional moment up to e_t mu f_n; 0 for a point contact
-  double rolling_radius = 0;  // e_r [m]: and one that resists rolling, up to e_r mu f_n. All share one cone (contact_problem.h)
+  double rolling_radius = 0;  // e_r [m]: and one that resists rolling, up to e_r mu f_n. All share one cone (docs/engine.md)
   double stribeck_speed = 0;  // v_s [m/s]: what slides at speed v has mu_d + (mu_s - mu_d) exp(-(v/v_s)^2); 0: mu_d at any speed
 };
 
-// What the solver sees of a contact: 3 rows, with torsion 4, with rolling 6.
+// The number of rows that the solver sees of a contact: 3 rows, with torsion 4, with rolling 6.
 inline int rowsOf(const Material& m) { return m.rolling_radius > 0 ? kMaxContactRows : m.torsion_radius > 0 ? kRollingRow : kTorsionRow; }
 
 struct BodyModel {

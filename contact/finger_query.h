@@ -6,11 +6,12 @@
 // The finger's centre lies on the normal over the surface point: p_BC = p_BS + (phi + r) n_B, for every shape but meshes with force shading,
 // whose n_B is that of the force, not of the facet touched (flat_contact.h).
 #pragma once
+#include <array>
+
+#include "contact/finger_shape.h"
 #include "contact/math.h"
-#include "contact/shape/finger_shape.h"
-#include "contact/shape/shape.h"
-#include "contact/surface/patch_cache.h"
-#include "contact/surface/surface_contact.h"
+#include "contact/shape.h"
+#include "contact/surface_contact.h"
 
 namespace pincer::contact {
 
