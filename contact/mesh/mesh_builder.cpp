@@ -41,7 +41,13 @@ void MeshBuilder::reserveFaces(std::size_t faces, std::int32_t place) {
   corners_.reserve(3 * faces);
 }
 
+void MeshBuilder::requireRoom(std::size_t count, const char* what, std::int32_t place) const {
+  if (count < kMaxVertices) return;
+  file_.failAt(place, fmt::format("the mesh has more than {} {}. Simplify (decimate) it.", kMaxVertices, what));
+}
+
 void MeshBuilder::addVertex(const Vec3& p, std::int32_t place) {
+  requireRoom(vertices(), "vertices", place);
   const Vec3 scaled = options_.metres_per_unit * p;
   const double farthest = scaled.cwiseAbs().maxCoeff();
   if (!(farthest <= kMaxCoordinate)) {
@@ -52,6 +58,7 @@ void MeshBuilder::addVertex(const Vec3& p, std::int32_t place) {
 }
 
 void MeshBuilder::addNormal(const Vec3& n, std::int32_t place) {
+  requireRoom(normals(), "normals", place);
   const double largest = n.cwiseAbs().maxCoeff();
   if (largest == 0) {
     file_.failAt(place, fmt::format("normal {} is zero and has no direction. Recompute the normals, or export the mesh without them.",
