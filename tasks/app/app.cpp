@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "contact/error.h"
+#include "contact/printable.h"
 #include "devices/window/surface.h"
 #include "tasks/app/commands.h"
 #include "tasks/servo/hand_devices.h"
@@ -33,7 +34,7 @@ Exit codes: 0 ok, 1 a check failed, 2 usage, 3 bad input, 4 device, 5 interrupte
 
 int reportUsage(const CLI::App& app, const CLI::ParseError& error) {
   if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-  fmt::print(stderr, "pincer: {}. See `pincer --help`.\n", error.what());
+  fmt::print(stderr, "pincer: {}. See `pincer --help`.\n", printableMessage(error.what()));
   return kExitUsage;
 }
 
@@ -58,16 +59,16 @@ int runApp(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return reportUsage(app, error);
   } catch (const InputError& error) {
-    fmt::print(stderr, "pincer: {}\n", error.what());
+    fmt::print(stderr, "pincer: {}\n", printableMessage(error.what()));
     return kExitBadInput;
   } catch (const devices::DisplayError& error) {
-    fmt::print(stderr, "pincer: {}\n", error.what());
+    fmt::print(stderr, "pincer: {}\n", printableMessage(error.what()));
     return kExitDevice;
   } catch (const DeviceError& error) {
-    fmt::print(stderr, "pincer: {}\n", error.what());
+    fmt::print(stderr, "pincer: {}\n", printableMessage(error.what()));
     return kExitDevice;
   } catch (const std::system_error& error) {  // fmt::print, when standard output can't be written
-    fmt::print(stderr, "pincer: {}\n", error.what());
+    fmt::print(stderr, "pincer: {}\n", printableMessage(error.what()));
     return kExitBadInput;
   }
   return flushed(exit_code);

@@ -6,7 +6,10 @@
 #include <csignal>
 #include <iostream>
 
+#include "contact/printable.h"
 #include "tasks/app/servo_text.h"
+#include "tasks/app/usage.h"
+#include "tasks/scene/strict_json.h"
 
 namespace pincer::tasks {
 
@@ -29,7 +32,7 @@ void addDeviceOptions(CLI::App& command, DeviceRunOptions& options) {
       .add_option("--watchdog", options.watchdog_ms,
                   "So long may the program stall before forces are cut; samples count for 0.6 of it, arms go limp after 0.8 [ms]; a mouse "
                   "has no motors: 100")
-      ->check(CLI::Range(2.0, 100.0))
+      ->check(within({.min = 2, .max = 100, .remedy = "In milliseconds."}))
       ->capture_default_str();
   command.add_option("--calibration", options.which.calibrations, "Files of the arms' bases (pincer devices calibrate --save)")
       ->delimiter(',');
@@ -46,9 +49,11 @@ std::unique_ptr<HandDevices> openDevices(const DeviceRunOptions& options, ServoO
   DeviceOptions which = options.which;
   which.watchdog = servo.watchdog;
   which.choice = deviceChoiceOf(options.devices);
+  if (which.choice == DeviceChoice::kReplay && which.recording.empty())
+    refuseUsage("--devices replay needs the recording: --recording FILE, a session.db, or a CSV of samples (pincer export)");
   if (which.choice == DeviceChoice::kSim) return nullptr;
   auto devices = openHandDevices(which);
-  for (const std::string& line : devices->describe()) fmt::print(stderr, "{}\n", line);
+  for (const std::string& line : devices->describe()) fmt::print(stderr, "{}\n", printableMessage(line));
   servo.real_time = true;
   return devices;
 }

@@ -6,12 +6,14 @@
 #include <memory>
 #include <optional>
 
+#include "contact/printable.h"
 #include "tasks/app/app.h"
 #include "tasks/app/commands.h"
 #include "tasks/app/interrupt.h"
 #include "tasks/app/plan_text.h"
 #include "tasks/app/progress.h"
 #include "tasks/app/tick_times.h"
+#include "tasks/app/usage.h"
 #include "tasks/scene/builtin_scenes.h"
 #include "tasks/scene/json_writer.h"
 #include "tasks/scene/simulation.h"
@@ -85,7 +87,7 @@ std::string timesRow(const char* name, const TickTimes& times) {
 }
 
 std::string planText(const Scene& scene, const std::vector<PlanLine>& plan, const PlanTimes& times) {
-  std::string out = fmt::format("{}\n{}\n\n", scene.file, scene.description);
+  std::string out = fmt::format("{}\n{}\n\n", printable(scene.file), printable(scene.description, kLongestMessage));
   std::size_t width = 0;
   for (const PlanLine& line : plan) width = std::max(width, line.name.size());
   for (const PlanLine& line : plan) out += fmt::format("  {:<8} {:<{}}  {}\n", line.part, line.name, width, line.form);
@@ -114,9 +116,9 @@ std::string planJson(const Scene& scene, const std::vector<PlanLine>& plan, cons
 }
 
 int runPlan(const PlanArguments& arguments) {
-  interruptFlag();
   const Scene scene = readSceneOrBuiltin(arguments.scene);
   const std::vector<PlanLine> plan = describePlan(buildWorld(scene));
+  interruptFlag();  // from here on there is something to end cleanly
   const PlanTimes times = measureStages(scene, arguments.ticks);
   fmt::print("{}", arguments.json ? planJson(scene, plan, times) : planText(scene, plan, times));
   return times.interrupted ? kExitInterrupted : kExitOk;
@@ -128,7 +130,7 @@ void addPlanCommand(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<PlanArguments>();
   CLI::App* command = app.add_subcommand("plan", "What runs in a tick of a scene, and what it costs");
   command->add_option("scene", arguments->scene, "Scene file (JSON), or the name of a built-in scene")->required();
-  command->add_option("--ticks", arguments->ticks, "Ticks to measure")->check(CLI::Range(1, 10'000'000))->capture_default_str();
+  command->add_option("--ticks", arguments->ticks, "Ticks to measure")->check(wholeWithin(1, 10'000'000))->capture_default_str();
   command->add_flag("--json", arguments->json, "Print the plan as JSON");
   command->footer(kPlanExample);
   command->callback([arguments, &exit_code] { exit_code = runPlan(*arguments); });

@@ -16,9 +16,9 @@ TEST(Printable, ShowsEscapeSequencesInPlaceOfObeyingThem) {
   EXPECT_EQ(printable("tab\tline\nreturn\r"), "tab\\tline\\nreturn\\r");
   EXPECT_EQ(printable(std::string_view("nul\0here", 8)), "nul\\x00here");
   EXPECT_EQ(printable("\x7f"), "\\x7f");
-  EXPECT_EQ(printable("\xc2\x9b"), "\\x9b");                // CSI as one character
-  EXPECT_EQ(printable("\xe2\x80\xae"), "\\u202e");          // would turn what follows
-  EXPECT_EQ(printable("\xe2\x80\xa8"), "\\u2028");          // a line separator
+  EXPECT_EQ(printable("\xc2\x9b"), "\\x9b");        // CSI as one character
+  EXPECT_EQ(printable("\xe2\x80\xae"), "\\u202e");  // would turn what follows
+  EXPECT_EQ(printable("\xe2\x80\xa8"), "\\u2028");  // a line separator
 }
 
 TEST(Printable, KeepsWhatPeopleWrite) {
@@ -28,10 +28,10 @@ TEST(Printable, KeepsWhatPeopleWrite) {
 TEST(Printable, ShowsBytesThatAreNoUtf8) {
   EXPECT_EQ(printable("\xff"), "\\xff");
   EXPECT_EQ(printable("\xc3("), "\\xc3(");
-  EXPECT_EQ(printable("\xc0\xaf"), "\\xc0\\xaf");              // overlong
-  EXPECT_EQ(printable("\xed\xa0\x80"), "\\xed\\xa0\\x80");     // half of a surrogate pair
+  EXPECT_EQ(printable("\xc0\xaf"), "\\xc0\\xaf");                    // overlong
+  EXPECT_EQ(printable("\xed\xa0\x80"), "\\xed\\xa0\\x80");           // half of a surrogate pair
   EXPECT_EQ(printable("\xf4\x90\x80\x80"), "\\xf4\\x90\\x80\\x80");  // beyond Unicode
-  EXPECT_EQ(printable("\xe2\x82"), "\\xe2\\x82");              // cut off
+  EXPECT_EQ(printable("\xe2\x82"), "\\xe2\\x82");                    // cut off
 }
 
 TEST(Printable, CutsLongTextBetweenCharacters) {
