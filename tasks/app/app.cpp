@@ -8,6 +8,8 @@
 #include <exception>
 #include <new>
 
+#include "contact/error.h"
+#include "contact/printable.h"
 #include "devices/window/surface.h"
 #include "tasks/app/commands.h"
 #include "tasks/app/process.h"
@@ -42,7 +44,7 @@ int flushed(int exit_code) {
 
 int reportUsage(const CLI::App& app, const CLI::ParseError& error) {
   if (error.get_exit_code() == 0) return flushed(app.exit(error));  // --help, --version
-  complain(fmt::format("{}. See `pincer --help`.", error.what()));
+  complain(fmt::format("{}. See `pincer --help`.", printableMessage(error.what())));
   return kExitUsage;
 }
 
@@ -73,13 +75,13 @@ int runApp(int argc, char** argv) {
     complain("interrupted. What was whole by then is kept, the rest is removed.");
     return kExitInterrupted;
   } catch (const devices::DisplayError& error) {
-    complain(error.what());
+    complain(printableMessage(error.what()));
     return kExitDevice;
   } catch (const DeviceError& error) {
-    complain(error.what());
+    complain(printableMessage(error.what()));
     return kExitDevice;
   } catch (const std::exception& error) {  // InputError; and what the system refuses, such as a thread
-    complain(error.what());
+    complain(printableMessage(error.what()));
     return kExitBadInput;
   }
 }

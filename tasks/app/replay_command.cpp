@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "contact/counted.h"
 #include "tasks/app/app.h"
 #include "tasks/app/commands.h"
 #include "tasks/app/interrupt.h"
@@ -10,6 +11,8 @@
 #include "tasks/app/progress.h"
 #include "tasks/app/replay.h"
 #include "tasks/app/trial_recording.h"
+#include "tasks/app/usage.h"
+#include "tasks/scene/scene_ranges.h"
 
 namespace pincer::tasks {
 namespace {
@@ -24,6 +27,8 @@ Examples:
   pincer replay out/first/session.db --trial 3
   pincer replay out/first/session.db --trial 3 --view
   pincer replay out/first/session.db --trial 3 --at 2.5 --screenshot grasp.png)";
+
+constexpr std::int64_t kLastTrial = 1'000'000'000;
 
 struct ReplayArguments {
   std::string session;
@@ -66,9 +71,9 @@ int replay(const ReplayArguments& arguments) {
     return kExitCheckFailed;
   }
   for (const std::string& note : result.notes) print(stderr, "pincer: {}\n", note);
-  print("The same to the bit: {} trials{}, {} samples{}\n", result.trials,
-        result.cut_short > 0 ? fmt::format(" and {} that was cut short", result.cut_short) : "", result.samples,
-        result.inputs > 0 ? fmt::format(", {} ticks of a person's hands", result.inputs) : "");
+  print("The same to the bit: {}{}, {}{}\n", counted(result.trials, "trial"),
+             result.cut_short > 0 ? fmt::format(" and {} that was cut short", result.cut_short) : "", counted(result.samples, "sample"),
+             result.inputs > 0 ? fmt::format(", {} of a person's hands", counted(result.inputs, "tick")) : "");
   if (!interruptFlag()) return kExitOk;
   print(stderr, "pincer: interrupted; these are the trials that were whole.\n");
   return kExitInterrupted;
@@ -80,9 +85,9 @@ void addReplayCommand(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<ReplayArguments>();
   CLI::App* command = app.add_subcommand("replay", "A session again, compared to the bit");
   command->add_option("session", arguments->session, "Session file")->required();
-  command->add_option("--trial", arguments->trial, "Only this trial");
+  command->add_option("--trial", arguments->trial, "Only this trial")->check(wholeWithin(0, kLastTrial));
   addViewOptions(*command, arguments->view);
-  command->add_option("--at", arguments->at, "Begin there [s]")->check(CLI::NonNegativeNumber);
+  command->add_option("--at", arguments->at, "Begin there [s]")->check(within(ranges::kTime));
   command->footer(kReplayExample);
   command->callback([arguments, &exit_code] { exit_code = replay(*arguments); });
 }

@@ -11,6 +11,7 @@
 #include "tasks/app/run_options.h"
 #include "tasks/app/run_tasks.h"
 #include "tasks/app/study_runs.h"
+#include "tasks/app/usage.h"
 #include "tasks/app/variant_runs.h"
 #include "tasks/findings/findings_report.h"
 #include "tasks/session/atomic_file.h"
@@ -60,12 +61,13 @@ PublishedFindings runStudyFindings(StudyRuns studies, const FindingsOptions& opt
 }
 
 int runFindingsCommand(const FindingsArguments& arguments) {
+  asUsage([&] { validate(arguments.options); });
   const std::string directory = outputDirectory(arguments.run, "findings");
   const PublishedFindings studies = runStudyFindings(arguments.studies, arguments.options, directory + "/sessions");
   const FindingsResult result = runManipulationFindings(arguments.options, directory + "/sessions");
   const bool interrupted = interruptFlag();
   if (result.variants.empty() && studies.figures.empty()) {
-    if (!interrupted) throw InputError(fmt::format("findings: no variant's or study's name holds one of \"{}\".", arguments.options.only));
+    if (!interrupted) refuseUsage(fmt::format("findings: no variant's or study's name holds one of \"{}\".", arguments.options.only));
     print(stderr, "pincer: interrupted before an experiment was whole. The same command with --out {} goes on.\n", directory);
     return kExitInterrupted;
   }
@@ -90,7 +92,7 @@ void addFindingsTask(CLI::App& run, int& exit_code) {
   command->add_option("--experiments", options.experiments, "Of the primary analysis")->capture_default_str();
   command->add_option("--control-experiments", options.control_experiments, "Of every other variant")->capture_default_str();
   command->add_option("--study-experiments", arguments->studies.experiments, "Of every study with one finger")
-      ->check(CLI::Range(0, 1000))
+      ->check(wholeWithin(0, 1000))
       ->capture_default_str();
   command->add_option("--participants", options.participants, "In an experiment")->capture_default_str();
   command->add_option("--pickups", options.pickups, "Of every friction, per participant and condition")->capture_default_str();

@@ -8,6 +8,8 @@
 #include <map>
 #include <set>
 
+#include "contact/counted.h"
+#include "contact/printable.h"
 #include "tasks/scene/json_writer.h"
 #include "tasks/scene/strict_json.h"
 
@@ -228,18 +230,22 @@ std::string studyNote(const StudySummary& s) {
         " ≥ marks conditions with fewer than {:.0f} % right answers: their staircases ended before they had risen to a threshold.",
         100 * kSettled);
   }
-  if (lost > 0) note += fmt::format(" {} staircases found no threshold and are left out.", lost);
-  if (unanswered > 0) note += fmt::format(" {} trials ended without an answer.", unanswered);
+  if (lost > 0) note += fmt::format(" {} found no threshold and {} left out.", counted(lost, "staircase"), lost == 1 ? "is" : "are");
+  if (unanswered > 0) note += fmt::format(" {} ended without an answer.", counted(unanswered, "trial"));
   return note;
 }
 
 std::string formatStudyTable(const StudySummary& s) {
   std::vector<std::vector<std::string>> rows{studyTableHeads(s)};
   for (const StudyCondition& c : s.conditions) rows.push_back(studyTableRow(s, c));
+  for (auto& row : rows) {
+    for (std::string& field : row) field = printable(field);  // names in a session may be another's
+  }
   std::vector<std::size_t> widths(rows[0].size());
   for (const auto& row : rows)
     for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], characters(row[i]));
-  std::string text = fmt::format("{}, seed {}: {} participants, {} trials\n\n", s.info.task, s.info.seed, s.participants, s.trials);
+  std::string text = fmt::format("{}, seed {}: {}, {}\n\n", printable(s.info.task), s.info.seed, counted(s.participants, "participant"),
+                                 counted(s.trials, "trial"));
   for (const auto& row : rows) {
     for (std::size_t i = 0; i < row.size(); ++i) {
       const std::string gap(widths[i] - characters(row[i]), ' ');

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "contact/error.h"
+#include "contact/input_file.h"
 #include "contact/math.h"
 
 namespace pincer::tasks {
@@ -22,8 +23,10 @@ struct NumberRule {
   double max = std::numeric_limits<double>::infinity();
   bool min_open = false;  // min itself is excluded
   std::string_view remedy = "";
+  bool or_zero = false;  // 0 is allowed although it lies below min
 };
 bool isWithin(double value, const NumberRule& rule);  // false for NaN
+std::string rangeText(const NumberRule& rule);        // "[0, inf)"
 // "is out of range [0, inf). <remedy>"
 std::string outOfRange(const NumberRule& rule);
 
@@ -34,6 +37,7 @@ class JsonValue {
   Kind kind() const { return kind_; }
   const std::string& path() const { return path_; }
   int line() const { return line_; }
+  std::string place() const;  // "file:line"
 
   // The value as what it must be; each throws InputError when it is something else.
   bool boolean() const;
@@ -69,13 +73,14 @@ class JsonValue {
   std::string text_;
   std::vector<JsonValue> items_;   // of an array or object
   std::vector<std::string> keys_;  // of an object, one per item
-  std::string path_;               // "bodies[0].material.mu_s", empty for the whole file
+  std::string path_;               // "bodies[0].material.mu_s", printable; empty for the whole file
   int line_ = 1;
   std::shared_ptr<const std::string> file_;
 };
 
-// Reads the file at `path`, or parses `content` with `name` standing for the file in messages. Throws InputError.
-JsonValue readJson(const std::string& path);
+// Reads the file at `path`, or parses `content` with `name` standing for the file in messages. Throws InputError. Values, keys and paths of the
+// file stand in messages as printable() shows them, cut.
+JsonValue readJson(const std::string& path, const InputKind& kind);
 JsonValue parseJson(std::string_view content, const std::string& name);
 
 }  // namespace pincer::tasks
