@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "contact/error.h"
-#include "tasks/session/atomic_file.h"
+#include "contact/file/atomic_file.h"
 #include "tasks/session/csv.h"
 
 namespace pincer::tasks {
