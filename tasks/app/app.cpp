@@ -11,6 +11,7 @@
 #include "devices/window/surface.h"
 #include "tasks/app/commands.h"
 #include "tasks/servo/hand_devices.h"
+#include "tasks/session/build_info.h"
 
 namespace pincer::tasks {
 namespace {
@@ -48,7 +49,7 @@ int flushed(int exit_code) {
 
 int runApp(int argc, char** argv) {
   CLI::App app("pincer: multi-finger manipulation physics", "pincer");
-  app.set_version_flag("--version", "pincer " PINCER_VERSION);
+  app.set_version_flag("--version", versionText());
   app.footer(kExamples);
   app.require_subcommand(1);
   int exit_code = kExitOk;
