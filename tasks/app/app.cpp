@@ -15,6 +15,7 @@
 #include "tasks/app/process.h"
 #include "tasks/measure/interrupted.h"
 #include "tasks/servo/hand_devices.h"
+#include "tasks/session/build_info.h"
 
 namespace pincer::tasks {
 namespace {
@@ -50,7 +51,7 @@ int reportUsage(const CLI::App& app, const CLI::ParseError& error) {
 
 int run(int argc, char** argv) {
   CLI::App app("pincer: multi-finger manipulation physics", "pincer");
-  app.set_version_flag("--version", "pincer " PINCER_VERSION);
+  app.set_version_flag("--version", versionText());
   app.footer(kExamples);
   app.require_subcommand(1);
   int exit_code = kExitOk;

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "contact/error.h"
+#include "contact/file/atomic_file.h"
 #include "tasks/app/app.h"
 #include "tasks/app/interrupt.h"
 #include "tasks/app/print.h"
@@ -14,7 +15,6 @@
 #include "tasks/app/usage.h"
 #include "tasks/app/variant_runs.h"
 #include "tasks/findings/findings_report.h"
-#include "tasks/session/atomic_file.h"
 
 namespace pincer::tasks {
 namespace {
@@ -98,7 +98,7 @@ void addFindingsTask(CLI::App& run, int& exit_code) {
   command->add_option("--pickups", options.pickups, "Of every friction, per participant and condition")->capture_default_str();
   command->add_option("--alignments", options.alignments, "Per participant and condition")->capture_default_str();
   command->add_option("--threads", options.threads, "That work at once")->capture_default_str();
-  command->add_option("--seed", options.seed, "Of all that varies")->capture_default_str();
+  addSeedOption(*command, options.seed, "Of all that varies");
   command->add_option("--only", options.only, "Only variants and studies whose name holds one of these, separated by commas");
   command->add_option("--out", arguments->run.out, "Directory for report and sessions (default: out/findings-DATE-TIME)");
   command->add_flag("!--no-report", arguments->run.report, "Only the table");

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "contact/counted.h"
+#include "contact/file/atomic_file.h"
 #include "tasks/app/app.h"
 #include "tasks/app/device_options.h"
 #include "tasks/app/interrupt.h"
@@ -21,7 +22,6 @@
 #include "tasks/experiments/manipulation_file.h"
 #include "tasks/experiments/pickup_object.h"
 #include "tasks/report/report.h"
-#include "tasks/session/atomic_file.h"
 
 namespace pincer::tasks {
 namespace {
@@ -206,7 +206,7 @@ CLI::App* addManipulationCommand(CLI::App& run, const char* name, const char* wh
   command->add_option("--participants", arguments->study.participants, "How many simulated participants")->capture_default_str();
   command->add_option("--strategy", arguments->strategy, "Of simulated participants (default: rational)")
       ->check(CLI::IsMember({"rational", "simple"}));
-  command->add_option("--seed", arguments->study.seed, "Of all that varies; the same seed gives the same session")->capture_default_str();
+  addSeedOption(*command, arguments->study.seed, "Of all that varies; the same seed gives the same session");
   command->add_flag("--resume", arguments->resume, "Go on with the interrupted or killed session in --out");
   addRunOptions(*command, arguments->run);
   addDeviceOptions(*command, arguments->devices);

@@ -7,6 +7,7 @@
 
 #include "contact/counted.h"
 #include "contact/error.h"
+#include "contact/file/atomic_file.h"
 #include "tasks/app/app.h"
 #include "tasks/app/interrupt.h"
 #include "tasks/app/print.h"
@@ -18,7 +19,6 @@
 #include "tasks/app/study_session.h"
 #include "tasks/app/usage.h"
 #include "tasks/report/study_report.h"
-#include "tasks/session/atomic_file.h"
 
 namespace pincer::tasks {
 namespace {
@@ -118,7 +118,7 @@ std::shared_ptr<StudyArguments> addStudyTask(CLI::App& run, const std::string& t
   arguments->run.sample_rate = 20;  // hours of strokes
   command = run.add_subcommand(task, what);
   command->add_option("--participants", arguments->participants, "How many simulated participants (default: 12)");
-  command->add_option("--seed", arguments->seed, "Of all that varies; the same seed gives the same session (default: 1)");
+  addSeedOption(*command, arguments->seed, "Of all that varies; the same seed gives the same session", 1);
   command->add_option("--study", arguments->study_file, "File with parameters that differ from the published design (JSON)");
   command->add_flag("--print-study", arguments->print_study, "Print all parameters as JSON with what they mean, and run nothing");
   command->add_flag("--resume", arguments->resume, "Go on with the interrupted or killed session in --out");

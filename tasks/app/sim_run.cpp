@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "contact/error.h"
+#include "contact/file/atomic_file.h"
 #include "tasks/app/usage.h"
-#include "tasks/session/atomic_file.h"
 #include "tasks/session/csv.h"
 
 namespace pincer::tasks {

@@ -10,6 +10,7 @@
 #include "tasks/app/interrupt.h"
 #include "tasks/app/print.h"
 #include "tasks/app/progress.h"
+#include "tasks/app/run_options.h"
 #include "tasks/app/usage.h"
 #include "tasks/report/study_summary.h"
 #include "tasks/sweep/one_finger_sweep.h"
@@ -95,7 +96,7 @@ void addSweepCommand(CLI::App& app, int& exit_code) {
   command->add_option("--measure", arguments->scene.measures,
                       "Of a scene: a quantity at the end, or with :min, :max over the whole run (default: those that it records)");
   command->add_option("--participants", arguments->study.participants, "Of a study")->check(wholeWithin(1, 1000))->capture_default_str();
-  command->add_option("--seed", arguments->study.seed, "Of a study")->capture_default_str();
+  addSeedOption(*command, arguments->study.seed, "Of a study");
   command->add_option("--threads", arguments->options.threads, "That work at once; the table is the same")
       ->check(wholeWithin(1, 256))
       ->capture_default_str();

@@ -3,6 +3,8 @@
 // has a list of its own. What two parameters demand of each other is in the studies' validate().
 #pragma once
 #include <array>
+#include <cstdint>
+#include <limits>
 
 #include "tasks/experiments/arc_study.h"
 #include "tasks/experiments/localisation.h"
@@ -13,7 +15,7 @@
 namespace pincer::tasks {
 
 inline constexpr std::string_view kAsPublished = "Leave it out for the published design.";
-inline constexpr double kLargestSeed = 9007199254740992;  // 2^53: larger ones are no exact numbers in JSON
+inline constexpr std::uint64_t kLargestSeed = std::numeric_limits<std::uint64_t>::max();  // all 64 bits are read, kept and written
 
 inline constexpr std::array<std::string_view, 2> kPickupConditionNames = {"force", "cld+force"};
 inline constexpr std::array<std::string_view, 2> kHandTaskNames = {"sphere-pickup", "cylinder-alignment"};

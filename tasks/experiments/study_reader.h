@@ -21,11 +21,7 @@ inline void readField(const JsonValue& v, int& field, const Parameter& parameter
   if (value != std::floor(value) || std::abs(value) > 1e9) v.reject("isn't a whole number.");
   field = static_cast<int>(value);
 }
-inline void readField(const JsonValue& v, std::uint64_t& field, const Parameter&) {
-  const double value = v.number({0, kLargestSeed, false, "A whole number up to 2^53."});
-  if (value != std::floor(value)) v.reject("isn't a whole number.");
-  field = static_cast<std::uint64_t>(value);
-}
+inline void readField(const JsonValue& v, std::uint64_t& field, const Parameter&) { field = v.whole(); }
 inline void readField(const JsonValue& v, bool& field, const Parameter&) { field = v.boolean(); }
 inline void readField(const JsonValue& v, std::string& field, const Parameter&) { field = v.text(); }
 

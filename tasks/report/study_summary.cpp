@@ -39,6 +39,11 @@ double numberOr(const JsonValue& object, std::string_view key, double otherwise)
   return value && value->kind() == JsonValue::Kind::kNumber ? value->number() : otherwise;
 }
 
+int averagedOf(const JsonValue& staircase) {
+  const JsonValue* value = staircase.find("averaged");
+  return value ? value->integer(1, 1000, "") : 0;
+}
+
 // The conditions of the protocol, then any that only the answers know.
 std::vector<StudyCondition> conditionsOf(const JsonValue& study, const std::vector<ResponseRecord>& responses) {
   std::vector<StudyCondition> conditions;
@@ -48,7 +53,7 @@ std::vector<StudyCondition> conditionsOf(const JsonValue& study, const std::vect
       conditions.push_back({c.at("name").text(),
                             c.at("label").text(),
                             numberOr(c, "published", kNoFigure),
-                            rule ? static_cast<int>(numberOr(*rule, "averaged", 0)) : 0,
+                            rule ? averagedOf(*rule) : 0,
                             0,
                             0,
                             {},
@@ -258,7 +263,7 @@ std::string formatStudyTable(const StudySummary& s) {
 
 std::string studySummaryJson(const StudySummary& s) {
   JsonWriter json;
-  json.beginObject().key("task").value(s.info.task).key("seed").value(static_cast<std::int64_t>(s.info.seed));
+  json.beginObject().key("task").value(s.info.task).key("seed").value(s.info.seed);
   json.key("state").value(s.state).key("fingerprint").value(s.fingerprint);
   json.key("participants").value(s.participants).key("trials").value(s.trials).key("headline").value(s.headline.name);
   json.key("conditions").beginArray();

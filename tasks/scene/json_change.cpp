@@ -63,6 +63,7 @@ class JsonChange {
     if (!is_new && at->kind_ != JsonValue::Kind::kNumber) at->reject("is no number: nothing else can be varied.");
     at->kind_ = JsonValue::Kind::kNumber;
     at->number_ = value;
+    at->exact_.reset();
   }
 
  private:

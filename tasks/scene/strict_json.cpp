@@ -46,6 +46,14 @@ int JsonValue::integer(int min, int max, std::string_view remedy) const {
   return static_cast<int>(value);
 }
 
+std::uint64_t JsonValue::whole() const {
+  constexpr double kExactBelow = 9007199254740992;  // 2^53: so far 1e3 is the same as 1000
+  const double value = number();
+  if (exact_) return *exact_;
+  if (value >= 0 && value <= kExactBelow && value == std::floor(value)) return static_cast<std::uint64_t>(value);
+  reject("isn't a whole number in [0, 18446744073709551615]. Take for example 1.");
+}
+
 const std::string& JsonValue::text() const {
   require(Kind::kString, "a text in quotes");
   return text_;
@@ -112,7 +120,7 @@ std::string JsonValue::shown() const {
     case Kind::kBoolean:
       return boolean_ ? "true" : "false";
     case Kind::kNumber:
-      return fmt::format("{}", number_);
+      return exact_ ? std::to_string(*exact_) : fmt::format("{}", number_);
     case Kind::kString:
       return fmt::format("\"{}\"", printable(text_));
     case Kind::kArray:

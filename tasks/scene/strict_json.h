@@ -4,8 +4,10 @@
 //
 // Duplicate keys are errors. A number is finite; "NaN" and numbers beyond the range of doubles don't parse.
 #pragma once
+#include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -43,6 +45,8 @@ class JsonValue {
   bool boolean() const;
   double number(const NumberRule& rule = {}) const;
   int integer(int min, int max, std::string_view remedy) const;
+  std::uint64_t whole() const;                         // in [0, 2^64 - 1], all bits as they are written
+  bool isWhole() const { return exact_.has_value(); }  // written as a whole number of that range
   const std::string& text() const;
   Vec3 vector(const NumberRule& each = {}) const;  // [x, y, z]
   const std::vector<JsonValue>& array() const;
@@ -70,6 +74,7 @@ class JsonValue {
   Kind kind_ = Kind::kNull;
   bool boolean_ = false;
   double number_ = 0;
+  std::optional<std::uint64_t> exact_;  // the same, of a whole number: above 2^53 doubles have gaps
   std::string text_;
   std::vector<JsonValue> items_;   // of an array or object
   std::vector<std::string> keys_;  // of an object, one per item

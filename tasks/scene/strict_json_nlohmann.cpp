@@ -79,7 +79,7 @@ class JsonTreeBuilder {
   bool null() { return add(JsonValue::Kind::kNull), true; }
   bool boolean(bool value) { return add(JsonValue::Kind::kBoolean).boolean_ = value, true; }
   bool number_integer(number_integer_t value) { return addNumber(static_cast<double>(value)); }
-  bool number_unsigned(number_unsigned_t value) { return addNumber(static_cast<double>(value)); }
+  bool number_unsigned(number_unsigned_t value) { return addNumber(static_cast<double>(value), value); }
   bool number_float(number_float_t value, const string_t&) { return addNumber(value); }
   bool string(string_t& value) { return add(JsonValue::Kind::kString).text_ = value, true; }
   bool binary(binary_t&) { return false; }  // a JSON text holds none
@@ -118,7 +118,12 @@ class JsonTreeBuilder {
     return value;
   }
 
-  bool addNumber(double number) { return add(JsonValue::Kind::kNumber).number_ = number, true; }
+  bool addNumber(double number, std::optional<std::uint64_t> exact = {}) {
+    JsonValue& value = add(JsonValue::Kind::kNumber);
+    value.number_ = number;
+    value.exact_ = exact;
+    return true;
+  }
 
   bool open(JsonValue::Kind kind) {
     constexpr std::size_t kDeepest =

@@ -5,9 +5,9 @@
 #include <array>
 #include <cmath>
 
+#include "contact/file/atomic_file.h"
 #include "tasks/scene/file_limits.h"
 #include "tasks/scene/strict_json.h"
-#include "tasks/session/atomic_file.h"
 
 namespace pincer::tasks {
 namespace {
