@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "contact/counted.h"
+#include "contact/io/counted.h"
 
 namespace pincer::contact {
 

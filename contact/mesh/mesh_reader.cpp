@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "contact/input_file.h"
+#include "contact/io/input_file.h"
 #include "contact/mesh/mesh_file.h"
 #include "contact/mesh/obj_reader.h"
 #include "contact/mesh/off_reader.h"

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "contact/error.h"
-#include "contact/file/atomic_file.h"
+#include "contact/io/atomic_file.h"
 #include "contact/mesh/mesh_file.h"
 
 namespace pincer::contact {

@@ -2,7 +2,7 @@
 
 #include <map>
 
-#include "contact/counted.h"
+#include "contact/io/counted.h"
 #include "contact/mesh/mesh_findings.h"
 #include "contact/mesh/mesh_pieces.h"
 #include "contact/mesh/mesh_topology.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
-#include "contact/counted.h"
+#include "contact/io/counted.h"
 #include "contact/mesh/mesh_findings.h"
 #include "contact/mesh/mesh_topology.h"
 #include "contact/mesh/polygon.h"

@@ -5,7 +5,7 @@
 #include <map>
 #include <numeric>
 
-#include "contact/counted.h"
+#include "contact/io/counted.h"
 #include "contact/mesh/mesh_findings.h"
 #include "contact/mesh/mesh_topology.h"
 #include "contact/mesh/polygon.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "contact/functions/elementary.h"
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 
 namespace pincer::engine {
 namespace {

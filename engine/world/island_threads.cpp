@@ -2,7 +2,7 @@
 
 #include <exception>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 
 namespace pincer::engine {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "contact/pair_query.h"
 #include "engine/motion/mass.h"
 #include "engine/solve/contact_problem.h"

@@ -9,7 +9,7 @@
 #include <new>
 
 #include "contact/error.h"
-#include "contact/printable.h"
+#include "contact/io/printable.h"
 #include "devices/window/surface.h"
 #include "tasks/app/commands.h"
 #include "tasks/app/process.h"

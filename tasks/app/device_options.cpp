@@ -7,7 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <csignal>
 
-#include "contact/printable.h"
+#include "contact/io/printable.h"
 #include "tasks/app/interrupt.h"
 #include "tasks/app/print.h"
 #include "tasks/app/servo_text.h"

@@ -5,7 +5,7 @@
 #include <memory>
 #include <thread>
 
-#include "contact/printable.h"
+#include "contact/io/printable.h"
 #include "devices/falcon/falcon_arm.h"
 #include "devices/usb/usb_host.h"
 #include "tasks/app/app.h"
@@ -38,21 +38,21 @@ std::string tipOf(const devices::ArmCapabilities& can) {
 void listArm(const devices::usb::UsbArm& arm) {
   const auto& can = arm.capabilities();
   print("arm      {:<12} {:<16} {:<10} {:.3g} N peak, {:.3g} N continuous, {:.3g} um, {:.3g} N/mm{}\n",
-             printable(arm.deviceIdentity().serial), printable(arm.deviceIdentity().model), devices::nameOf(arm.linkState()),
-             can.peak_force, can.continuous_force, 1e6 * can.resolution, 1e-3 * can.stiffness_limit, tipOf(can));
+        printable(arm.deviceIdentity().serial), printable(arm.deviceIdentity().model), devices::nameOf(arm.linkState()), can.peak_force,
+        can.continuous_force, 1e6 * can.resolution, 1e-3 * can.stiffness_limit, tipOf(can));
 }
 
 void listDisplay(const devices::usb::UsbDisplay& display) {
   const auto& can = display.capabilities();
   print("display  {:<12} {:<16} {:<10} +-{:.3g} x +-{:.3g} mm, {:.3g} um, {:.3g} mm/s\n", printable(display.deviceIdentity().serial),
-             printable(display.deviceIdentity().model), devices::nameOf(display.linkState()), 1e3 * can.reach.x(), 1e3 * can.reach.y(),
-             1e6 * can.resolution, 1e3 * can.speed);
+        printable(display.deviceIdentity().model), devices::nameOf(display.linkState()), 1e3 * can.reach.x(), 1e3 * can.reach.y(),
+        1e6 * can.resolution, 1e3 * can.speed);
 }
 
 // Found, not opened: that would take its firmware, and homing.
 void listFalcon(const devices::falcon::FalconPlace& place) {
   print("falcon   {:<12} {:<16} {:<10} pincer run ... --devices falcon --arms {}\n", place.port, "Novint Falcon",
-             place.serial.empty() ? "-" : printable(place.serial), place.port);
+        place.serial.empty() ? "-" : printable(place.serial), place.port);
 }
 
 template <typename Device>

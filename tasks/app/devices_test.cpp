@@ -4,7 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "contact/printable.h"
+#include "contact/io/printable.h"
 #include "devices/gate/force_gate.h"
 #include "devices/usb/usb_host.h"
 #include "tasks/app/app.h"

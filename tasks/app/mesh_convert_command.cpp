@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <memory>
 
+#include "contact/io/printable.h"
 #include "contact/mesh_repair.h"
-#include "contact/printable.h"
 #include "tasks/app/app.h"
 #include "tasks/app/mesh_commands.h"
 #include "tasks/app/print.h"

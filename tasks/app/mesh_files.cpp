@@ -4,9 +4,9 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
-#include "contact/counted.h"
+#include "contact/io/counted.h"
+#include "contact/io/printable.h"
 #include "contact/mesh/mesh_writer.h"
-#include "contact/printable.h"
 #include "tasks/app/interrupt.h"
 #include "tasks/app/mesh_commands.h"
 #include "tasks/app/print.h"
@@ -46,7 +46,7 @@ void writeAndSay(const MeshInput& input, const std::string& out, const contact::
   const contact::WriteOptions options = {.metres_per_unit = contact::metresPerUnit(units)};
   contact::writeMesh(out, mesh, options);
   print("{}: {}, {}, in {}\n", printable(out), counted(static_cast<std::int64_t>(mesh.vertices.size()), "vertex"),
-             counted(static_cast<std::int64_t>(mesh.triangles.size()), "triangle"), units);
+        counted(static_cast<std::int64_t>(mesh.triangles.size()), "triangle"), units);
   for (const std::string& loss : contact::lossesOf(mesh, *contact::formatOfName(out), options)) print("  - lost: {}\n", loss);
 }
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <memory>
 
-#include "contact/counted.h"
-#include "contact/printable.h"
+#include "contact/io/counted.h"
+#include "contact/io/printable.h"
 #include "engine/motion/mass.h"
 #include "tasks/app/app.h"
 #include "tasks/app/mesh_commands.h"

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <memory>
 
-#include "contact/counted.h"
+#include "contact/io/counted.h"
+#include "contact/io/printable.h"
 #include "contact/mesh/round_edges.h"
-#include "contact/printable.h"
 #include "tasks/app/app.h"
 #include "tasks/app/mesh_commands.h"
 #include "tasks/app/print.h"
@@ -42,7 +42,7 @@ void roundFile(const RoundArguments& arguments) {
     print("{}: no edge is sharp; the result is a copy\n", printable(arguments.input.file));
   } else {
     print("{}: rounded {}, {} and {} to {} mm\n", printable(arguments.input.file), counted(rounded.creases, "edge"),
-               counted(rounded.corners, "corner"), counted(rounded.tips, "tip"), arguments.radius);
+          counted(rounded.corners, "corner"), counted(rounded.tips, "tip"), arguments.radius);
   }
   writeAndSay(arguments.input, arguments.out, rounded.mesh, arguments.input.units);
 }

@@ -6,7 +6,7 @@
 #include <memory>
 #include <optional>
 
-#include "contact/printable.h"
+#include "contact/io/printable.h"
 #include "engine/world/stage_clock.h"
 #include "tasks/app/app.h"
 #include "tasks/app/commands.h"

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "contact/counted.h"
+#include "contact/io/counted.h"
 #include "contact/polytope.h"
 #include "contact/smooth_mesh.h"
 

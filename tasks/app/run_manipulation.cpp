@@ -5,8 +5,8 @@
 #include <memory>
 #include <optional>
 
-#include "contact/counted.h"
-#include "contact/file/atomic_file.h"
+#include "contact/io/atomic_file.h"
+#include "contact/io/counted.h"
 #include "tasks/app/app.h"
 #include "tasks/app/device_options.h"
 #include "tasks/app/interrupt.h"

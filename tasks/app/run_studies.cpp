@@ -5,9 +5,9 @@
 #include <memory>
 #include <optional>
 
-#include "contact/counted.h"
 #include "contact/error.h"
-#include "contact/file/atomic_file.h"
+#include "contact/io/atomic_file.h"
+#include "contact/io/counted.h"
 #include "tasks/app/app.h"
 #include "tasks/app/interrupt.h"
 #include "tasks/app/print.h"

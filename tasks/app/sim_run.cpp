@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "contact/error.h"
-#include "contact/file/atomic_file.h"
+#include "contact/io/atomic_file.h"
 #include "tasks/app/usage.h"
 #include "tasks/session/csv.h"
 

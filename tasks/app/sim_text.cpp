@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "contact/counted.h"
-#include "contact/printable.h"
+#include "contact/io/counted.h"
+#include "contact/io/printable.h"
 #include "tasks/app/grasp_text.h"
 #include "tasks/app/sim_run.h"
 #include "tasks/app/terminal.h"

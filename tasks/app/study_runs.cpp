@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <limits>
 
-#include "contact/file/atomic_file.h"
+#include "contact/io/atomic_file.h"
 #include "tasks/app/session_runs.h"
 #include "tasks/app/study_file.h"
 #include "tasks/app/study_session.h"

@@ -5,7 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <charconv>
 
-#include "contact/printable.h"
+#include "contact/io/printable.h"
 #include "tasks/scene/strict_json.h"
 
 namespace pincer::tasks {

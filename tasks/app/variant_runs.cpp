@@ -5,7 +5,7 @@
 #include <chrono>
 #include <filesystem>
 
-#include "contact/file/atomic_file.h"
+#include "contact/io/atomic_file.h"
 #include "tasks/app/manipulation_session.h"
 #include "tasks/app/session_runs.h"
 #include "tasks/measure/timing.h"

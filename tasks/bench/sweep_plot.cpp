@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "contact/error.h"
-#include "contact/file/atomic_file.h"
+#include "contact/io/atomic_file.h"
 #include "tasks/report/figures.h"
 #include "tasks/report/gnuplot.h"
 #include "tasks/session/csv.h"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "contact/functions/elementary.h"
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 
 namespace pincer::exact {
 namespace {

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "contact/error.h"
-#include "contact/printable.h"
+#include "contact/io/printable.h"
 #include "tasks/experiments/study_parameters.h"
 #include "tasks/participants/random.h"
 #include "tasks/study/counterbalance.h"

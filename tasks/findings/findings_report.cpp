@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "contact/file/atomic_file.h"
+#include "contact/io/atomic_file.h"
 #include "tasks/experiments/manipulation_file.h"
 #include "tasks/report/figures.h"
 #include "tasks/report/html_page.h"

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "contact/functions/elementary.h"
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "tasks/report/figures.h"
 #include "tasks/session/csv.h"
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "tasks/report/figures.h"
 #include "tasks/session/csv.h"
 

@@ -12,7 +12,7 @@
 #include <system_error>
 
 #include "contact/error.h"
-#include "contact/file/atomic_file.h"
+#include "contact/io/atomic_file.h"
 #include "tasks/measure/child_process.h"
 
 namespace pincer::tasks {

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "contact/file/atomic_file.h"
+#include "contact/io/atomic_file.h"
 #include "tasks/report/device_errors.h"
 #include "tasks/report/figures.h"
 #include "tasks/report/html_page.h"

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "contact/functions/elementary.h"
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 
 namespace pincer::tasks {
 

@@ -8,8 +8,8 @@
 #include <map>
 #include <set>
 
-#include "contact/counted.h"
-#include "contact/printable.h"
+#include "contact/io/counted.h"
+#include "contact/io/printable.h"
 #include "tasks/scene/json_writer.h"
 #include "tasks/scene/strict_json.h"
 

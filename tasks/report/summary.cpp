@@ -7,7 +7,7 @@
 #include <map>
 #include <set>
 
-#include "contact/printable.h"
+#include "contact/io/printable.h"
 
 namespace pincer::tasks {
 

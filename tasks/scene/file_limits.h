@@ -1,7 +1,7 @@
 // file_limits: how large what the program reads may be, and why; docs/limits.md has the table. What a text file takes in memory was measured
 // with a file of that size (tests/unit/tasks/input_limits_test.cpp).
 #pragma once
-#include "contact/input_file.h"
+#include "contact/io/input_file.h"
 
 namespace pincer::tasks {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "contact/printable.h"
+#include "contact/io/printable.h"
 #include "tasks/scene/spelling.h"
 
 namespace pincer::tasks {

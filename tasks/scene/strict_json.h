@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "contact/error.h"
-#include "contact/input_file.h"
+#include "contact/io/input_file.h"
 #include "contact/math.h"
 
 namespace pincer::tasks {

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <unordered_set>
 
-#include "contact/printable.h"
+#include "contact/io/printable.h"
 #include "tasks/scene/file_limits.h"
 #include "tasks/scene/strict_json.h"
 

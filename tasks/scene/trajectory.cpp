@@ -7,12 +7,11 @@
 #include <charconv>
 #include <cmath>
 
-#include "contact/input_file.h"
-#include "contact/printable.h"
+#include "contact/functions/invariants.h"
+#include "contact/io/input_file.h"
+#include "contact/io/printable.h"
 #include "tasks/scene/file_limits.h"
 #include "tasks/scene/scene_ranges.h"
-
-#include "contact/invariants.h"
 
 namespace pincer::tasks {
 namespace {

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "contact/file/atomic_file.h"
+#include "contact/io/atomic_file.h"
 #include "tasks/scene/file_limits.h"
 #include "tasks/scene/strict_json.h"
 

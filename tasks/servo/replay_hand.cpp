@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "contact/error.h"
-#include "contact/printable.h"
+#include "contact/io/printable.h"
 #include "devices/arm/replay_arm.h"
 #include "tasks/scene/file_limits.h"
 #include "tasks/scene/scene_ranges.h"

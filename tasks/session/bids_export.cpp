@@ -7,7 +7,7 @@
 #include <map>
 #include <type_traits>
 
-#include "contact/file/atomic_file.h"
+#include "contact/io/atomic_file.h"
 #include "tasks/scene/json_writer.h"
 #include "tasks/session/columns.h"
 #include "tasks/session/csv.h"

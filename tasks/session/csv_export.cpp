@@ -1,6 +1,6 @@
 #include "tasks/session/csv_export.h"
 
-#include "contact/file/atomic_file.h"
+#include "contact/io/atomic_file.h"
 #include "tasks/session/columns.h"
 #include "tasks/session/csv.h"
 

@@ -1,7 +1,7 @@
 #include "tasks/session/session_file.h"
 
 #include "contact/error.h"
-#include "contact/file/part_file.h"
+#include "contact/io/part_file.h"
 #include "tasks/session/build_info.h"
 #include "tasks/session/session_lock.h"
 #include "tasks/session/table.h"

@@ -13,7 +13,7 @@
 #include <string_view>
 
 #include "contact/error.h"
-#include "contact/file/part_file.h"
+#include "contact/io/part_file.h"
 
 namespace pincer::tasks {
 namespace {

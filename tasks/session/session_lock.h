@@ -6,7 +6,7 @@
 #pragma once
 #include <string>
 
-#include "contact/file/file_descriptor.h"
+#include "contact/io/file_descriptor.h"
 
 namespace pincer::tasks {
 

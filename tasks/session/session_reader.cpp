@@ -2,7 +2,7 @@
 #include <set>
 
 #include "contact/error.h"
-#include "contact/file/part_file.h"
+#include "contact/io/part_file.h"
 #include "tasks/session/input_codec.h"
 #include "tasks/session/session_lock.h"
 #include "tasks/session/session_store.h"

@@ -16,7 +16,7 @@
 #include <variant>
 
 #include "contact/error.h"
-#include "contact/file/part_file.h"
+#include "contact/io/part_file.h"
 #include "tasks/session/input_codec.h"
 #include "tasks/session/ring.h"
 #include "tasks/session/session_file.h"

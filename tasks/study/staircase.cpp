@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "contact/functions/elementary.h"
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 
 namespace pincer::tasks {
 

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "contact/counted.h"
+#include "contact/io/counted.h"
 #include "tasks/experiments/arc_study.h"
 #include "tasks/experiments/localisation.h"
 #include "tasks/experiments/shape_study.h"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "contact/counted.h"
+#include "contact/io/counted.h"
 #include "tasks/scene/json_change.h"
 #include "tasks/scene/simulation.h"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "contact/counted.h"
+#include "contact/io/counted.h"
 #include "tasks/experiments/manipulation_file.h"
 #include "tasks/experiments/row_sink.h"
 #include "tasks/report/person_means.h"

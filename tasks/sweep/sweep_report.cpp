@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "contact/file/atomic_file.h"
+#include "contact/io/atomic_file.h"
 #include "tasks/report/figures.h"
 #include "tasks/session/csv.h"
 #include "tasks/sweep/sweep.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "contact/error.h"
-#include "contact/file/atomic_file.h"
+#include "contact/io/atomic_file.h"
 #include "tasks/view/image.h"
 
 namespace pincer::tasks {

@@ -8,7 +8,7 @@
 #include <iterator>
 
 #include "contact/error.h"
-#include "contact/file/atomic_file.h"
+#include "contact/io/atomic_file.h"
 #include "tasks/measure/timing.h"
 #include "tasks/session/csv.h"
 

@@ -5,7 +5,7 @@
 #include <map>
 
 #include "contact/error.h"
-#include "contact/file/atomic_file.h"
+#include "contact/io/atomic_file.h"
 #include "tasks/bench/engine/engine_bench.h"
 #include "tasks/report/figures.h"
 #include "tasks/report/gnuplot.h"

@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "contact/error.h"
-#include "contact/file/atomic_file.h"
+#include "contact/io/atomic_file.h"
 #include "grasp/energy_ledger.h"
 #include "grasp/hold_bounds.h"
 #include "grasp/passivity.h"

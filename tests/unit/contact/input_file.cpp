@@ -1,5 +1,5 @@
 // Files are read whole, bounded, and from files only.
-#include "contact/input_file.h"
+#include "contact/io/input_file.h"
 
 #include <gtest/gtest.h>
 #include <sys/socket.h>

@@ -1,9 +1,9 @@
 // Text of others is shown and not obeyed.
-#include "contact/printable.h"
+#include "contact/io/printable.h"
 
 #include <gtest/gtest.h>
 
-#include "contact/counted.h"
+#include "contact/io/counted.h"
 #include "tests/support/random_numbers.h"
 
 namespace pincer {

@@ -6,7 +6,7 @@
 
 #include <ctime>
 
-#include "contact/printable.h"
+#include "contact/io/printable.h"
 #include "tasks/experiments/manipulation_file.h"
 #include "tasks/scene/file_limits.h"
 #include "tasks/scene/json_change.h"

@@ -6,7 +6,7 @@
 #include <ctime>
 #include <filesystem>
 
-#include "contact/printable.h"
+#include "contact/io/printable.h"
 #include "tasks/app/study_file.h"
 #include "tasks/experiments/manipulation_file.h"
 #include "tasks/scene/builtin_scenes.h"

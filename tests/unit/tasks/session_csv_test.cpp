@@ -12,7 +12,7 @@
 #include <sstream>
 
 #include "contact/error.h"
-#include "contact/file/atomic_file.h"
+#include "contact/io/atomic_file.h"
 #include "tasks/session/bids_export.h"
 #include "tasks/session/csv.h"
 #include "tasks/session/csv_export.h"

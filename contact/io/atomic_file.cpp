@@ -1,4 +1,4 @@
-#include "contact/file/atomic_file.h"
+#include "contact/io/atomic_file.h"
 
 #include <fmt/format.h>
 #include <unistd.h>

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "contact/file/part_file.h"
+#include "contact/io/part_file.h"
 
 namespace pincer {
 

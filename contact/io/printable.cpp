@@ -1,4 +1,4 @@
-#include "contact/printable.h"
+#include "contact/io/printable.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "contact/counted.h"
+#include "contact/io/counted.h"
 
 #include <fmt/format.h>
 

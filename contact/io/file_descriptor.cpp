@@ -1,4 +1,4 @@
-#include "contact/file/file_descriptor.h"
+#include "contact/io/file_descriptor.h"
 
 #include <fcntl.h>
 #include <unistd.h>

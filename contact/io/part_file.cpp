@@ -1,4 +1,4 @@
-#include "contact/file/part_file.h"
+#include "contact/io/part_file.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
