@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "contact/functions/elementary.h"
+#include "contact/elementary.h"
 #include "contact/functions/invariants.h"
 
 namespace pincer::engine {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "contact/functions/elementary.h"
+#include "contact/elementary.h"
 #include "contact/functions/invariants.h"
 
 namespace pincer::exact {

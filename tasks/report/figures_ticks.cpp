@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "contact/functions/elementary.h"
+#include "contact/elementary.h"
 #include "tasks/report/figures.h"
 #include "tasks/session/csv.h"
 

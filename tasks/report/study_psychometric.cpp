@@ -7,7 +7,7 @@
 #include <map>
 #include <optional>
 
-#include "contact/functions/elementary.h"
+#include "contact/elementary.h"
 #include "tasks/report/figures.h"
 #include "tasks/report/study_report.h"
 #include "tasks/session/csv.h"

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "contact/functions/elementary.h"
+#include "contact/elementary.h"
 #include "contact/functions/invariants.h"
 
 namespace pincer::tasks {

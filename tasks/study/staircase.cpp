@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "contact/functions/elementary.h"
+#include "contact/elementary.h"
 #include "contact/functions/invariants.h"
 
 namespace pincer::tasks {
