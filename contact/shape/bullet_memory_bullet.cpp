@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <new>
 
-#include "contact/shape/bullet_memory.h"
+#include "pincer/contact/shape/bullet_memory.h"
 
 namespace pincer::contact {
 namespace {

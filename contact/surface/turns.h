@@ -10,7 +10,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "contact/assert.h"
+#include "pincer/contact/assert.h"
 
 namespace pincer::contact {
 

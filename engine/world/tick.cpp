@@ -2,15 +2,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "contact/functions/invariants.h"
-#include "engine/motion/driven_motion.h"
-#include "engine/motion/free_motion.h"
-#include "engine/world/budget.h"
-#include "engine/world/impact.h"
-#include "engine/world/island_sleep.h"
-#include "engine/world/push_out.h"
-#include "engine/world/rest.h"
-#include "engine/world/stages.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/engine/motion/driven_motion.h"
+#include "pincer/engine/motion/free_motion.h"
+#include "pincer/engine/world/budget.h"
+#include "pincer/engine/world/impact.h"
+#include "pincer/engine/world/island_sleep.h"
+#include "pincer/engine/world/push_out.h"
+#include "pincer/engine/world/rest.h"
+#include "pincer/engine/world/stages.h"
 
 namespace pincer::engine {
 namespace {

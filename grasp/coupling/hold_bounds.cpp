@@ -1,12 +1,12 @@
-#include "grasp/hold_bounds.h"
+#include "pincer/grasp/hold_bounds.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <complex>
 
-#include "contact/functions/invariants.h"
-#include "contact/math.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/contact/math.h"
 
 namespace pincer::grasp {
 namespace {

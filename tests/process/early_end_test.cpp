@@ -10,16 +10,16 @@
 #include <system_error>
 #include <thread>
 
-#include "tasks/app/app.h"
-#include "tasks/app/measure_command.h"
-#include "tasks/measure/child_process.h"
-#include "tasks/measure/interrupted.h"
-#include "tasks/measure/threads.h"
-#include "tasks/scene/strict_json.h"
-#include "tasks/session/csv_export.h"
-#include "tests/support/spawned.h"
-#include "tests/support/synthetic_session.h"
-#include "tests/support/temporary_directory.h"
+#include "pincer/tasks/app/app.h"
+#include "pincer/tasks/app/commands/measure_command.h"
+#include "pincer/tasks/run/files/strict_json.h"
+#include "pincer/tasks/run/process/child_process.h"
+#include "pincer/tasks/run/process/interrupted.h"
+#include "pincer/tasks/run/process/threads.h"
+#include "pincer/tasks/run/session/csv_export.h"
+#include "pincer/tests/support/spawned.h"
+#include "pincer/tests/support/synthetic_session.h"
+#include "pincer/tests/support/temporary_directory.h"
 
 namespace pincer::tasks {
 namespace {

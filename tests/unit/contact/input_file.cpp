@@ -1,5 +1,5 @@
 // Files are read whole, bounded, and from files only.
-#include "contact/io/input_file.h"
+#include "pincer/contact/io/input_file.h"
 
 #include <gtest/gtest.h>
 #include <sys/socket.h>
@@ -10,9 +10,9 @@
 #include <chrono>
 #include <fstream>
 
-#include "contact/mesh_reader.h"
-#include "tests/support/error_of.h"
-#include "tests/support/temporary_directory.h"
+#include "pincer/contact/mesh_reader.h"
+#include "pincer/tests/support/error_of.h"
+#include "pincer/tests/support/temporary_directory.h"
 
 namespace pincer {
 namespace {

@@ -4,7 +4,7 @@
 #include <limits>
 #include <sstream>
 
-#include "contact/mesh_reader.h"
+#include "pincer/contact/mesh_reader.h"
 
 namespace pincer::contact {
 namespace {

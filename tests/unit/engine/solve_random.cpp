@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "engine/solve/cone.h"
-#include "engine/solve/gauss_seidel.h"
-#include "engine/solve/local_contact.h"
-#include "tests/support/allocation_guard.h"
-#include "tests/support/contact_problems.h"
+#include "pincer/engine/solve/cone.h"
+#include "pincer/engine/solve/gauss_seidel.h"
+#include "pincer/engine/solve/local_contact.h"
+#include "pincer/tests/support/allocation_guard.h"
+#include "pincer/tests/support/contact_problems.h"
 
 namespace pincer::engine {
 namespace {

@@ -7,18 +7,18 @@
 #include <string_view>
 #include <vector>
 
-#include "contact/mesh/half_edges.h"
-#include "contact/shape/closed_forms.h"
-#include "contact/shape/convex_features.h"
-#include "contact/pair_query.h"
-#include "contact/surface/short_list.h"
-#include "contact/surface/aabb_tree.h"
-#include "engine/motion/one_freedom.h"
-#include "grasp/energy_ledger.h"
-#include "grasp/passivity.h"
-#include "grasp/finger_distance.h"
-#include "grasp/grasp_quality.h"
-#include "tests/support/worlds.h"
+#include "pincer/contact/mesh/half_edges.h"
+#include "pincer/contact/pair_query.h"
+#include "pincer/contact/shape/closed_forms.h"
+#include "pincer/contact/shape/convex_features.h"
+#include "pincer/contact/surface/aabb_tree.h"
+#include "pincer/contact/surface/short_list.h"
+#include "pincer/engine/motion/one_freedom.h"
+#include "pincer/grasp/energy_ledger.h"
+#include "pincer/grasp/finger_distance.h"
+#include "pincer/grasp/grasp_quality.h"
+#include "pincer/grasp/passivity.h"
+#include "pincer/tests/support/worlds.h"
 
 namespace pincer::grasp {
 namespace {
