@@ -14,6 +14,7 @@
 #include "tasks/app/process.h"
 #include "tasks/app/progress.h"
 #include "tasks/app/record_text.h"
+#include "tasks/measure/interrupted.h"
 #include "tasks/scene/json_writer.h"
 
 namespace pincer::tasks {
@@ -43,6 +44,7 @@ void runOne(const Measurement& measurement, MeasureContext& context, std::vector
   std::vector<Record> measured;
   try {
     measured = measurement.run(context);
+  } catch (const Interrupted&) {       // what was whole before is shown
   } catch (const InputError& error) {  // the other figures are wanted all the same
     measured = {unbounded(fmt::format("not measured: {}", error.what()), std::numeric_limits<double>::quiet_NaN(), "-")};
   }
