@@ -243,6 +243,14 @@ TEST(House, LibrariesStayInTheirFiles) {
   }
 }
 
+// fmt's print() throws where a stream can't be written (tasks/app/print.h).
+TEST(House, NobodyPrintsWhatMayThrow) {
+  for (const fs::path& file : sourcesUnder(fs::path(PINCER_SOURCE_DIR) / "tasks")) {
+    if (file.filename() == "print.h") continue;
+    for (const std::string& line : linesOf(file)) EXPECT_EQ(line.find("fmt::print("), std::string::npos) << file << ": " << line;
+  }
+}
+
 TEST(House, PagesStayShort) {
   for (const auto& [folder, seen] : kMaySee) {
     for (const fs::path& file : sourcesUnder(fs::path(PINCER_SOURCE_DIR) / folder)) EXPECT_LE(linesOf(file).size(), 400u) << file;

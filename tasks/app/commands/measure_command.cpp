@@ -16,6 +16,7 @@
 #include "pincer/tasks/app/record_text.h"
 #include "pincer/tasks/app/usage.h"
 #include "pincer/tasks/run/files/json_writer.h"
+#include "pincer/tasks/run/process/interrupted.h"
 
 namespace pincer::tasks {
 namespace {
@@ -44,6 +45,7 @@ void runOne(const Measurement& measurement, MeasureContext& context, std::vector
   std::vector<Record> measured;
   try {
     measured = measurement.run(context);
+  } catch (const Interrupted&) {       // what was whole before is shown
   } catch (const InputError& error) {  // the other figures are wanted all the same
     measured = {unbounded(fmt::format("not measured: {}", error.what()), std::numeric_limits<double>::quiet_NaN(), "-")};
   }

@@ -113,10 +113,9 @@ void Gnuplot::fail(const Figure& figure, int status, const std::string& log) con
 }
 
 int Gnuplot::run(const std::string& script_name) {
-  static const std::atomic<bool> never{false};
   try {
     ChildProcess child({program_, "-d", script_name}, directory_, "log");  // -d: nobody's ~/.gnuplot
-    return child.wait(interrupted_ ? *interrupted_ : never);
+    return child.wait([this] { return interrupted_ && *interrupted_; });
   } catch (const std::system_error& error) {
     throw InputError(
         fmt::format("{}: can't run the plotting program: {}. The report's pictures need gnuplot (Debian: apt-get install gnuplot-nox); "

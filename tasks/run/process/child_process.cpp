@@ -1,6 +1,7 @@
 #include "pincer/tasks/run/process/child_process.h"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -10,6 +11,7 @@
 #include <csignal>
 #include <system_error>
 #include <thread>
+#include <utility>
 
 #include "pincer/tasks/run/process/interrupted.h"
 
@@ -35,6 +37,14 @@ class SpawnActions {
     } catch (...) {
       posix_spawn_file_actions_destroy(&actions_);
       throw;
+    }
+  }
+  // Standard output into the pipe.
+  explicit SpawnActions(int pipe_end) {
+    must(posix_spawn_file_actions_init(&actions_));
+    if (const int error = posix_spawn_file_actions_adddup2(&actions_, pipe_end, STDOUT_FILENO); error != 0) {
+      posix_spawn_file_actions_destroy(&actions_);
+      must(error);
     }
   }
   SpawnActions(SpawnActions&&) = delete;
@@ -64,18 +74,45 @@ class SpawnAttributes {
   posix_spawnattr_t attributes_;
 };
 
-}  // namespace
-
-ChildProcess::ChildProcess(std::vector<std::string> arguments, const std::string& directory, const char* log) {
-  const SpawnActions actions(directory, log);
+pid_t spawn(std::vector<std::string>& arguments, const SpawnActions& actions) {
   const SpawnAttributes attributes;
   std::vector<char*> argv;
   for (std::string& argument : arguments) argv.push_back(argument.data());
   argv.push_back(nullptr);
-  must(posix_spawnp(&child_, argv[0], actions.get(), attributes.get(), argv.data(), environ));
+  pid_t child = 0;
+  must(posix_spawnp(&child, argv[0], actions.get(), attributes.get(), argv.data(), environ));
+  return child;
+}
+
+class Pipe {
+ public:
+  Pipe() { must(::pipe2(ends_, O_CLOEXEC) == 0 ? 0 : errno); }
+  ~Pipe() {
+    for (const int end : ends_) {
+      if (end >= 0) ::close(end);
+    }
+  }
+  Pipe(Pipe&&) = delete;
+  int input() const { return ends_[1]; }
+  int takeOutput() { return std::exchange(ends_[0], -1); }
+
+ private:
+  int ends_[2] = {-1, -1};
+};
+
+}  // namespace
+
+ChildProcess::ChildProcess(std::vector<std::string> arguments, const std::string& directory, const char* log)
+    : child_(spawn(arguments, SpawnActions(directory, log))) {}
+
+ChildProcess::ChildProcess(std::vector<std::string> arguments) {
+  Pipe pipe;
+  child_ = spawn(arguments, SpawnActions(pipe.input()));
+  heard_ = pipe.takeOutput();
 }
 
 ChildProcess::~ChildProcess() {
+  if (heard_ >= 0) ::close(heard_);
   if (child_ == 0) return;
   ::kill(child_, SIGTERM);
   for (int look = 0; look < kLooksBeforeKill; ++look) {
@@ -87,12 +124,31 @@ ChildProcess::~ChildProcess() {
   }
 }
 
-int ChildProcess::wait(const std::atomic<bool>& interrupted) {
+int ChildProcess::wait(const std::function<bool()>& interrupted) {
   while (!ended()) {
-    throwIf(interrupted);
+    if (interrupted()) throw Interrupted();
     std::this_thread::sleep_for(kLook);
   }
   return WIFEXITED(status_) ? WEXITSTATUS(status_) : 128 + WTERMSIG(status_);
+}
+
+bool ChildProcess::readLine(std::string& line, const std::function<bool()>& interrupted) {
+  while (begun_.find('\n') == std::string::npos) {
+    if (interrupted()) throw Interrupted();
+    pollfd pipe{heard_, POLLIN, 0};
+    constexpr int kWait = 20;  // [ms]
+    if (::poll(&pipe, 1, kWait) <= 0) continue;
+    char some[512];
+    const ssize_t count = ::read(heard_, some, sizeof some);
+    if (count < 0 && errno == EINTR) continue;
+    if (count > 0) begun_.append(some, static_cast<std::size_t>(count));
+    if (count <= 0 && begun_.empty()) return false;
+    if (count <= 0) begun_ += '\n';
+  }
+  const std::size_t end = begun_.find('\n');
+  line = begun_.substr(0, end);
+  begun_.erase(0, end + 1);
+  return true;
 }
 
 bool ChildProcess::ended() {

@@ -8,10 +8,12 @@
 #include <filesystem>
 #include <functional>
 #include <limits>
-#include <memory>
+#include <system_error>
+#include <utility>
 
 #include "pincer/contact/error.h"
 #include "pincer/tasks/judge/bench/devices/devices_bench.h"
+#include "pincer/tasks/run/process/child_process.h"
 
 namespace pincer::tasks {
 namespace {
@@ -43,9 +45,16 @@ Record usbRecord(const std::vector<std::string>& c) {
   return record;
 }
 
-struct ClosePipe {
-  void operator()(std::FILE* pipe) const noexcept { pclose(pipe); }
-};
+ChildProcess started(std::vector<std::string> arguments) {
+  const std::string program = arguments.front();
+  try {
+    return ChildProcess(std::move(arguments));
+  } catch (const std::system_error& error) {
+    throw InputError(
+        fmt::format("bench devices: {} can't be run: {}. It is built with the tests where umockdev is installed: tests/run --quick.",
+                    program, error.code().message()));
+  }
+}
 
 std::vector<Record> measureUsb(const DevicesBenchOptions& options, MeasureContext& context) {
   const std::string program = options.usb.empty() ? besideThisProgram("devices_bench") : options.usb;
@@ -53,29 +62,25 @@ std::vector<Record> measureUsb(const DevicesBenchOptions& options, MeasureContex
     throw InputError(
         fmt::format("bench devices: {} isn't there. It is built with the tests where umockdev is installed: tests/run --quick.", program));
   }
-  const std::string command = fmt::format("'{}' {} {}", program, options.seconds, options.cycles);
-  std::unique_ptr<std::FILE, ClosePipe> pipe(popen(command.c_str(), "r"));
+  ChildProcess child = started({program, fmt::format("{}", options.seconds), fmt::format("{}", options.cycles)});
   std::vector<Record> records;
-  std::array<char, 1024> line;
-  while (pipe && std::fgets(line.data(), static_cast<int>(line.size()), pipe.get()) != nullptr && !context.interrupted()) {
-    const auto fields = tabbedCells(line.data());
+  for (std::string line; child.readLine(line, context.interrupted);) {
+    const auto fields = tabbedCells(line);
     if (fields.size() == 6) records.push_back(usbRecord(fields));
     context.progress(std::min(1.0, static_cast<double>(records.size()) / 25));
   }
-  if (context.interrupted()) return records;
-  const int status = pipe ? pclose(pipe.release()) : -1;
+  const int status = child.wait(context.interrupted);
   if (records.empty() || status != 0) {
-    throw InputError(fmt::format("bench devices: {} ended early, after {} figures (status {}); run it by hand to see why.", command,
-                                 records.size(), status));
+    throw InputError(fmt::format("bench devices: {} {} {} ended early, after {} figures (status {}); run it by hand to see why.", program,
+                                 options.seconds, options.cycles, records.size(), status));
   }
   return records;
 }
 
-// Every line that `command` prints.
-void eachLine(const std::string& command, const std::function<void(const std::string&)>& take) {
-  const std::unique_ptr<std::FILE, ClosePipe> pipe(popen(command.c_str(), "r"));
-  std::array<char, 1024> line;
-  while (pipe && std::fgets(line.data(), static_cast<int>(line.size()), pipe.get()) != nullptr) take(line.data());
+// Every line that the program prints.
+void eachLine(std::vector<std::string> arguments, MeasureContext& context, const std::function<void(const std::string&)>& take) {
+  ChildProcess child = started(std::move(arguments));
+  for (std::string line; child.readLine(line, context.interrupted);) take(line);
 }
 
 // What `pincer devices test` said of its devices.
@@ -84,11 +89,11 @@ struct TestedDevices {
   double lost = 0, unsound = 0, answered = 1;  // answered: the least share of a device's commands
 };
 
-TestedDevices testedOver(double seconds) {
+TestedDevices testedOver(double seconds, MeasureContext& context) {
   TestedDevices tested;
-  const std::string command =
-      fmt::format("'{}' '{}' devices test --seconds {}", besideThisProgram("device_emulator"), besideThisProgram("pincer"), seconds);
-  eachLine(command, [&](const std::string& line) {
+  const std::vector<std::string> command{
+      besideThisProgram("device_emulator"), besideThisProgram("pincer"), "devices", "test", "--seconds", fmt::format("{}", seconds)};
+  eachLine(command, context, [&](const std::string& line) {
     const auto at = line.find(" frames, ");
     if (at == std::string::npos) return;
     long long lost = 0, unsound = 0, answers = 0, commands = 1;
@@ -104,21 +109,30 @@ TestedDevices testedOver(double seconds) {
 }
 
 // From SIGSTOP of the whole program to the last motor without force, as the devices' own process sees it [ms]; infinite where it wasn't seen.
-double msAfterSigstop() {
+double msAfterSigstop(MeasureContext& context) {
   double ms = std::numeric_limits<double>::infinity();
-  const std::string command = fmt::format("'{}' --stop 0.2 '{}' devices test --seconds 1.5 --force 0.3",
-                                          besideThisProgram("device_emulator"), besideThisProgram("pincer"));
-  eachLine(command, [&](const std::string& line) { std::sscanf(line.c_str(), "stopped: every motor without force after %lf ms", &ms); });
+  const std::vector<std::string> command{besideThisProgram("device_emulator"),
+                                         "--stop",
+                                         "0.2",
+                                         besideThisProgram("pincer"),
+                                         "devices",
+                                         "test",
+                                         "--seconds",
+                                         "1.5",
+                                         "--force",
+                                         "0.3"};
+  eachLine(command, context,
+           [&](const std::string& line) { std::sscanf(line.c_str(), "stopped: every motor without force after %lf ms", &ms); });
   return ms;
 }
 
 std::vector<Record> twoProcesses(MeasureContext& context) {
   const double seconds = 10;
-  const TestedDevices tested = testedOver(seconds);
+  const TestedDevices tested = testedOver(seconds, context);
   std::array<double, 5> ms{};
   for (std::size_t i = 0; i < ms.size() && !context.interrupted(); ++i) {
     context.progress(0.4 + 0.12 * static_cast<double>(i));
-    ms[i] = msAfterSigstop();
+    ms[i] = msAfterSigstop(context);
   }
   std::sort(ms.begin(), ms.end());
   return {exactly("devices", tested.devices, "-", 4),

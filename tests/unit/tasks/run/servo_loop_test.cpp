@@ -195,7 +195,7 @@ TEST(ServoReport, ThatCanNotBeShownEndsNothing) {
     return shown == 0 && now < 20;
   });
   EXPECT_FALSE(runServo(options, cycle, kNeverStop).watchdog_tripped);
-  EXPECT_EQ(shown, 1);
+  EXPECT_GE(shown, 1);
 }
 
 TEST(ServoRealTime, StopsWhenAnotherThreadInterrupts) {
