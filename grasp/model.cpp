@@ -55,7 +55,7 @@ double patchRadius(const SoftPad& pad, double tip_radius, double f_n) {
   if (pad.patch_radius > 0) return pad.patch_radius;
   if (!(pad.modulus > 0)) return 0;
   const double R = pad.effective_radius > 0 ? pad.effective_radius : tip_radius;
-  return std::cbrt(0.75 * f_n * R / pad.modulus);
+  return math::cbrt(0.75 * f_n * R / pad.modulus);
 }
 
 double torsionRadius(const SoftPad& pad, double tip_radius, double f_n) {

@@ -18,7 +18,7 @@ Vec2 placeOnPad(const FingerModel& finger, const Vec3& d_F) {
   const double sine = tangent.norm();
   if (sine < 1e-300) return Vec2::Zero();
   if (finger.shape) return placeOnPad(finger, contact::supportOf(*finger.shape, d_F.normalized()), d_F.normalized());
-  return (finger.radius * std::atan2(sine, d_F.dot(finger.pad_normal_F)) / sine) * tangent;
+  return (finger.radius * math::atan2(sine, d_F.dot(finger.pad_normal_F)) / sine) * tangent;
 }
 
 Vec2 placeOnPad(const FingerModel& finger, const Vec3& p_F, const Vec3& normal_F) {

@@ -57,7 +57,7 @@ void Curve::addBends() {
     const Segment &before = segments_[(i + n - 1) % n], &after = segments_[i];
     const double a = 0.5 * before.length, b = 0.5 * after.length;
     const double turn_sine = cross(before.e, after.e), turn_cosine = before.e.dot(after.e);
-    const double beta = std::atan2(turn_sine, turn_cosine);
+    const double beta = math::atan2(turn_sine, turn_cosine);
     // O lies on both bisectors, at rho from M0: rho sin(beta) = a cos(beta) + b
     const double kappa = std::abs(beta) < kLeastBend ? 0 : turn_sine / (a * turn_cosine + b);
     bends_.push_back(
@@ -129,7 +129,7 @@ Curve::Tangent Curve::onBend(const Bend& bend, const Vec2& C, double& t) const {
     double t_of_F = x / bend.reach, slope = dx / bend.reach;
     if (bend.kappa != 0) {
       const double u = bend.kappa * x, w = 1 + bend.kappa * y;
-      t_of_F = std::atan2(u, w) / bend.beta;
+      t_of_F = math::atan2(u, w) / bend.beta;
       slope = bend.kappa * (w * dx - u * dy) / ((u * u + w * w) * bend.beta);
     }
     const double ahead = t_of_F - t;
@@ -172,7 +172,7 @@ CurveContact Curve::follow(const Vec2& C, double r, CurveTracker& tracker) const
     const double share = std::clamp((line.F - s.start).dot(s.e) / s.length, 0.0, 1.0);
     if (line.n == s.n) n = ((1 - share) * s.n_start + share * s.n_end).normalized();
   }
-  return {line.F, n, line.h - r, std::atan2(-line.n.x(), line.n.y())};
+  return {line.F, n, line.h - r, math::atan2(-line.n.x(), line.n.y())};
 }
 
 CurveContact Curve::queryCircle(const Vec2& p_BC, double r, CurveTracker& tracker) const {

@@ -63,7 +63,7 @@ class EdgeBallFinder {
     balls_.at_vertex[static_cast<std::size_t>(mesh_.triangles[t][i])].creases.push_back(
         {static_cast<std::int32_t>(t), static_cast<std::int8_t>(i), left, right, convex});
     const Vec3 &a = normal(left), &b = normal(right);
-    balls_.widest_turn = std::max(balls_.widest_turn, std::atan2(a.cross(b).norm(), a.dot(b)));
+    balls_.widest_turn = std::max(balls_.widest_turn, math::atan2(a.cross(b).norm(), a.dot(b)));
   }
 
   void place(std::int32_t vertex, EdgeBall& ball) const {

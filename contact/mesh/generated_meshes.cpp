@@ -134,7 +134,7 @@ TriangleMesh prism(const std::string& name, double radius, double half_length, c
   std::vector<std::int32_t> id;
   for (int k = 0; k <= rows; ++k) {
     const double z = -half_length + 2 * half_length * k / rows;
-    for (const double a : angles) id.push_back(build.vertex({radius * std::cos(a), radius * std::sin(a), z}));
+    for (const double a : angles) id.push_back(build.vertex({radius * math::cos(a), radius * math::sin(a), z}));
   }
   const auto at = [&](int k, int i) { return id[static_cast<std::size_t>(k * n + i % n)]; };
   for (int k = 0; k < rows; ++k) {
@@ -167,7 +167,7 @@ TriangleMesh geodesicSphere(double radius, int n) {
 }
 
 TriangleMesh cylinderWithFlat(double radius, double half_length, double flat_distance, int segments, int rows) {
-  const double first = std::acos(flat_distance / radius);
+  const double first = math::acos(flat_distance / radius);
   std::vector<double> angles;
   for (int i = 0; i <= segments; ++i) angles.push_back(first + (2 * M_PI - 2 * first) * i / segments);
   return prism("cylinder with flat", radius, half_length, angles, rows);
@@ -184,8 +184,8 @@ TriangleMesh torus(double major, double minor, int major_segments, int minor_seg
   for (int i = 0; i < major_segments; ++i) {
     for (int j = 0; j < minor_segments; ++j) {
       const double a = 2 * M_PI * i / major_segments, b = 2 * M_PI * j / minor_segments;
-      const double rho = major + minor * std::cos(b);
-      build.vertex({rho * std::cos(a), rho * std::sin(a), minor * std::sin(b)});
+      const double rho = major + minor * math::cos(b);
+      build.vertex({rho * math::cos(a), rho * math::sin(a), minor * math::sin(b)});
     }
   }
   const auto at = [&](int i, int j) { return i % major_segments * minor_segments + j % minor_segments; };
@@ -199,8 +199,8 @@ TriangleMesh roundedCube(double half, double rounding, int segments) {
   GridWelder weld("rounded cube", half);
   const double core = half - rounding;
   std::vector<double> grid;  // on a cube's face, so that the roundings get equal angles
-  for (int i = 0; i <= segments; ++i) grid.push_back(-core - rounding * std::tan(M_PI / 4 * (1 - static_cast<double>(i) / segments)));
-  for (int i = 0; i <= segments; ++i) grid.push_back(core + rounding * std::tan(M_PI / 4 * i / segments));
+  for (int i = 0; i <= segments; ++i) grid.push_back(-core - rounding * math::tan(M_PI / 4 * (1 - static_cast<double>(i) / segments)));
+  for (int i = 0; i <= segments; ++i) grid.push_back(core + rounding * math::tan(M_PI / 4 * i / segments));
   const auto vertexUnder = [&](const Vec3& p) {
     const Vec3 c = p.cwiseMax(-core).cwiseMin(core);
     return weld.vertex(c + rounding * (p - c).normalized());
@@ -260,7 +260,7 @@ TriangleMesh uvSphere(double radius, int rings, int segments) {
   for (int k = 1; k < rings; ++k) {
     for (int i = 0; i < segments; ++i) {
       const double a = M_PI * k / rings, b = 2 * M_PI * i / segments;
-      build.vertex(radius * Vec3(std::sin(a) * std::cos(b), std::sin(a) * std::sin(b), std::cos(a)));
+      build.vertex(radius * Vec3(math::sin(a) * math::cos(b), math::sin(a) * math::sin(b), math::cos(a)));
     }
   }
   const std::int32_t north = build.vertex({0, 0, radius}), south = build.vertex({0, 0, -radius});
@@ -284,14 +284,14 @@ TriangleMesh bumpySphere(double radius, double amplitude, double waves, int n) {
   TriangleMesh mesh = geodesicSphere(1, n);
   mesh.source = "bumpy sphere";
   for (Vec3& d : mesh.vertices) {
-    const double f = std::sin(waves * d.x()) * std::sin(waves * d.y() + 1) * std::sin(waves * d.z() + 2);
+    const double f = math::sin(waves * d.x()) * math::sin(waves * d.y() + 1) * math::sin(waves * d.z() + 2);
     d *= radius * (1 + amplitude * f);
   }
   return mesh;
 }
 
 TriangleMesh grooveBlock(double half_angle, double depth, double half_width, double half_length) {
-  const double opening = depth * std::tan(half_angle);
+  const double opening = depth * math::tan(half_angle);
   const std::array<Vec2, 7> outline = {{{-half_width, -depth},  // (x, z), counter-clockwise seen from -y
                                         {half_width, -depth},
                                         {half_width, depth},

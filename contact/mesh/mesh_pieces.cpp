@@ -29,7 +29,7 @@ void measure(const TriangleMesh& mesh, const MeshTopology& topology, std::vector
 
 double solidAngle(const Vec3& a, const Vec3& b, const Vec3& c) {
   const double la = a.norm(), lb = b.norm(), lc = c.norm();
-  return 2 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+  return 2 * math::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
 }
 
 bool boxHolds(const MeshPiece& outer, const MeshPiece& inner) {

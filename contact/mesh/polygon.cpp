@@ -42,7 +42,7 @@ bool isStrictlyConvex(const std::vector<Vec2>& p) {
     const Vec2& b = p[(i + 1) % n];
     const Vec2& c = p[(i + 2) % n];
     if (!turnsLeft(a, b, c)) return false;
-    turn += std::atan2(cross(b - a, c - b), (b - a).dot(c - b));
+    turn += math::atan2(cross(b - a, c - b), (b - a).dot(c - b));
   }
   return turn < 7;  // 2 pi, or at least 4 pi
 }

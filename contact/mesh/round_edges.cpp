@@ -22,8 +22,8 @@ using Chain = std::vector<std::int32_t>;  // points in a row
 
 // The unit vector at the share `x` of the way along the great circle from `a` to `b`.
 Vec3 onGreatCircle(const Vec3& a, const Vec3& b, double x) {
-  const double angle = std::atan2(a.cross(b).norm(), a.dot(b));
-  return (std::sin((1 - x) * angle) * a + std::sin(x * angle) * b).normalized();
+  const double angle = math::atan2(a.cross(b).norm(), a.dot(b));
+  return (math::sin((1 - x) * angle) * a + math::sin(x * angle) * b).normalized();
 }
 
 class EdgeRounder {
@@ -137,7 +137,7 @@ class EdgeRounder {
     if (!is_new) return it->second;
     const ConeTip& cone = tip.cone;
     const Vec3 touch = cone.touch((vertex(far_end) - tip.p).normalized());
-    const std::size_t rings = segmentsOf(std::atan2(cone.cos, cone.sin));
+    const std::size_t rings = segmentsOf(math::atan2(cone.cos, cone.sin));
     for (std::size_t k = 0; k < rings; ++k) {
       const double share = static_cast<double>(k) / static_cast<double>(rings);
       const Vec3 u = onGreatCircle((touch - cone.centre()).normalized(), cone.axis, share);
@@ -292,7 +292,7 @@ class EdgeRounder {
   }
   // To three digits.
   static std::string roundedDown(double x) {
-    const double unit = std::pow(10, std::floor(std::log10(x)) - 2);
+    const double unit = math::pow(10, std::floor(math::log10(x)) - 2);
     return fmt::format("{:.3g}", std::floor(x / unit) * unit);
   }
 

@@ -65,7 +65,7 @@ Vec3 directionBetween(const Vec3& a, const Vec3& b, double angle, double s) {
   if (angle < 1e-9) return b;
   Vec3 across = b - b.dot(a) * a;
   if (across.norm() < 1e-12) across = frameFromNormal(a).col(0);  // opposite: any way round
-  return std::cos(s * angle) * a + std::sin(s * angle) * across.normalized();
+  return math::cos(s * angle) * a + math::sin(s * angle) * across.normalized();
 }
 
 }  // namespace

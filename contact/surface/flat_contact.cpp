@@ -119,7 +119,7 @@ ShellContact FlatWalk::onVertex(int corner) const {
   const bool has_border = net_.visitCorners({triangle_, corner}, [&](const CellCorner& c) {
     const Vec3& p = net_.vertex(c.triangle, c.corner);
     const Vec3 e = net_.vertex(c.triangle, (c.corner + 1) % 3) - p, f = net_.vertex(c.triangle, (c.corner + 2) % 3) - p;
-    outward += std::atan2(e.cross(f).norm(), e.dot(f)) * net_.facetNormal(c.triangle);
+    outward += math::atan2(e.cross(f).norm(), e.dot(f)) * net_.facetNormal(c.triangle);
   });
   if (has_border) return rolledOver(outward);
   const double sign = R.dot(outward) < 0 ? -1 : 1;

@@ -26,7 +26,7 @@ LoneContact::LoneContact(const Vec3& C, const Vec3& n, double h, double reach, d
 void LoneContact::setWay(double way) {
   way_ = way;
   rho_ = reach_ * kSinBeta + way;
-  zone_ = std::hypot(rho_, h_ + rho_ * kTanBeta);
+  zone_ = math::hypot(rho_, h_ + rho_ * kTanBeta);
   way_lanes_ = atLeast(way_);
   rho_lanes_ = atLeast(rho_);
   zone_lanes_ = atLeast(std::max(zone_, reach_ + way_));

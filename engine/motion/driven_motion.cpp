@@ -29,7 +29,7 @@ Vec3 rotationVectorOf(const Quat& q) {
   const double sign = q.w() < 0 ? -1 : 1;
   const double sine = q.vec().norm();
   if (sine == 0) return Vec3::Zero();
-  return (sign * 2 * std::atan2(sine, std::abs(q.w())) / sine) * q.vec();
+  return (sign * 2 * math::atan2(sine, std::abs(q.w())) / sine) * q.vec();
 }
 
 }  // namespace pincer::engine

@@ -5,14 +5,10 @@ namespace {
 
 constexpr double kEqual = 1e-13;  // relative difference of moments, some 400 ulp: they come from sums over triangles
 
-struct SinCos {
-  double sin, cos;
-};
-
-// Series to round-off where steps are small, as they are at 1 kHz: a quarter of the time of std::sin and std::cos.
-SinCos sinCos(double a) {
+// Series to round-off where steps are small, as they are at 1 kHz: a quarter of the time of math::sinCos.
+math::SinCos sinCos(double a) {
   const double x = a * a;
-  if (!(x < 0.01)) return {std::sin(a), std::cos(a)};
+  if (!(x < 0.01)) return math::sinCos(a);
   const double xx = x * x;
   return {a * ((1 - x * (1.0 / 6)) + xx * ((1.0 / 120 - x * (1.0 / 5040)) + xx * (1.0 / 362880))),
           (1 - x * 0.5) + xx * ((1.0 / 24 - x * (1.0 / 720)) + xx * (1.0 / 40320))};
@@ -25,7 +21,7 @@ struct SpinningBody {
 
   void turnAboutK(double angle) {
     turn(angle, L_i, L_j);
-    const SinCos half = sinCos(0.5 * angle);
+    const math::SinCos half = sinCos(0.5 * angle);
     const SpinningBody q = *this;
     w = q.w * half.cos - q.z * half.sin;
     x = q.x * half.cos + q.y * half.sin;
@@ -34,7 +30,7 @@ struct SpinningBody {
   }
   void turnAboutJ(double angle) {
     turn(angle, L_k, L_i);
-    const SinCos half = sinCos(0.5 * angle);
+    const math::SinCos half = sinCos(0.5 * angle);
     const SpinningBody q = *this;
     w = q.w * half.cos - q.y * half.sin;
     x = q.x * half.cos - q.z * half.sin;
@@ -45,7 +41,7 @@ struct SpinningBody {
  private:
   // L's components (a, b) in axes that turn from a to b.
   static void turn(double angle, double& a, double& b) {
-    const SinCos s = sinCos(angle);
+    const math::SinCos s = sinCos(angle);
     const double a_before = a;
     a = s.cos * a_before + s.sin * b;
     b = s.cos * b - s.sin * a_before;

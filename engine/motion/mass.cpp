@@ -49,7 +49,7 @@ Moments momentsOf(const contact::CylinderWithFlat& c) {
   const double r = c.radius, d = c.flat_distance;
   const double cosine = -d / r;
   const double sine = std::sqrt((r - d) * (r + d)) / r;
-  const double alpha = std::acos(cosine);
+  const double alpha = math::acos(cosine);
   const double sc = sine * cosine, sssc = sine * sine * sc;
   const double area = r * r * (alpha - sc);
   const double x = -2.0 / 3.0 * r * r * r * sine * sine * sine / area;

@@ -157,7 +157,7 @@ Material combine(const Material& a, const Material& b) {
 double slidingFriction(const Material& m, double speed) {
   if (m.stribeck_speed <= 0 || m.mu_d == m.mu_s) return m.mu_d;
   const double ratio = speed / m.stribeck_speed;
-  return m.mu_d + (m.mu_s - m.mu_d) * std::exp(-ratio * ratio);
+  return m.mu_d + (m.mu_s - m.mu_d) * math::exp(-ratio * ratio);
 }
 
 WorldBuilder::WorldBuilder(const WorldOptions& options) {

@@ -1,7 +1,9 @@
 #include "grasp/coupling/hold_bounds.h"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
+#include <complex>
 
 #include "contact/math.h"
 
@@ -51,7 +53,10 @@ double loopRadius(const ArmPort& arm, double stiffness, double damping, double t
     loop(row, 2) = E(row, 2) * before;
   }
   loop(2, 0) = 1;
-  return Eigen::EigenSolver<Mat3>(loop, false).eigenvalues().cwiseAbs().maxCoeff();
+  double radius = 0;
+  const Eigen::EigenSolver<Mat3> solver(loop, false);
+  for (const std::complex<double>& z : solver.eigenvalues()) radius = std::max(radius, math::hypot(z.real(), z.imag()));
+  return radius;
 }
 
 double stableStiffness(const ArmPort& arm, double damping, double tick, double lead) {

@@ -22,7 +22,7 @@ double slipMargin(const GraspContact& contact) {
   const double limit = contact.mu * contact.f_n;
   if (!(limit > 0)) return 0;
   const double torsion = contact.torsion_radius > 0 ? contact.tau_n / contact.torsion_radius : 0;
-  return std::max(1 - std::hypot(contact.f_T_C.norm(), torsion) / limit, 0.0);
+  return std::max(1 - math::hypot(contact.f_T_C.norm(), torsion) / limit, 0.0);
 }
 
 Eigen::Matrix<double, 6, 4> graspColumns(const GraspContact& contact, const Vec3& p_WC, double rho) {

@@ -28,9 +28,9 @@ class Directions {
     ++k_;
     Vec6 d;
     for (int i = 0; i < 6; i += 2) {
-      const double r = std::sqrt(-2 * std::log(1 - fraction(i))), a = 2 * std::numbers::pi * fraction(i + 1);
-      d[i] = r * std::cos(a);
-      d[i + 1] = r * std::sin(a);
+      const double r = std::sqrt(-2 * math::log(1 - fraction(i))), a = 2 * std::numbers::pi * fraction(i + 1);
+      d[i] = r * math::cos(a);
+      d[i + 1] = r * math::sin(a);
     }
     return d.normalized();
   }
@@ -38,7 +38,7 @@ class Directions {
  private:
   // phi_6, the positive root of x^7 = x + 1
   double fraction(int i) const {
-    const double x = 0.5 + k_ * std::pow(1.1127756842787055, -(i + 1));
+    const double x = 0.5 + k_ * math::pow(1.1127756842787055, -(i + 1));
     return x - std::floor(x);
   }
   int k_ = 0;
@@ -209,9 +209,9 @@ double WrenchSet::volume() const {
   for (int k = 0; k < kVolumeDirections; ++k) {
     const double t = shoot(directions.next()).t;
     if (t == 0) return 0;
-    sum += std::pow(t, 6);
+    sum += math::cube(t * t);
   }
-  return std::pow(std::numbers::pi, 3) / 6 * sum / kVolumeDirections;
+  return math::cube(std::numbers::pi) / 6 * sum / kVolumeDirections;
 }
 
 }  // namespace pincer::grasp

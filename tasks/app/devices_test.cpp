@@ -50,7 +50,7 @@ class DeviceTest final : public ServoCycle {
     for (UsbDisplay* display : displays_) {
       const double angle = 2 * 3.14159265358979 * 0.5 * now;
       display->command(
-          {false, 0.6 * Vec2(display->capabilities().reach.x() * std::cos(angle), display->capabilities().reach.y() * std::sin(angle))});
+          {false, 0.6 * Vec2(display->capabilities().reach.x() * math::cos(angle), display->capabilities().reach.y() * math::sin(angle))});
     }
     ++ticks_;
     return now < arguments_.seconds;

@@ -5,7 +5,7 @@
 
 namespace pincer::exact {
 
-double DroppedBall::peak(int bounces) const { return std::pow(restitution, 2 * bounces) * height; }
+double DroppedBall::peak(int bounces) const { return math::pow(restitution, 2 * bounces) * height; }
 
 double DroppedBall::restTime() const { return std::sqrt(2 * height / g) * (1 + restitution) / (1 - restitution); }
 

@@ -53,13 +53,13 @@ std::vector<double> StuckLift::rises(int ticks, double h) const {
 }
 
 double leastFrictionOfOffsetPlate(double mass, double offset, double torsion_radius, double force, double g) {
-  return 0.5 * mass * g * std::hypot(1.0, offset / torsion_radius) / force;
+  return 0.5 * mass * g * math::hypot(1.0, offset / torsion_radius) / force;
 }
 
 PlateRest slidingSpinningPlate(double mass, double inertia, double torsion_radius, double friction_force, const Vec2& v0, double w0) {
   using State = Eigen::Matrix<double, 6, 1>;                                                       // (p, angle, v, w)
   const auto slip = [&](const State& y) { return Vec2(y[3] + y[5] * y[1], y[4] - y[5] * y[0]); };  // v + w x (-p)
-  const auto speed = [&](const State& y) { return std::hypot(slip(y).norm(), torsion_radius * y[5]); };
+  const auto speed = [&](const State& y) { return math::hypot(slip(y).norm(), torsion_radius * y[5]); };
   const auto slope = [&](double, const State& y) {
     const Vec2 f = -friction_force / speed(y) * slip(y);
     const double moment = -friction_force * torsion_radius * torsion_radius * y[5] / speed(y) - y[0] * f[1] + y[1] * f[0];

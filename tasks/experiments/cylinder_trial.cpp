@@ -35,7 +35,7 @@ TrialVerdict CylinderTrial::judge(const HandIntent& intent, double time) {
   view.answers = intent.answers;
   const double theta = angle();
   view.error = wrapAngle(theta - kTargetAngle);
-  const Vec3 flat_W(std::cos(theta), std::sin(theta), 0);
+  const Vec3 flat_W(math::cos(theta), math::sin(theta), 0);
   for (std::size_t i = 0; i < view.normal_forces.size(); ++i) {
     const grasp::FingerReport& finger = scratch().grasp.fingers[i];
     const bool on_object = finger.touching && finger.body == scene().object;

@@ -74,7 +74,7 @@ double heightAboveDish(const contact::TriangleMesh& mesh, double dish_radius) {
 }
 
 // How far a point at most `reach` from the centre may have moved from one pose to the other.
-double movement(const Pose& from, const Pose& to, double reach) { return (to.p - from.p).norm() + reach * from.q.angularDistance(to.q); }
+double movement(const Pose& from, const Pose& to, double reach) { return (to.p - from.p).norm() + reach * angleBetween(from.q, to.q); }
 
 Pose settle(const SpherePickupOptions& options, const contact::Shape& shape, double height) {
   const double mu = options.frictions.front();
@@ -82,7 +82,7 @@ Pose settle(const SpherePickupOptions& options, const contact::Shape& shape, dou
   engine::WorldState state = engine::makeState(model, {{}, {{Quat::Identity(), Vec3(0, 0, height)}, Vec3::Zero(), Vec3::Zero()}}, {});
   engine::WorldScratch scratch(model);
   engine::BodyState& body = state.bodies[kObjectBody];
-  const double keep = std::exp(-model.options.h / kDampingTime);
+  const double keep = math::exp(-model.options.h / kDampingTime);
   Pose last = engine::bodyPose(model, state, kObjectBody);
   for (double next = kRestTime; state.time < kSettleTime;) {
     engine::step(model, state, scratch);
@@ -133,7 +133,7 @@ void measurePinch(const contact::TriangleMesh& mesh, PickupObject& object) {
   }
   object.half_width = 0.5 * (right.x - left.x);
   object.asymmetry = std::abs(0.5 * (right.x + left.x) - object.place_W.x());
-  object.antipodal_angle = std::acos(std::clamp(std::min(right.n_W.x(), -left.n_W.x()), -1.0, 1.0));
+  object.antipodal_angle = math::acos(std::clamp(std::min(right.n_W.x(), -left.n_W.x()), -1.0, 1.0));
 }
 
 void requireGrip(const PickupObject& object, const std::string& source) {

@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "contact/functions/elementary.h"
+
 namespace pincer::tasks {
 
 namespace {
@@ -13,7 +15,7 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 // P(|T| < sqrt(dof) tan(theta)).
 double twoSidedOfAngle(double theta, int dof) {
-  const double c = std::cos(theta), s = std::sin(theta);
+  const double c = math::cos(theta), s = math::sin(theta);
   const bool odd = dof % 2 == 1;
   double term = odd ? c : 1, sum = dof > 1 ? term : 0;
   for (int k = odd ? 3 : 2; k < dof; k += 2) {
@@ -25,7 +27,7 @@ double twoSidedOfAngle(double theta, int dof) {
 
 }  // namespace
 
-double studentTwoSided(double t, int dof) { return twoSidedOfAngle(std::atan(t / std::sqrt(dof)), dof); }
+double studentTwoSided(double t, int dof) { return twoSidedOfAngle(math::atan(t / std::sqrt(dof)), dof); }
 
 double studentQuantile(double probability, int dof) {
   double low = 0, high = std::numbers::pi / 2;
@@ -33,7 +35,7 @@ double studentQuantile(double probability, int dof) {
     const double middle = 0.5 * (low + high);
     (twoSidedOfAngle(middle, dof) < probability ? low : high) = middle;
   }
-  return std::sqrt(dof) * std::tan(0.5 * (low + high));
+  return std::sqrt(dof) * math::tan(0.5 * (low + high));
 }
 
 Estimate estimateMean(const std::vector<double>& values) {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "contact/functions/elementary.h"
+
 namespace pincer::tasks {
 
 class Histogram {
@@ -29,7 +31,7 @@ class Histogram {
     std::int64_t seen = 0;
     for (int i = 0; i < kBins; ++i) {
       seen += bins_[static_cast<std::size_t>(i)];
-      if (seen >= wanted && seen > 0) return std::min(largest_, 1e-9 * std::exp2((i + 1) / 8.0));
+      if (seen >= wanted && seen > 0) return std::min(largest_, 1e-9 * math::exp2((i + 1) / 8.0));
     }
     return 0;
   }
@@ -38,7 +40,7 @@ class Histogram {
   static constexpr int kBins = 8 * 34;
   static int binOf(double seconds) {
     if (!(seconds > 1e-9)) return 0;
-    return static_cast<int>(std::min(kBins - 1.0, 8 * std::log2(seconds * 1e9)));
+    return static_cast<int>(std::min(kBins - 1.0, 8 * math::log2(seconds * 1e9)));
   }
   std::array<std::int64_t, kBins> bins_{};
   std::int64_t count_ = 0;

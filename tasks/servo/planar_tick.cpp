@@ -13,7 +13,7 @@ void locatePlanarFinger(const PlanarTickModel& model, PlanarTickState& state, co
   const Vec3 p_WF = model.X_WD * sample.p_DF;
   const double dt = sample.time - state.sample_time;
   if (state.seen && dt > 0) {
-    const double share = -std::expm1(-2 * std::numbers::pi * model.velocity_cutoff * dt);
+    const double share = -math::expm1(-2 * std::numbers::pi * model.velocity_cutoff * dt);
     state.v_WF += share * ((p_WF - state.p_WF) / dt - state.v_WF);
   }
   state.p_WF = p_WF;

@@ -5,14 +5,16 @@
 #include <limits>
 #include <numbers>
 
+#include "contact/functions/elementary.h"
+
 namespace pincer::tasks {
 namespace {
 
 constexpr double kLapses[] = {0, 0.01, 0.02, 0.03, 0.04, 0.05, 0.06};
 constexpr int kSections = 30;  // of golden sections: 0.618^30 = 5e-7 of the range
 
-double sigmoidAt(Sigmoid shape, double z) { return shape == Sigmoid::kLogistic ? 1 / (1 + std::exp(-z)) : normalCdf(z); }
-double sigmoidQuantile(Sigmoid shape, double p) { return shape == Sigmoid::kLogistic ? std::log(p / (1 - p)) : normalQuantile(p); }
+double sigmoidAt(Sigmoid shape, double z) { return shape == Sigmoid::kLogistic ? 1 / (1 + math::exp(-z)) : normalCdf(z); }
+double sigmoidQuantile(Sigmoid shape, double p) { return shape == Sigmoid::kLogistic ? math::log(p / (1 - p)) : normalQuantile(p); }
 
 struct Peak {
   double at = 0, value = 0;
@@ -55,9 +57,9 @@ class ThresholdLikelihood {
     fit.log_likelihood = -std::numeric_limits<double>::infinity();
     for (const double lambda : kLapses) {
       const double z = sigmoidQuantile(shape_, (p_ - gamma_) / (1 - gamma_ - lambda));
-      const Peak peak = goldenSection(std::log(1e-3 * range_), std::log(10 * range_),
-                                      [&](double ln_beta) { return logLikelihood(function(threshold, z, std::exp(ln_beta), lambda)); });
-      if (peak.value > fit.log_likelihood) fit = {function(threshold, z, std::exp(peak.at), lambda), threshold, {}, peak.value};
+      const Peak peak = goldenSection(math::log(1e-3 * range_), math::log(10 * range_),
+                                      [&](double ln_beta) { return logLikelihood(function(threshold, z, math::exp(ln_beta), lambda)); });
+      if (peak.value > fit.log_likelihood) fit = {function(threshold, z, math::exp(peak.at), lambda), threshold, {}, peak.value};
     }
     return fit;
   }
@@ -71,7 +73,7 @@ class ThresholdLikelihood {
     double sum = 0;
     for (const LevelCount& c : counts_) {
       const double p = std::clamp(f.at(c.level), kLeast, 1 - kLeast);
-      sum += c.right * std::log(p) + (c.trials - c.right) * std::log1p(-p);
+      sum += c.right * math::log(p) + (c.trials - c.right) * math::log1p(-p);
     }
     return sum;
   }
@@ -93,7 +95,7 @@ double crossing(const ThresholdLikelihood& profile, double inside, double outsid
 
 }  // namespace
 
-double normalCdf(double z) { return 0.5 * std::erfc(-z * std::numbers::sqrt2 / 2); }
+double normalCdf(double z) { return 0.5 * math::erfc(-z * std::numbers::sqrt2 / 2); }
 
 double normalQuantile(double p) {
   double low = -40, high = 40;

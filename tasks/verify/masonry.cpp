@@ -20,7 +20,7 @@ contact::Shape stoneOf(double thickness) {
   for (const double y : {-kArchDepth / 2, kArchDepth / 2}) {
     for (const double side : {-1.0, 1.0}) {
       for (const double r : {1 - thickness / 2, 1 + thickness / 2})
-        points.push_back(kArchRadius * Vec3(r * side * std::sin(half_angle), y / kArchRadius, r * std::cos(half_angle)));
+        points.push_back(kArchRadius * Vec3(r * side * math::sin(half_angle), y / kArchRadius, r * math::cos(half_angle)));
     }
   }
   return contact::Convex{contact::Polytope::hullOf(points, "stone")};

@@ -59,7 +59,7 @@ double smoothStep(double t) { return t <= 0 ? 0 : t >= 1 ? 1 : t * t * (3 - 2 * 
 Vec3 fingerPlace(double t, double side) {
   const double x = 0.04 - 0.014 * smoothStep(t);
   const double lift = 0.06 * smoothStep((t - 1.5) / 2);
-  const double shake = 0.004 * std::fmax(0, t - 5) / 15 * std::sin(12 * t);
+  const double shake = 0.004 * std::fmax(0, t - 5) / 15 * math::sin(12 * t);
   return Vec3(side * x, shake, 0.021 + lift + 0.5 * shake * side);
 }
 

@@ -58,7 +58,7 @@ void BenchGrasp::watch() {
   for (const engine::Contact& c : scratch.world.contacts) {
     if (!c.active()) continue;
     const double limit = c.mu * c.r[engine::kNormalRow], torsion = engine::rowsOf(c.material) > 3 ? c.r[engine::kTorsionRow] : 0;
-    if (limit > 0) cone_excess_ = std::max(cone_excess_, std::hypot(c.r.head<2>().norm(), torsion) / limit - 1);
+    if (limit > 0) cone_excess_ = std::max(cone_excess_, math::hypot(c.r.head<2>().norm(), torsion) / limit - 1);
     if (c.a.kind == engine::SideKind::kBody) on_bodies[static_cast<std::size_t>(c.a.index)] += c.impulse_W;
     on_bodies[static_cast<std::size_t>(c.b.index)] -= c.impulse_W;
   }

@@ -51,7 +51,7 @@ class FeatureHand {
  private:
   Vec3 device(int finger) const {
     const double phase = 0.01 * static_cast<double>(tick_), side = finger == 0 ? -1 : 1;
-    return {side * (kFeatureBall + kBenchTip - kFeatureSqueeze), 0, kFeatureHeight + 1e-3 * std::sin(phase)};
+    return {side * (kFeatureBall + kBenchTip - kFeatureSqueeze), 0, kFeatureHeight + 1e-3 * math::sin(phase)};
   }
 
   void tick() {
@@ -107,7 +107,7 @@ class FeatureMarbles {
   void run(int ticks) {
     for (int k = 0; k < ticks; ++k) {
       const double phase = 0.01 * static_cast<double>(++tick_);
-      model_.options.gravity_W = Vec3(0.5 * std::sin(phase), 0.5 * std::cos(phase), -9.81);
+      model_.options.gravity_W = Vec3(0.5 * math::sin(phase), 0.5 * math::cos(phase), -9.81);
       engine::step(model_, state_, *scratch_);
     }
   }

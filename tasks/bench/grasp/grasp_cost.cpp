@@ -34,7 +34,7 @@ HeldBall heldBall(int fingers, const contact::Shape& shape, grasp::FingerMethod 
   std::vector<Vec3> devices;
   for (int i = 0; i < fingers; ++i) {
     const double a = 2 * M_PI * i / fingers;
-    held.around.push_back(Vec3(-std::cos(a), -std::sin(a), 0));
+    held.around.push_back(Vec3(-math::cos(a), -math::sin(a), 0));
     grasp::FingerModel finger = benchFinger("finger");
     finger.name = fmt::format("f{}", i);
     finger.method = method;
@@ -56,8 +56,8 @@ std::vector<std::vector<grasp::FingerInput>> swayOf(const HeldBall& held) {
   for (std::size_t k = 0; k < kSwayTicks; ++k) {
     const double rate = 2 * M_PI / (kSwayTicks * kGraspTick), phase = rate * kGraspTick * static_cast<double>(k);
     for (std::size_t i = 0; i < held.inputs.size(); ++i) {
-      sway[k][i].p_WF = Vec3(0, 0, 0.1 + 1e-3 * std::sin(phase)) + (kCostBall + kBenchTip - 2e-3) * held.around[i];
-      sway[k][i].v_WF = Vec3(0, 0, 1e-3 * rate * std::cos(phase));
+      sway[k][i].p_WF = Vec3(0, 0, 0.1 + 1e-3 * math::sin(phase)) + (kCostBall + kBenchTip - 2e-3) * held.around[i];
+      sway[k][i].v_WF = Vec3(0, 0, 1e-3 * rate * math::cos(phase));
     }
   }
   return sway;
@@ -113,7 +113,7 @@ std::vector<Record> passivityCost(MeasureContext&) {
   options.on = true;
   std::vector<Vec3> p(2, Vec3::Zero()), f(2);
   const CallCost cost = costOfCalls([&](std::int64_t k) {
-    p[0].x() = 1e-3 * std::sin(0.01 * static_cast<double>(k));
+    p[0].x() = 1e-3 * math::sin(0.01 * static_cast<double>(k));
     f[0] = f[1] = Vec3(1, 0, 0);
     grasp::observePorts(options, p, grasp::storedEnergy(held.model, held.state), kGraspTick, ports);
     grasp::controlPorts(options, kGraspTick, ports, f);

@@ -26,7 +26,7 @@ struct RingGrasp {
     std::vector<Vec3> all;
     for (int i = 0; i < fingers; ++i) {
       const double a = 2 * M_PI * i / fingers;
-      all.push_back(Vec3(-std::cos(a), -std::sin(a), 0));
+      all.push_back(Vec3(-math::cos(a), -math::sin(a), 0));
     }
     return all;
   }
@@ -61,7 +61,7 @@ std::vector<Record> coneAndReaction(MeasureContext& context) {
       Random random(7);
       for (int k = 0; k < 2000 && !context.interrupted(); ++k) {
         for (int i = 0; i < fingers; ++i) {
-          const Vec3 wiggle = 2e-3 * Vec3(std::sin(0.031 * k + i), std::sin(0.047 * k + 2 * i), std::sin(0.023 * k + 3 * i));
+          const Vec3 wiggle = 2e-3 * Vec3(math::sin(0.031 * k + i), math::sin(0.047 * k + 2 * i), math::sin(0.023 * k + 3 * i));
           ring.grasp.leadFinger(
               i, (kBall + kBenchTip - 2e-3) * ring.around[static_cast<std::size_t>(i)] + wiggle + 1e-5 * randomDirection(random));
         }
@@ -90,7 +90,7 @@ std::vector<Record> twoContactsOnOneBody(MeasureContext&) {
   double momentum = 0;
   int both = 0;
   for (int k = 0; k < 600; ++k) {
-    grasp.leadFinger(0, Vec3(1e-3 * std::sin(0.05 * k), 0, 0.03 - 1e-4 * k));
+    grasp.leadFinger(0, Vec3(1e-3 * math::sin(0.05 * k), 0, 0.03 - 1e-4 * k));
     const Vec3 before = grasp.state.world.bodies[0].v_W;
     grasp.tick();
     both += std::count_if(grasp.scratch.world.contacts.begin(), grasp.scratch.world.contacts.end(),
