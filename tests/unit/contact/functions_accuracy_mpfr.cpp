@@ -53,12 +53,12 @@ double ulpsOff(double value, Oracle2 exact, double x, double y) {
   return result.overflows() ? (std::isinf(value) ? 0 : kDigits) : result.ulpsTo(value);
 }
 
-struct Range {
+struct Arguments {
   double low, high;
   bool by_size = false;  // sizes evenly spread over the exponents
 };
 
-double draw(const Range& range, std::mt19937_64& random) {
+double draw(const Arguments& range, std::mt19937_64& random) {
   const double u = 0x1p-64 * static_cast<double>(random());
   if (!range.by_size) return range.low + u * (range.high - range.low);
   return std::exp(std::log(range.low) + u * (std::log(range.high) - std::log(range.low)));
@@ -69,7 +69,7 @@ struct Function {
   double (*ours)(double);
   Oracle exact;
   double bound;  // [ulp]
-  std::vector<Range> ranges;
+  std::vector<Arguments> ranges;
 };
 
 class FunctionsAccuracy : public testing::TestWithParam<Function> {};
@@ -77,7 +77,7 @@ class FunctionsAccuracy : public testing::TestWithParam<Function> {};
 TEST_P(FunctionsAccuracy, IsWithinItsBound) {
   const Function& f = GetParam();
   std::mt19937_64 random(20);
-  for (const Range& range : f.ranges) {
+  for (const Arguments& range : f.ranges) {
     double worst = 0, at = 0;
     for (int i = 0; i < 5000; ++i) {
       const double x = draw(range, random), off = ulpsOff(f.ours(x), f.exact, x);
@@ -88,16 +88,16 @@ TEST_P(FunctionsAccuracy, IsWithinItsBound) {
   }
 }
 
-constexpr double kMost = 1.7e308, kLeast = 5e-324, kPi = 3.141592653589793;
-const Range kAnySize{kLeast, kMost, true}, kTurn{-kPi, kPi}, kSmall{1e-12, 0.8, true};
+constexpr double kLargestArgument = 1.7e308, kSmallestArgument = 5e-324;
+const Arguments kAnySize{kSmallestArgument, kLargestArgument, true}, kOneTurn{-M_PI, M_PI}, kSmall{1e-12, 0.8, true};
 
 INSTANTIATE_TEST_SUITE_P(
     All, FunctionsAccuracy,
-    testing::Values(Function{"sin", math::sin, mpfr_sin, 0.85, {kTurn, {-0.79, 0.79}, {-1e6, 1e6}, kSmall, kAnySize}},
-                    Function{"cos", math::cos, mpfr_cos, 0.85, {kTurn, {-0.79, 0.79}, {-1e6, 1e6}, kSmall, kAnySize}},
-                    Function{"tan", math::tan, mpfr_tan, 0.8, {kTurn, {-0.79, 0.79}, {-1e6, 1e6}, kSmall, kAnySize}},
-                    Function{"asin", math::asin, mpfr_asin, 0.75, {{-1, 1}, {0.999, 1}, {0.2, 0.25}, {kLeast, 1, true}}},
-                    Function{"acos", math::acos, mpfr_acos, 0.75, {{-1, 1}, {0.999, 1}, {-1, -0.999}, {kLeast, 1, true}}},
+    testing::Values(Function{"sin", math::sin, mpfr_sin, 0.85, {kOneTurn, {-0.79, 0.79}, {-1e6, 1e6}, kSmall, kAnySize}},
+                    Function{"cos", math::cos, mpfr_cos, 0.85, {kOneTurn, {-0.79, 0.79}, {-1e6, 1e6}, kSmall, kAnySize}},
+                    Function{"tan", math::tan, mpfr_tan, 0.8, {kOneTurn, {-0.79, 0.79}, {-1e6, 1e6}, kSmall, kAnySize}},
+                    Function{"asin", math::asin, mpfr_asin, 0.75, {{-1, 1}, {0.999, 1}, {0.2, 0.25}, {kSmallestArgument, 1, true}}},
+                    Function{"acos", math::acos, mpfr_acos, 0.75, {{-1, 1}, {0.999, 1}, {-1, -0.999}, {kSmallestArgument, 1, true}}},
                     Function{"atan", math::atan, mpfr_atan, 0.75, {{-5, 5}, {0.15, 0.3}, kAnySize}},
                     Function{"exp", math::exp, mpfr_exp, 0.76, {{-10, 10}, {-708, 710}, {-746, -707}, {1e-20, 1, true}}},
                     Function{"exp2", math::exp2, mpfr_exp2, 0.76, {{-10, 10}, {-1021, 1025}, {-1076, -1021}, {1e-20, 1, true}}},
@@ -108,14 +108,14 @@ INSTANTIATE_TEST_SUITE_P(
                     Function{"log1p", math::log1p, mpfr_log1p, 0.55, {{-1, 5}, {-0.01, 0.01}, {1e-20, 1, true}, kAnySize}},
                     Function{"cbrt", math::cbrt, mpfr_cbrt, 0.51, {{-8, 8}, kAnySize}},
                     Function{"erfc", math::erfc, mpfr_erfc, 2, {{-6.5, 6}, {-0.3, 0.3}, {3.9, 26}, {26, 27.3}, {1e-20, 1, true}}}),
-    [](const auto& info) { return std::string(info.param.name); });
+    [](const auto& function) { return std::string(function.param.name); });
 
 struct PairFunction {
   const char* name;
   double (*ours)(double, double);
   Oracle2 exact;
   double bound;  // [ulp]
-  std::vector<std::array<Range, 2>> ranges;
+  std::vector<std::array<Arguments, 2>> ranges;
 };
 
 class PairFunctionsAccuracy : public testing::TestWithParam<PairFunction> {};
@@ -134,23 +134,23 @@ TEST_P(PairFunctionsAccuracy, IsWithinItsBound) {
   }
 }
 
-const Range kAbout1{-3, 3};
-using Two = std::array<Range, 2>;
+const Arguments kAboutOne{-3, 3};
+using Two = std::array<Arguments, 2>;
 INSTANTIATE_TEST_SUITE_P(
     All, PairFunctionsAccuracy,
     testing::Values(PairFunction{"atan2",
                                  math::atan2,
                                  mpfr_atan2,
                                  0.75,
-                                 {Two{kAbout1, kAbout1}, Two{kAnySize, kAnySize}, Two{kAnySize, kAbout1}, Two{kAbout1, kAnySize}}},
-                    PairFunction{"hypot", math::hypot, mpfr_hypot, 0.51, {Two{kAbout1, kAbout1}, Two{kAnySize, kAnySize}}},
+                                 {Two{kAboutOne, kAboutOne}, Two{kAnySize, kAnySize}, Two{kAnySize, kAboutOne}, Two{kAboutOne, kAnySize}}},
+                    PairFunction{"hypot", math::hypot, mpfr_hypot, 0.51, {Two{kAboutOne, kAboutOne}, Two{kAnySize, kAnySize}}},
                     PairFunction{"pow",
                                  math::pow,
                                  mpfr_pow,
                                  0.55,
-                                 {Two{Range{0, 5}, kAbout1}, Two{Range{0.99, 1.01}, Range{-7e4, 7e4}}, Two{kAnySize, kAbout1},
-                                  Two{kAnySize, kAnySize}}}),
-    [](const auto& info) { return std::string(info.param.name); });
+                                 {Two{Arguments{0, 5}, kAboutOne}, Two{Arguments{0.99, 1.01}, Arguments{-7e4, 7e4}},
+                                  Two{kAnySize, kAboutOne}, Two{kAnySize, kAnySize}}}),
+    [](const auto& function) { return std::string(function.param.name); });
 
 // The double closest to a multiple of pi/2: 2^-61 off it (W. Kahan), and its like at every size: all digits of 2/pi are asked for.
 TEST(FunctionsReduction, KnowsPiFarEnoughForEveryDouble) {
@@ -168,7 +168,7 @@ TEST(FunctionsReduction, KnowsPiFarEnoughForEveryDouble) {
 
 TEST(FunctionsReduction, StaysAccurateNextToMultiplesOfPi) {
   for (int k = 1; k < 100000; ++k) {
-    const double x = k * (kPi / 2), off = k % 2 ? ulpsOff(math::cos(x), mpfr_cos, x) : ulpsOff(math::sin(x), mpfr_sin, x);
+    const double x = k * (M_PI / 2), off = k % 2 ? ulpsOff(math::cos(x), mpfr_cos, x) : ulpsOff(math::sin(x), mpfr_sin, x);
     ASSERT_LE(off, 0.85) << k;
   }
 }

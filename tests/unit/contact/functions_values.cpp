@@ -6,12 +6,13 @@
 #include <random>
 
 #include "contact/functions/elementary.h"
+#include "tests/support/constants.h"
 
 namespace pincer {
 namespace {
 
-constexpr double kInf = std::numeric_limits<double>::infinity(), kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kPi = std::numbers::pi, kLeast = 5e-324, kMost = std::numeric_limits<double>::max();
+constexpr double kInf = std::numeric_limits<double>::infinity();
+constexpr double kSmallestNumber = 5e-324, kLargestNumber = std::numeric_limits<double>::max();
 
 std::uint64_t bits(double x) { return std::bit_cast<std::uint64_t>(x); }
 
@@ -22,10 +23,10 @@ void expectSame(double got, double want, const char* what) {
 
 TEST(FunctionsSpecialValues, OfAngles) {
   for (double (*f)(double) : {math::sin, math::cos, math::tan}) {
-    for (const double x : {kInf, -kInf, kNan}) EXPECT_TRUE(std::isnan(f(x)));
+    for (const double x : {kInf, -kInf, tests::kNan}) EXPECT_TRUE(std::isnan(f(x)));
   }
-  for (const double x : {kInf, -kInf, kNan}) EXPECT_TRUE(std::isnan(math::sinCos(x).sin) && std::isnan(math::sinCos(x).cos));
-  for (const double x : {0.0, -0.0, kLeast, -kLeast, 1e-310, 1e-20}) {
+  for (const double x : {kInf, -kInf, tests::kNan}) EXPECT_TRUE(std::isnan(math::sinCos(x).sin) && std::isnan(math::sinCos(x).cos));
+  for (const double x : {0.0, -0.0, kSmallestNumber, -kSmallestNumber, 1e-310, 1e-20}) {
     EXPECT_BITS(sin(x), x);
     EXPECT_BITS(tan(x), x);
     EXPECT_BITS(cos(x), 1);
@@ -34,47 +35,47 @@ TEST(FunctionsSpecialValues, OfAngles) {
 }
 
 TEST(FunctionsSpecialValues, OfArcs) {
-  for (const double x : {0.0, -0.0, kLeast, -1e-310}) {
+  for (const double x : {0.0, -0.0, kSmallestNumber, -1e-310}) {
     EXPECT_BITS(asin(x), x);
     EXPECT_BITS(atan(x), x);
-    EXPECT_BITS(acos(x), kPi / 2);
+    EXPECT_BITS(acos(x), tests::kPi / 2);
   }
-  EXPECT_BITS(asin(1), kPi / 2);
-  EXPECT_BITS(asin(-1), -kPi / 2);
+  EXPECT_BITS(asin(1), tests::kPi / 2);
+  EXPECT_BITS(asin(-1), -tests::kPi / 2);
   EXPECT_BITS(acos(1), 0);
-  EXPECT_BITS(acos(-1), kPi);
-  for (const double x : {1 + 1e-15, -2.0, kInf, -kInf, kNan}) EXPECT_TRUE(std::isnan(math::asin(x)) && std::isnan(math::acos(x)));
-  EXPECT_BITS(atan(kInf), kPi / 2);
-  EXPECT_BITS(atan(-kInf), -kPi / 2);
-  EXPECT_BITS(atan(kMost), kPi / 2);
-  EXPECT_BITS(atan(kNan), kNan);
+  EXPECT_BITS(acos(-1), tests::kPi);
+  for (const double x : {1 + 1e-15, -2.0, kInf, -kInf, tests::kNan}) EXPECT_TRUE(std::isnan(math::asin(x)) && std::isnan(math::acos(x)));
+  EXPECT_BITS(atan(kInf), tests::kPi / 2);
+  EXPECT_BITS(atan(-kInf), -tests::kPi / 2);
+  EXPECT_BITS(atan(kLargestNumber), tests::kPi / 2);
+  EXPECT_BITS(atan(tests::kNan), tests::kNan);
 }
 
 TEST(FunctionsSpecialValues, OfArcsOfTwo) {
   EXPECT_BITS(atan2(0, 0), 0);
   EXPECT_BITS(atan2(-0.0, 0), -0.0);
-  EXPECT_BITS(atan2(0, -0.0), kPi);
-  EXPECT_BITS(atan2(-0.0, -0.0), -kPi);
+  EXPECT_BITS(atan2(0, -0.0), tests::kPi);
+  EXPECT_BITS(atan2(-0.0, -0.0), -tests::kPi);
   EXPECT_BITS(atan2(0, 3), 0);
   EXPECT_BITS(atan2(-0.0, 3), -0.0);
-  EXPECT_BITS(atan2(0, -3), kPi);
-  EXPECT_BITS(atan2(-0.0, -3), -kPi);
-  EXPECT_BITS(atan2(3, 0), kPi / 2);
-  EXPECT_BITS(atan2(-3, -0.0), -kPi / 2);
+  EXPECT_BITS(atan2(0, -3), tests::kPi);
+  EXPECT_BITS(atan2(-0.0, -3), -tests::kPi);
+  EXPECT_BITS(atan2(3, 0), tests::kPi / 2);
+  EXPECT_BITS(atan2(-3, -0.0), -tests::kPi / 2);
   EXPECT_BITS(atan2(3, kInf), 0);
   EXPECT_BITS(atan2(-3, kInf), -0.0);
-  EXPECT_BITS(atan2(3, -kInf), kPi);
-  EXPECT_BITS(atan2(-3, -kInf), -kPi);
-  EXPECT_BITS(atan2(kInf, 3), kPi / 2);
-  EXPECT_BITS(atan2(-kInf, -kInf), -3 * kPi / 4);
-  EXPECT_BITS(atan2(kInf, kInf), kPi / 4);
-  EXPECT_BITS(atan2(kNan, 1), kNan);
-  EXPECT_BITS(atan2(1, kNan), kNan);
-  EXPECT_BITS(atan2(kLeast, kMost), 0);
-  EXPECT_BITS(atan2(kLeast, -kMost), kPi);
-  EXPECT_BITS(atan2(kMost, kLeast), kPi / 2);
-  EXPECT_BITS(atan2(kLeast, kLeast), kPi / 4);
-  EXPECT_BITS(atan2(kMost, kMost), kPi / 4);
+  EXPECT_BITS(atan2(3, -kInf), tests::kPi);
+  EXPECT_BITS(atan2(-3, -kInf), -tests::kPi);
+  EXPECT_BITS(atan2(kInf, 3), tests::kPi / 2);
+  EXPECT_BITS(atan2(-kInf, -kInf), -3 * tests::kPi / 4);
+  EXPECT_BITS(atan2(kInf, kInf), tests::kPi / 4);
+  EXPECT_BITS(atan2(tests::kNan, 1), tests::kNan);
+  EXPECT_BITS(atan2(1, tests::kNan), tests::kNan);
+  EXPECT_BITS(atan2(kSmallestNumber, kLargestNumber), 0);
+  EXPECT_BITS(atan2(kSmallestNumber, -kLargestNumber), tests::kPi);
+  EXPECT_BITS(atan2(kLargestNumber, kSmallestNumber), tests::kPi / 2);
+  EXPECT_BITS(atan2(kSmallestNumber, kSmallestNumber), tests::kPi / 4);
+  EXPECT_BITS(atan2(kLargestNumber, kLargestNumber), tests::kPi / 4);
 }
 
 TEST(FunctionsSpecialValues, OfExponentials) {
@@ -85,21 +86,21 @@ TEST(FunctionsSpecialValues, OfExponentials) {
     expectSame(f(-kInf), 0, "of -infinity");
     expectSame(f(1e300), kInf, "of 1e300");
     expectSame(f(-1e300), 0, "of -1e300");
-    expectSame(f(kNan), kNan, "of no number");
+    expectSame(f(tests::kNan), tests::kNan, "of no number");
   }
   EXPECT_BITS(exp(709.782712893384), 0x1.fffffffffff2ap+1023);
   EXPECT_BITS(exp(709.7827128933841), kInf);
-  EXPECT_BITS(exp(-745.1332191019411), kLeast);
+  EXPECT_BITS(exp(-745.1332191019411), kSmallestNumber);
   EXPECT_BITS(exp(-745.1332191019413), 0);
   for (int n = -1074; n < 1024; ++n) EXPECT_BITS(exp2(n), std::ldexp(1, n));
   EXPECT_BITS(exp2(1024), kInf);
   EXPECT_BITS(exp2(-1075.5), 0);
-  for (const double x : {0.0, -0.0, kLeast, -kLeast, 1e-20}) EXPECT_BITS(expm1(x), x);
+  for (const double x : {0.0, -0.0, kSmallestNumber, -kSmallestNumber, 1e-20}) EXPECT_BITS(expm1(x), x);
   EXPECT_BITS(expm1(kInf), kInf);
   EXPECT_BITS(expm1(1e300), kInf);
   EXPECT_BITS(expm1(-kInf), -1);
   EXPECT_BITS(expm1(-1e300), -1);
-  EXPECT_BITS(expm1(kNan), kNan);
+  EXPECT_BITS(expm1(tests::kNan), tests::kNan);
 }
 
 TEST(FunctionsSpecialValues, OfLogarithms) {
@@ -107,23 +108,23 @@ TEST(FunctionsSpecialValues, OfLogarithms) {
     expectSame(f(1), 0, "of 1");
     expectSame(f(0), -kInf, "of 0");
     expectSame(f(-0.0), -kInf, "of -0");
-    expectSame(f(-1), kNan, "of -1");
-    expectSame(f(-kInf), kNan, "of -infinity");
+    expectSame(f(-1), tests::kNan, "of -1");
+    expectSame(f(-kInf), tests::kNan, "of -infinity");
     expectSame(f(kInf), kInf, "of infinity");
-    expectSame(f(kNan), kNan, "of no number");
+    expectSame(f(tests::kNan), tests::kNan, "of no number");
   }
   for (int n = -1074; n < 1024; ++n) EXPECT_BITS(log2(std::ldexp(1, n)), n);
   for (int n = 0; n <= 22; ++n) EXPECT_BITS(log10(std::strtod(("1e" + std::to_string(n)).c_str(), nullptr)), n);
-  for (const double x : {0.0, -0.0, kLeast, -kLeast, 1e-20}) EXPECT_BITS(log1p(x), x);
+  for (const double x : {0.0, -0.0, kSmallestNumber, -kSmallestNumber, 1e-20}) EXPECT_BITS(log1p(x), x);
   EXPECT_BITS(log1p(-1), -kInf);
-  EXPECT_BITS(log1p(-1.1), kNan);
+  EXPECT_BITS(log1p(-1.1), tests::kNan);
   EXPECT_BITS(log1p(kInf), kInf);
-  EXPECT_BITS(log1p(kNan), kNan);
+  EXPECT_BITS(log1p(tests::kNan), tests::kNan);
 }
 
 // C17, F.10.4.4.
 TEST(FunctionsSpecialValues, OfPowers) {
-  for (const double x : {0.0, -0.0, 2.0, -2.0, kInf, -kInf, kNan}) {
+  for (const double x : {0.0, -0.0, 2.0, -2.0, kInf, -kInf, tests::kNan}) {
     EXPECT_BITS(pow(x, 0), 1);
     EXPECT_BITS(pow(x, -0.0), 1);
     EXPECT_BITS(pow(1, x), 1);
@@ -151,35 +152,35 @@ TEST(FunctionsSpecialValues, OfPowers) {
     EXPECT_BITS(pow(-0.5, y), y > 0 ? 0 : kInf);
     EXPECT_BITS(pow(0, y), y > 0 ? 0 : kInf);
   }
-  EXPECT_BITS(pow(-2, 0.5), kNan);
+  EXPECT_BITS(pow(-2, 0.5), tests::kNan);
   EXPECT_BITS(pow(-2, 3), -8);
   EXPECT_BITS(pow(-2, -2), 0.25);
-  EXPECT_BITS(pow(-kMost, 3), -kInf);
-  EXPECT_BITS(pow(2, kNan), kNan);
-  EXPECT_BITS(pow(kNan, 2), kNan);
+  EXPECT_BITS(pow(-kLargestNumber, 3), -kInf);
+  EXPECT_BITS(pow(2, tests::kNan), tests::kNan);
+  EXPECT_BITS(pow(tests::kNan, 2), tests::kNan);
   EXPECT_BITS(pow(1 + 1e-15, 1e300), kInf);
   EXPECT_BITS(pow(1 - 1e-15, 1e300), 0);
   EXPECT_BITS(pow(2, 1e-300), 1);
 }
 
 TEST(FunctionsSpecialValues, OfRootsAndErrors) {
-  for (const double y : {0.0, 1.0, kInf, kNan}) {
+  for (const double y : {0.0, 1.0, kInf, tests::kNan}) {
     EXPECT_BITS(hypot(kInf, y), kInf);
     EXPECT_BITS(hypot(y, -kInf), kInf);
   }
-  EXPECT_BITS(hypot(kNan, 1), kNan);
+  EXPECT_BITS(hypot(tests::kNan, 1), tests::kNan);
   EXPECT_BITS(hypot(-3, 4), 5);
   EXPECT_BITS(hypot(0, -0.0), 0);
   EXPECT_BITS(hypot(0, -7), 7);
-  EXPECT_BITS(hypot(kLeast, 0), kLeast);
-  EXPECT_BITS(hypot(3 * kLeast, 4 * kLeast), 5 * kLeast);
-  EXPECT_BITS(hypot(kMost, kMost), kInf);
-  for (const double x : {0.0, -0.0, kInf, -kInf, kNan}) EXPECT_BITS(cbrt(x), x);
+  EXPECT_BITS(hypot(kSmallestNumber, 0), kSmallestNumber);
+  EXPECT_BITS(hypot(3 * kSmallestNumber, 4 * kSmallestNumber), 5 * kSmallestNumber);
+  EXPECT_BITS(hypot(kLargestNumber, kLargestNumber), kInf);
+  for (const double x : {0.0, -0.0, kInf, -kInf, tests::kNan}) EXPECT_BITS(cbrt(x), x);
   for (int n = -1000; n <= 1000; ++n) EXPECT_BITS(cbrt(1.0 * n * n * n), n == 0 ? 0 : n);
   EXPECT_BITS(erfc(0), 1);
   EXPECT_BITS(erfc(kInf), 0);
   EXPECT_BITS(erfc(-kInf), 2);
-  EXPECT_BITS(erfc(kNan), kNan);
+  EXPECT_BITS(erfc(tests::kNan), tests::kNan);
 }
 
 TEST(FunctionsPowers, OfWholeNumbersAreWhole) {
@@ -227,19 +228,19 @@ TEST(FunctionsSymmetry, IsExact) {
 TEST(FunctionsBounds, AreKept) {
   Draws draws;
   for (int i = 0; i < 200000; ++i) {
-    const double near_peak = kPi / 2 * (2 * (i % 200) - 199) * (1 + 1e-9 * draws.from(-1, 1));
-    for (const double x : {draws.from(-10, 10), draws.ofAnySize(), near_peak, near_peak + kPi / 2, 1e-8 * draws.from(-1, 1)}) {
+    const double near_peak = tests::kPi / 2 * (2 * (i % 200) - 199) * (1 + 1e-9 * draws.from(-1, 1));
+    for (const double x : {draws.from(-10, 10), draws.ofAnySize(), near_peak, near_peak + tests::kPi / 2, 1e-8 * draws.from(-1, 1)}) {
       const auto [s, c] = math::sinCos(x);
       ASSERT_LE(std::abs(s), 1) << x;
       ASSERT_LE(std::abs(c), 1) << x;
-      ASSERT_LE(std::abs(math::atan(x)), kPi / 2) << x;
-      ASSERT_LE(std::abs(math::atan2(x, draws.ofAnySize())), kPi) << x;
+      ASSERT_LE(std::abs(math::atan(x)), tests::kPi / 2) << x;
+      ASSERT_LE(std::abs(math::atan2(x, draws.ofAnySize())), tests::kPi) << x;
       const double complement = math::erfc(x);
       ASSERT_TRUE(complement >= 0 && complement <= 2) << x;
     }
     const double sine = i % 2 ? draws.from(-1, 1) : 1 - draws.from(0, 1e-14);
-    ASSERT_LE(std::abs(math::asin(sine)), kPi / 2) << sine;
-    ASSERT_TRUE(math::acos(sine) >= 0 && math::acos(sine) <= kPi) << sine;
+    ASSERT_LE(std::abs(math::asin(sine)), tests::kPi / 2) << sine;
+    ASSERT_TRUE(math::acos(sine) >= 0 && math::acos(sine) <= tests::kPi) << sine;
   }
 }
 
@@ -262,7 +263,7 @@ TEST(FunctionsMonotony, HoldsAcrossSeams) {
   for (const double seam : {-0.125, 0.125}) expectRising(math::expm1, seam, "expm1");
   for (const double seam : {-0x1p-8, 0x1p-8}) expectRising(math::log1p, seam, "log1p");
   for (const double seam : {-1.0, 1.0}) expectRising(math::atan, seam, "atan");
-  for (const double seam : {-kPi / 4, kPi / 4}) expectRising(math::sin, seam, "sin");
+  for (const double seam : {-tests::kPi / 4, tests::kPi / 4}) expectRising(math::sin, seam, "sin");
 }
 
 // A hash of every bit of every function. It may change only with the functions themselves, never with compiler, processor or library.
