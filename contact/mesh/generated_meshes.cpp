@@ -173,10 +173,7 @@ TriangleMesh geodesicSphere(double radius, int n) {
 }
 
 TriangleMesh cylinderWithFlat(double radius, double half_length, double flat_distance, int segments, int rows) {
-<<<<<<< A
   PINCER_DEMAND(0 < flat_distance && flat_distance < radius, "cylinderWithFlat: the flat lies between the axis and the round wall");
-=======
->>>>>>> B
   const double first = math::acos(flat_distance / radius);
   std::vector<double> angles;
   for (int i = 0; i <= segments; ++i) angles.push_back(first + (2 * M_PI - 2 * first) * i / segments);

@@ -23,11 +23,8 @@ using Chain = std::vector<std::int32_t>;  // points in a row
 
 // The unit vector at the share `x` of the way along the great circle from `a` to `b`.
 Vec3 onGreatCircle(const Vec3& a, const Vec3& b, double x) {
-<<<<<<< A
   PINCER_ASSERT(isUnit(a) && isUnit(b));
   PINCER_ASSERT(0 <= x && x <= 1);
-=======
->>>>>>> B
   const double angle = math::atan2(a.cross(b).norm(), a.dot(b));
   return (math::sin((1 - x) * angle) * a + math::sin(x * angle) * b).normalized();
 }

@@ -57,13 +57,8 @@ double loopRadius(const ArmPort& arm, double stiffness, double damping, double t
   }
   loop(2, 0) = 1;
   double radius = 0;
-<<<<<<< A
-  for (const std::complex<double>& z : Eigen::EigenSolver<Mat3>(loop, false).eigenvalues())
-    radius = std::max(radius, math::hypot(z.real(), z.imag()));
-=======
   const Eigen::EigenSolver<Mat3> solver(loop, false);
   for (const std::complex<double>& z : solver.eigenvalues()) radius = std::max(radius, math::hypot(z.real(), z.imag()));
->>>>>>> B
   return radius;
 }
 

@@ -112,19 +112,12 @@ TEST(House, EveryIncludeBeginsWithPincer) {
   for (const char* folder : {"contact", "engine", "grasp", "devices", "tasks", "tests"}) {
     for (const fs::path& file : sourcesUnder(fs::path(PINCER_SOURCE_DIR) / folder)) {
       for (const std::string& line : linesOf(file)) {
-<<<<<<< A
         if (line.rfind("#include \"", 0) == 0) EXPECT_NE(includedBy(line), "") << file << ": " << line;
-=======
-        const std::string included = includedBy(line);
-        if (included.empty() || included == kFunctions) continue;
-        EXPECT_TRUE(seen.count(included.substr(0, included.find('/')))) << file << " includes " << included;
->>>>>>> B
       }
     }
   }
 }
 
-<<<<<<< A
 const std::set<std::string> kDoors = {"contact", "engine", "grasp", "tasks/run"};
 
 // What a user includes: the headers that stand directly in a library's folder. All below is private.
@@ -220,35 +213,17 @@ TEST(FrontDoor, TasksUseOnlyNamedBackDoors) {
       if (folder != "contact" && folder != "engine" && folder != "grasp") continue;
       if (included.rfind("contact/io/", 0) == 0) continue;  // whatever is read, written, shown
       EXPECT_TRUE(isPublic(included) || back_doors.count(included)) << file << " includes " << included;
-=======
-TEST(House, FunctionsSeeNothingElse) {
-  for (const fs::path& file : sourcesUnder(fs::path(PINCER_SOURCE_DIR) / "contact/functions")) {
-    for (const std::string& line : linesOf(file)) {
-      const std::string included = includedBy(line);
-      EXPECT_TRUE(included.empty() || included.rfind("contact/functions/", 0) == 0) << file << " includes " << included;
->>>>>>> B
     }
   }
 }
 
 // A participant knows what devices tell, and nothing of the world.
 TEST(House, ParticipantsSeeOnlyDevices) {
-<<<<<<< A
   forEachInclude("tasks/lab/participants", [](const std::string& source, const std::string& included) {
     const bool allowed =
         included == "contact/elementary.h" || included.rfind("devices/", 0) == 0 || included.rfind("tasks/lab/participants/", 0) == 0;
     EXPECT_TRUE(allowed) << source << " includes " << included;
   });
-=======
-  for (const fs::path& file : sourcesUnder(fs::path(PINCER_SOURCE_DIR) / "tasks/participants")) {
-    for (const std::string& line : linesOf(file)) {
-      const std::string included = includedBy(line);
-      const bool allowed =
-          included.empty() || included == kFunctions || included.rfind("devices/", 0) == 0 || included.rfind("tasks/participants/", 0) == 0;
-      EXPECT_TRUE(allowed) << file << " includes " << included;
-    }
-  }
->>>>>>> B
 }
 
 // A third-party library is named only in files whose names say so.

@@ -32,10 +32,7 @@ Quat symmetricTop(double I, double I3, const Vec3& w, double time) {
 
 double HeavyTop::slowPrecession(double angle) const {
   const double L3 = I3 * w3, c = math::cos(angle);
-<<<<<<< A
   PINCER_ASSERT(L3 * L3 >= 4 * I * mass * g * lever * c);  // slower tops fall
-=======
->>>>>>> B
   return 2 * mass * g * lever / (L3 + std::sqrt(L3 * L3 - 4 * I * mass * g * lever * c));
 }
 

@@ -25,11 +25,7 @@ std::vector<double> tickTimes(const SessionReader& session) {
 std::string histogramCsv(const std::vector<double>& times) {
   std::map<long, long> bins;
   for (const double t : times) ++bins[std::lround(std::floor(kBinsPerDecade * math::log10(t)))];
-<<<<<<< A
   PlotTable table{"from_us", "to_us", "ticks", "share_percent"};
-=======
-  CsvTable table{"from_us", "to_us", "ticks", "share_percent"};
->>>>>>> B
   const auto edge = [](long bin) { return math::pow(10, static_cast<double>(bin) / kBinsPerDecade); };
   for (const auto& [bin, ticks] : bins) {
     table.row(edge(bin), edge(bin + 1), ticks, 100 * static_cast<double>(ticks) / static_cast<double>(times.size()));

@@ -28,14 +28,10 @@ double twoSidedOfAngle(double theta, int dof) {
 
 }  // namespace
 
-<<<<<<< A
 double studentTwoSided(double t, int dof) {
   PINCER_ASSERT(!(t < 0) && dof >= 1);
   return twoSidedOfAngle(math::atan(t / std::sqrt(dof)), dof);
 }
-=======
-double studentTwoSided(double t, int dof) { return twoSidedOfAngle(math::atan(t / std::sqrt(dof)), dof); }
->>>>>>> B
 
 double studentQuantile(double probability, int dof) {
   PINCER_ASSERT(0 < probability && probability < 1 && dof >= 1);

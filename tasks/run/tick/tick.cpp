@@ -16,10 +16,7 @@ Vec3 filteredVelocity(const TickModel& model, const MountState& mount, const dev
   const double dt = sample.time - mount.sample_time;
   if (!mount.seen || !(dt > 0)) return mount.v_WF;
   const Vec3 raw_W = sample.v_DF ? Vec3(R_WD * *sample.v_DF) : Vec3((p_WF - mount.p_WF) / dt);
-<<<<<<< A
   PINCER_ASSERT(model.velocity_cutoff > 0);
-=======
->>>>>>> B
   const double share = -math::expm1(-2 * std::numbers::pi * model.velocity_cutoff * dt);
   return mount.v_WF + share * (raw_W - mount.v_WF);
 }

@@ -39,11 +39,7 @@ SolveTimes timeSolves(grasp::GraspModel model, grasp::GraspState state, const st
     for (std::size_t i = 0; i < devices.size(); ++i)
       inputs[i] = {devices[i] + 1e-3 * math::sin(phase) * Vec3::UnitZ(), 1e-2 * math::cos(phase) * Vec3::UnitZ()};
     if (devices.empty()) model.world.options.gravity_W = gravity_W + 0.5 * Vec3(math::sin(phase), math::cos(1.7 * phase), 0);
-<<<<<<< A
     const engine::StepReport report = grasp::step(model, state, *scratch, inputs);
-=======
-    const engine::StepReport report = grasp::step(model, state, scratch, inputs);
->>>>>>> B
     if (k < kWarmTicks) continue;
     times.us.push_back(1e6 * clock.seconds[static_cast<std::size_t>(engine::Stage::kSolve)]);
     times.residual = std::max(times.residual, report.solve.residual);

@@ -113,11 +113,7 @@ std::vector<Record> facets(FingerMethod method, MeasureContext&) {
   const double R = 0.04 + kBenchTip - 2e-3, step = 0.1 * kGraspTick / R;
   const Mat3 plane = frameFromNormal(Vec3(0.3, -0.2, 1).normalized());
   const auto at = [&](double a, double r) { return Vec3(r * (math::cos(a) * plane.col(0) + math::sin(a) * plane.col(1))); };
-<<<<<<< A
   BenchGrasp grasp(std::move(builder), {engine::BodyStart{}}, {benchFinger("finger")}, {at(0, R + 2.1e-3)}, {method});
-=======
-  BenchGrasp grasp(std::move(builder), {engine::BodyStart{}}, {methodFinger(method, "finger")}, {at(0, R + 2.1e-3)});
->>>>>>> B
   grasp.leadAll({at(0, R)}, 100);
   double largest = 0;
   Vec3 last = Vec3::Zero();

@@ -176,7 +176,7 @@ Fate runOne(const std::string& text) {
 
 TEST(SceneRanges, WhatIsAcceptedRunsToAFiniteStateOrAFlag) {
   int refused = 0, flagged = 0, ran = 0;
-  for (int n = 0; n < draws(400, 50); ++n) {
+  for (int n = 0; n < draws(250, 80); ++n) {
     const std::string text = RandomScene(static_cast<std::uint64_t>(n)).text();
     const Fate fate = runOne(text);
     refused += fate.refused;
@@ -187,7 +187,7 @@ TEST(SceneRanges, WhatIsAcceptedRunsToAFiniteStateOrAFlag) {
   RecordProperty("refused", refused);
   RecordProperty("flagged", flagged);
   fmt::print("refused {}, flagged {}, ran {}\n", refused, flagged, ran);
-  EXPECT_GT(ran, draws(400, 50) / 4);
+  EXPECT_GT(ran, draws(250, 80) / 4);
 }
 
 std::string sceneOf(const std::string& body, const std::string& rest = "") {
