@@ -25,8 +25,6 @@ namespace {
 
 using tests::startAt;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
 // Two fingers that hold a ball, ready to be stepped.
 struct Pinch {
   tests::GraspWorld world = tests::pinchedBall(0.05, 0.5);
@@ -51,33 +49,6 @@ struct Table {
 
   void step(engine::ContactSource* source = nullptr) { engine::step(model, state, scratch, {{}, motions}, source); }
 };
-
-// Adds contacts of the ball with the table as `change` leaves them.
-class FaultyContacts final : public engine::ContactSource {
- public:
-  explicit FaultyContacts(void (*change)(engine::Contact& first, engine::Contact& second)) : change_(change) {}
-  void addContacts(engine::WorldScratch& scratch) override {
-    engine::Contact* all[2] = {engine::addContact(scratch, 0), engine::addContact(scratch, 0)};
-    for (int i = 0; i < 2; ++i) {
-      engine::Contact& c = *all[i];
-      c.id = engine::contactId(0, 0, 1, 100 + static_cast<std::uint32_t>(i));
-      c.a = {engine::SideKind::kBody, 0};
-      c.b = {engine::SideKind::kBody, 1};
-      c.p_W = Vec3(0.001 * i, 0, 0.01);
-      c.R_WC.col(2) = -Vec3::UnitZ();
-    }
-    change_(*all[0], *all[1]);
-  }
-
- private:
-  void (*change_)(engine::Contact&, engine::Contact&);
-};
-
-void stepWith(void (*change)(engine::Contact& first, engine::Contact& second)) {
-  Table table;
-  FaultyContacts source(change);
-  table.step(&source);
-}
 
 struct SeededFault {
   const char* name;
@@ -173,6 +144,33 @@ const SeededFault kOfTheCaller[] = {
 INSTANTIATE_TEST_SUITE_P(Seeded, FaultOfTheCaller, testing::ValuesIn(kOfTheCaller), nameOf);
 
 #ifdef PINCER_ASSERTS
+// Adds contacts of the ball with the table as `change` leaves them.
+class FaultyContacts final : public engine::ContactSource {
+ public:
+  explicit FaultyContacts(void (*change)(engine::Contact& first, engine::Contact& second)) : change_(change) {}
+  void addContacts(engine::WorldScratch& scratch) override {
+    engine::Contact* all[2] = {engine::addContact(scratch, 0), engine::addContact(scratch, 0)};
+    for (int i = 0; i < 2; ++i) {
+      engine::Contact& c = *all[i];
+      c.id = engine::contactId(0, 0, 1, 100 + static_cast<std::uint32_t>(i));
+      c.a = {engine::SideKind::kBody, 0};
+      c.b = {engine::SideKind::kBody, 1};
+      c.p_W = Vec3(0.001 * i, 0, 0.01);
+      c.R_WC.col(2) = -Vec3::UnitZ();
+    }
+    change_(*all[0], *all[1]);
+  }
+
+ private:
+  void (*change_)(engine::Contact&, engine::Contact&);
+};
+
+void stepWith(void (*change)(engine::Contact& first, engine::Contact& second)) {
+  Table table;
+  FaultyContacts source(change);
+  table.step(&source);
+}
+
 class FaultOfOurs : public testing::TestWithParam<SeededFault> {};
 TEST_P(FaultOfOurs, IsCaughtInAssertingBuilds) { EXPECT_DEATH(GetParam().seed(), literally(GetParam().caught_by)); }
 
@@ -271,7 +269,7 @@ const SeededFault kOfOurs[] = {
     {"PoseThatIsNoNumber", "X_WF.p.allFinite() && isUnit(X_WF.q)",
      [] {
        Pinch p;
-       p.world.state.world.points[1].p_W.x() = kNaN;
+       p.world.state.world.points[1].p_W.x() = std::numeric_limits<double>::quiet_NaN();
        fingerDistances(p.world.model, p.world.state);
      }},
     {"LeftHandedFrame", "isRotation(contact.R_WC)",
