@@ -63,7 +63,10 @@ int replay(const ReplayArguments& arguments) {
     const ReplayDifference& d = *result.first;
     fmt::print("Differs first in trial {}, {}: {}\n", d.trial,
                d.tick < 0 ? fmt::format("after {:.3f} s", d.time) : fmt::format("tick {} ({:.3f} s)", d.tick, d.time), d.what);
-    if (result.notes.empty()) fmt::print(stderr, "pincer: Version, sources, compiler, C library and processor are those of the session.\n");
+    for (const std::string& line : result.surroundings) fmt::print(stderr, "pincer: Not the same: {}.\n", line);
+    if (result.notes.empty() && result.surroundings.empty()) {
+      fmt::print(stderr, "pincer: Version, sources, compiler, flags, C library and processor are those of the session.\n");
+    }
     return kExitCheckFailed;
   }
   fmt::print("The same to the bit: {} trials{}, {} samples{}\n", result.trials,
