@@ -70,7 +70,10 @@ int replay(const ReplayArguments& arguments) {
     const ReplayDifference& d = *result.first;
     print("Differs first in trial {}, {}: {}\n", d.trial,
           d.tick < 0 ? fmt::format("after {:.3f} s", d.time) : fmt::format("tick {} ({:.3f} s)", d.tick, d.time), d.what);
-    if (result.notes.empty()) print(stderr, "pincer: Version, sources, compiler, C library and processor are those of the session.\n");
+    for (const std::string& line : result.surroundings) print(stderr, "pincer: Not the same: {}.\n", line);
+    if (result.notes.empty() && result.surroundings.empty()) {
+      print(stderr, "pincer: Version, sources, compiler, flags, C library and processor are those of the session.\n");
+    }
     return kExitCheckFailed;
   }
   print("The same to the bit: {}{}, {}{}\n", counted(result.trials, "trial"),

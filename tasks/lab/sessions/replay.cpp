@@ -111,15 +111,13 @@ bool isByThisProgram(const SessionInfo& then, const SessionInfo& now) {
 }
 
 // Why bits may differ, for somebody whose bits do.
-std::vector<std::string> notesOnBuilds(const SessionInfo& then) {
+void compareBuilds(const SessionInfo& then, ReplayResult& result) {
   SessionInfo now;
   tellBuild(now);
-  std::vector<std::string> notes;
   if (then.sources != now.sources || then.version != now.version) {
-    notes.push_back(fmt::format("The session was made by {}; this is {}. Their bits may differ.", programOf(then), programOf(now)));
+    result.notes.push_back(fmt::format("The session was made by {}; this is {}. Their bits may differ.", programOf(then), programOf(now)));
   }
-  for (const std::string& difference : surroundingsThatDiffer(then, now)) notes.push_back(fmt::format("Not the same: {}.", difference));
-  return notes;
+  result.surroundings = surroundingsThatDiffer(then, now);
 }
 
 void requireReplayable(const SessionReader& session, bool simulated, bool other_version) {
@@ -241,7 +239,7 @@ ReplayResult replaySession(const SessionReader& session, const ReplayOptions& op
   std::vector<StoredTrial> trials = wantedTrials(session, options.trial, simulated);
   Replayer replayer(session, simulated, interrupted, run);
   ReplayResult result;
-  result.notes = notesOnBuilds(session.info());
+  compareBuilds(session.info(), result);
   std::int64_t done = 0;
   for (StoredTrial& stored : trials) {
     if (!replayer.replay(stored, result) || result.first) break;

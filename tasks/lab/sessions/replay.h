@@ -26,7 +26,8 @@ struct ReplayDifference {
 struct ReplayResult {
   std::int64_t trials = 0, cut_short = 0;  // compared: finished trials, and others
   std::int64_t samples = 0, inputs = 0;    // compared
-  std::vector<std::string> notes;          // sentences about what couldn't be compared, and why bits may differ
+  std::vector<std::string> notes;          // sentences about what couldn't be compared, and about another version
+  std::vector<std::string> surroundings;   // that aren't those of the session: compiler, flags, C library, processor
   std::optional<ReplayDifference> first;
 };
 
