@@ -9,6 +9,8 @@
 #include <cmath>
 #include <limits>
 
+#include "contact/functions/elementary.h"
+
 namespace pincer {
 
 using Vec2 = Eigen::Vector2d;
@@ -27,12 +29,12 @@ struct Pose {
 };
 
 // Angle between two vectors of any length [rad], accurate near 0 and pi.
-inline double angleBetween(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
+inline double angleBetween(const Vec3& a, const Vec3& b) { return math::atan2(a.cross(b).norm(), a.dot(b)); }
 
 // Angle of the rotation that turns `a` into `b` [rad], 0 .. pi, accurate near 0 and pi.
 inline double angleBetween(const Quat& a, const Quat& b) {
   const Quat d = a.conjugate() * b;
-  return 2 * std::atan2(d.vec().norm(), std::abs(d.w()));  // atan2 also resolves angles that acos(w) rounds to zero
+  return 2 * math::atan2(d.vec().norm(), std::abs(d.w()));  // atan2 also resolves angles that acos(w) rounds to zero
 }
 
 // Twice the area that two vectors of the plane span, positive when b lies to the left of a.
@@ -65,8 +67,9 @@ inline Quat quatFromRotationVector(const Vec3& a) {
     return {1 - angle2 / 8, s * a.x(), s * a.y(), s * a.z()};
   }
   const double angle = std::sqrt(angle2);
-  const double s = std::sin(0.5 * angle) / angle;
-  return {std::cos(0.5 * angle), s * a.x(), s * a.y(), s * a.z()};
+  const auto half = math::sinCos(0.5 * angle);
+  const double s = half.sin / angle;
+  return {half.cos, s * a.x(), s * a.y(), s * a.z()};
 }
 
 }  // namespace pincer

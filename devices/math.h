@@ -1,7 +1,9 @@
-// math: the few names that devices/ shares with the rest; devices/ sees no other folder.
+// math: the few names that devices/ shares with the rest; devices/ sees no other folder but the functions of analysis.
 #pragma once
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+
+#include "contact/functions/elementary.h"
 
 namespace pincer {
 using Vec2 = Eigen::Vector2d;

@@ -5,19 +5,17 @@
 // W. S. Harwin, "Extending the friction cone algorithm for arbitrary polygon based haptic objects", HAPTICS 2004, 234-241. Departure: stick,
 // slip and the bodies' motion come from one coupled solve (engine/solve), not from moving the proxy geometrically.
 #pragma once
-#include <array>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include "contact/shape/finger_shape.h"
-#include "engine/world/model.h"
-#include "grasp/coupling/hold_bounds.h"
+#include "contact/finger_shape.h"
+#include "engine/model.h"
+#include "grasp/hold_bounds.h"
 
 namespace pincer::grasp {
 
-// The patch that a soft pad touches with; it carries a torsional moment up to e mu f_n within one cone with friction (engine/world/model.h):
+// The patch that a soft pad touches with; it carries a torsional moment up to e mu f_n within one cone with friction (engine/model.h):
 //
 //   given radius a, even pressure:  e = 2 a / 3          Hertz:  a = (3 f_n R / (4 E))^(1/3),  e = 3 pi a / 16
 //
@@ -34,10 +32,6 @@ struct SoftPad {
 double patchRadius(const SoftPad& pad, double tip_radius, double f_n);    // a [m]
 double torsionRadius(const SoftPad& pad, double tip_radius, double f_n);  // e [m], > 0
 
-// How contact with the finger is worked out: ours, or one of the published ways to compare with (baseline/baseline.h).
-enum class FingerMethod : unsigned char { kProxy, kGodObject, kForceShading, kPenalty };
-inline constexpr std::array<std::string_view, 4> kFingerMethodNames = {"proxy", "god_object", "force_shading", "penalty"};
-
 struct FingerModel {
   std::string name;
   double radius = 8e-3;                       // of the fingertip sphere [m], > 0
@@ -45,7 +39,6 @@ struct FingerModel {
   engine::DrivenPointModel coupling;          // proxy mass, stiffness and damping, twist
   bool along_normal = false;                  // the coupling's axes are those of the contact (t1, t2, n), not the world's
   SoftPad pad;
-  FingerMethod method = FingerMethod::kProxy;
   std::optional<ArmPort> arm;  // that is to carry it, if somebody said: `pincer plan` compares the coupling with what it can
   // The fingerpad frame L in the finger frame F: pad normal (out of the pad, where a flat touch lands) and distal axis (towards the nail tip).
   Vec3 pad_normal_F = Vec3(0, 0, -1);  // unit

@@ -1,11 +1,11 @@
 // step: one tick of fingers and bodies. The engine's stages with the fingers' contacts added to the one coupled solve.
 #pragma once
+#include <memory>
 #include <span>
 #include <vector>
 
-#include "contact/shape/finger_query.h"
-#include "engine/world/step.h"
-#include "grasp/baseline/baseline_state.h"
+#include "contact/finger_query.h"
+#include "engine/step.h"
 #include "grasp/model.h"
 #include "grasp/pad_place.h"
 
@@ -26,7 +26,6 @@ struct FingerState {
   PadTouch touch;                // of the last tick
   Vec3 n_W = Vec3::UnitZ();      // normal of the body where it last touched
   double normal_force = 0;       // of the last tick [N]
-  BaselineState baseline;
 };
 
 struct GraspState {
@@ -54,23 +53,30 @@ struct FingerReport {
   PadTouch nearest;            // where the nearest point would touch the pad, while nothing does
 };
 
-struct GraspScratch {
-  explicit GraspScratch(const GraspModel& model);
-  engine::WorldScratch world;
-  std::vector<engine::PointInput> inputs;
-  std::vector<Vec3> nearest_n_W;        // per finger, towards it from the nearest body, of any length; zero: none is near
-  std::vector<FingerReport> fingers;    // the tick's result
-  std::vector<FingerReport> baselines;  // of fingers that aren't proxies (baseline.h)
-  std::vector<Quat> orientations;       // of the fingers at its end
-  std::vector<Quat> q_mid_WF;           // and in its middle
-  std::vector<Vec3> nearest_d_W;        // per finger, from its centre to its own point nearest to the nearest body [m]
-};
-
 // State with every body at `starts` and every finger's device at `fingers` [m].
 GraspState makeState(const GraspModel& model, const std::vector<engine::BodyStart>& starts, const std::vector<Vec3>& fingers);
 
-// One tick. `inputs` has one entry per finger. Results per finger in scratch.fingers. Allocates nothing, throws nothing.
-engine::StepReport step(const GraspModel& model, GraspState& state, GraspScratch& scratch, std::span<const FingerInput> inputs,
-                        std::span<const engine::MotionInput> motions = {});
+// Working memory of a step, as engine::WorldScratch. It keeps the last tick's reports.
+struct GraspScratch;
+struct DeleteScratch {
+  void operator()(GraspScratch* scratch) const;
+};
+using ScratchHandle = std::unique_ptr<GraspScratch, DeleteScratch>;
+
+ScratchHandle makeScratch(const GraspModel& model);
+
+struct GraspReport : engine::StepReport {
+  std::span<const FingerReport> fingers;  // one per finger; valid until the next step
+};
+
+// One tick. `inputs` has one entry per finger. Allocates nothing, throws nothing.
+GraspReport step(const GraspModel& model, GraspState& state, GraspScratch& scratch, std::span<const FingerInput> inputs,
+                 std::span<const engine::MotionInput> motions = {});
+
+// The fingers' reports of the last tick, those of its GraspReport; before the first one none touches.
+std::span<const FingerReport> fingersOf(const GraspScratch& scratch);
+// The world's part, for the contacts of the last tick (engine::contactAt).
+engine::WorldScratch& worldOf(GraspScratch& scratch);
+const engine::WorldScratch& worldOf(const GraspScratch& scratch);
 
 }  // namespace pincer::grasp

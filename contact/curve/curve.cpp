@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "contact/error.h"
+#include "contact/invariants.h"
 
 namespace pincer::contact {
 
@@ -57,9 +58,10 @@ void Curve::addBends() {
     const Segment &before = segments_[(i + n - 1) % n], &after = segments_[i];
     const double a = 0.5 * before.length, b = 0.5 * after.length;
     const double turn_sine = cross(before.e, after.e), turn_cosine = before.e.dot(after.e);
-    const double beta = std::atan2(turn_sine, turn_cosine);
+    const double beta = math::atan2(turn_sine, turn_cosine);
     // O lies on both bisectors, at rho from M0: rho sin(beta) = a cos(beta) + b
     const double kappa = std::abs(beta) < kLeastBend ? 0 : turn_sine / (a * turn_cosine + b);
+    PINCER_ASSERT(a * turn_cosine + b > 0);  // paths turn by less than a right angle
     bends_.push_back(
         {before.start + a * before.e, after.start, after.start + b * after.e, before.e, before.n, beta, kappa, a + b * turn_cosine});
   }
@@ -129,7 +131,7 @@ Curve::Tangent Curve::onBend(const Bend& bend, const Vec2& C, double& t) const {
     double t_of_F = x / bend.reach, slope = dx / bend.reach;
     if (bend.kappa != 0) {
       const double u = bend.kappa * x, w = 1 + bend.kappa * y;
-      t_of_F = std::atan2(u, w) / bend.beta;
+      t_of_F = math::atan2(u, w) / bend.beta;
       slope = bend.kappa * (w * dx - u * dy) / ((u * u + w * w) * bend.beta);
     }
     const double ahead = t_of_F - t;
@@ -172,10 +174,12 @@ CurveContact Curve::follow(const Vec2& C, double r, CurveTracker& tracker) const
     const double share = std::clamp((line.F - s.start).dot(s.e) / s.length, 0.0, 1.0);
     if (line.n == s.n) n = ((1 - share) * s.n_start + share * s.n_end).normalized();
   }
-  return {line.F, n, line.h - r, std::atan2(-line.n.x(), line.n.y())};
+  return {line.F, n, line.h - r, math::atan2(-line.n.x(), line.n.y())};
 }
 
 CurveContact Curve::queryCircle(const Vec2& p_BC, double r, CurveTracker& tracker) const {
+  PINCER_ASSERT(r > 0 && p_BC.allFinite());
+  PINCER_ASSERT(tracker.cell <= static_cast<std::int32_t>(gates_.size()));
   if (tracker.cell >= 0) {
     const CurveContact followed = follow(p_BC, r, tracker);
     if (followed.phi <= 0) return followed;

@@ -30,7 +30,7 @@
 #include <vector>
 
 #include "contact/curve/polyline.h"
-#include "contact/surface/surface_contact.h"
+#include "contact/surface_contact.h"
 
 namespace pincer::contact {
 

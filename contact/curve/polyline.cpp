@@ -8,7 +8,7 @@ namespace pincer::contact {
 
 namespace {
 
-double turnBetween(const Vec2& a, const Vec2& b) { return std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b)); }
+double turnBetween(const Vec2& a, const Vec2& b) { return math::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b)); }
 
 void requireVertex(const Polyline& polyline, std::size_t i, double largest_turn) {
   const std::vector<Vec2>& p = polyline.vertices;
@@ -45,7 +45,7 @@ Polyline arcPolygon(double radius, double turn, double sweep) {
   Polyline arc;
   for (int i = 0; i <= segments; ++i) {
     const double angle = (i - 0.5 * segments) * turn;
-    arc.vertices.emplace_back(-radius * std::sin(angle), radius * std::cos(angle));
+    arc.vertices.emplace_back(-radius * math::sin(angle), radius * math::cos(angle));
   }
   return arc;
 }

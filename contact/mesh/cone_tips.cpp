@@ -27,7 +27,7 @@ std::optional<ConeTip> findConeTip(const TriangleMesh& mesh, const CornerNormals
     if (std::abs(g.dot(y) + 1) > kRound) return {};
   }
   const double cos = 1 / y.norm();
-  if (!(cos > std::sin(least_lean) && cos < 1)) return {};
+  if (!(cos > math::sin(least_lean) && cos < 1)) return {};
   const Vec3& n = corners.normals[static_cast<std::size_t>(corners_at[0] / 3)][static_cast<std::size_t>(corners_at[0] % 3)];
   return ConeTip{y.normalized(), std::sqrt(1 - cos * cos), cos, n.dot(y) > 0 ? 1.0 : -1.0};
 }

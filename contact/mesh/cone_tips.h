@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "contact/mesh/connectivity.h"
-#include "contact/mesh/triangle_mesh.h"
+#include "contact/triangle_mesh.h"
 
 namespace pincer::contact {
 

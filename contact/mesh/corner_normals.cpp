@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "contact/invariants.h"
 #include "contact/mesh/connectivity.h"
 #include "contact/mesh/union_find.h"
 
@@ -73,7 +74,7 @@ class CornerNormalFinder {
     // The exponent p of the edges' lengths in the weights.
     double exponent() const {
       constexpr double kEven = 2, kUneven = 6;  // longest over shortest
-      return std::clamp(2 * std::log(longest / shortest / kEven) / std::log(kUneven / kEven), 0.0, 2.0) - 1;
+      return std::clamp(2 * math::log(longest / shortest / kEven) / math::log(kUneven / kEven), 0.0, 2.0) - 1;
     }
     FanEnd end() const {
       constexpr double kStraight = -0.5, kSame = 0.999;  // cosines
@@ -115,7 +116,7 @@ class CornerNormalFinder {
   Vec3 weightedNormal(std::size_t t, std::size_t i, const Fan& fan) const {
     const Vec3 e = corner(t, i + 1) - corner(t, i), f = corner(t, i + 2) - corner(t, i);
     const double ef = e.norm() * f.norm();
-    return e.cross(f) / ef * std::pow(ef / (fan.longest * fan.longest), fan.exponent());
+    return e.cross(f) / ef * math::pow(ef / (fan.longest * fan.longest), fan.exponent());
   }
 
   Normals averageOverFans(const Fans& fans) const {
@@ -206,6 +207,8 @@ class CornerNormalFinder {
 }  // namespace
 
 CornerNormals findCornerNormals(const TriangleMesh& mesh, const Neighbours& neighbours, double crease_angle, bool use_file_normals) {
+  PINCER_ASSERT(neighbours.size() == mesh.triangles.size());
+  PINCER_ASSERT(0 < crease_angle && crease_angle <= M_PI);
   return CornerNormalFinder(mesh, neighbours, use_file_normals).find(crease_angle);
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "contact/error.h"
+#include "contact/invariants.h"
 #include "contact/mesh/mesh_findings.h"
 #include "contact/mesh/union_find.h"
 
@@ -55,6 +56,7 @@ class EdgeBallFinder {
 
   void addCrease(std::size_t t, std::size_t i) {
     const auto [other, edge] = neighbours_[t][i];
+    PINCER_ASSERT(other >= 0);  // the mesh is closed
     const Fan left = balls_.fan_of[3 * t + i];
     const Fan right = balls_.fan_of[static_cast<std::size_t>(3 * other + (edge + 1) % 3)];
     const Vec3 facet = (corner(t, 1) - corner(t, 0)).cross(corner(t, 2) - corner(t, 0));
@@ -63,7 +65,7 @@ class EdgeBallFinder {
     balls_.at_vertex[static_cast<std::size_t>(mesh_.triangles[t][i])].creases.push_back(
         {static_cast<std::int32_t>(t), static_cast<std::int8_t>(i), left, right, convex});
     const Vec3 &a = normal(left), &b = normal(right);
-    balls_.widest_turn = std::max(balls_.widest_turn, std::atan2(a.cross(b).norm(), a.dot(b)));
+    balls_.widest_turn = std::max(balls_.widest_turn, math::atan2(a.cross(b).norm(), a.dot(b)));
   }
 
   void place(std::int32_t vertex, EdgeBall& ball) const {

@@ -1,10 +1,12 @@
-#include "contact/mesh/generated_meshes.h"
+#include "contact/generated_meshes.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 #include <utility>
+
+#include "contact/invariants.h"
 
 namespace pincer::contact {
 
@@ -129,12 +131,14 @@ class FlatSubdivision {
 
 // A prism over the polygon of `angles` on the circle; its last side closes the polygon.
 TriangleMesh prism(const std::string& name, double radius, double half_length, const std::vector<double>& angles, int rows) {
+  PINCER_DEMAND(radius > 0 && half_length > 0 && angles.size() >= 3 && rows >= 1,
+                "cylinders: positive lengths, 3 sides and 1 row at least");
   Builder build(name);
   const auto n = static_cast<int>(angles.size());
   std::vector<std::int32_t> id;
   for (int k = 0; k <= rows; ++k) {
     const double z = -half_length + 2 * half_length * k / rows;
-    for (const double a : angles) id.push_back(build.vertex({radius * std::cos(a), radius * std::sin(a), z}));
+    for (const double a : angles) id.push_back(build.vertex({radius * math::cos(a), radius * math::sin(a), z}));
   }
   const auto at = [&](int k, int i) { return id[static_cast<std::size_t>(k * n + i % n)]; };
   for (int k = 0; k < rows; ++k) {
@@ -151,6 +155,7 @@ TriangleMesh prism(const std::string& name, double radius, double half_length, c
 }  // namespace
 
 TriangleMesh icosphere(double radius, int level) {
+  PINCER_DEMAND(radius > 0 && level >= 0, "icosphere: a positive radius, cut 0 times or more");
   TriangleMesh mesh = icosahedron();
   mesh.source = "icosphere";
   for (int i = 0; i < level; ++i) mesh = subdividedOnUnitSphere(mesh);
@@ -159,6 +164,7 @@ TriangleMesh icosphere(double radius, int level) {
 }
 
 TriangleMesh geodesicSphere(double radius, int n) {
+  PINCER_DEMAND(radius > 0 && n >= 1, "geodesicSphere: a positive radius, sides cut into 1 part or more");
   const TriangleMesh coarse = icosahedron();
   TriangleMesh mesh = FlatSubdivision(coarse, n).run();
   mesh.source = "geodesic sphere";
@@ -167,7 +173,8 @@ TriangleMesh geodesicSphere(double radius, int n) {
 }
 
 TriangleMesh cylinderWithFlat(double radius, double half_length, double flat_distance, int segments, int rows) {
-  const double first = std::acos(flat_distance / radius);
+  PINCER_DEMAND(0 < flat_distance && flat_distance < radius, "cylinderWithFlat: the flat lies between the axis and the round wall");
+  const double first = math::acos(flat_distance / radius);
   std::vector<double> angles;
   for (int i = 0; i <= segments; ++i) angles.push_back(first + (2 * M_PI - 2 * first) * i / segments);
   return prism("cylinder with flat", radius, half_length, angles, rows);
@@ -180,12 +187,14 @@ TriangleMesh cylinder(double radius, double half_length, int segments, int rows)
 }
 
 TriangleMesh torus(double major, double minor, int major_segments, int minor_segments) {
+  PINCER_DEMAND(0 < minor && minor < major, "torus: the tube is thinner than its way round");
+  PINCER_DEMAND(major_segments >= 3 && minor_segments >= 3, "torus: 3 segments at least either way");
   Builder build("torus");
   for (int i = 0; i < major_segments; ++i) {
     for (int j = 0; j < minor_segments; ++j) {
       const double a = 2 * M_PI * i / major_segments, b = 2 * M_PI * j / minor_segments;
-      const double rho = major + minor * std::cos(b);
-      build.vertex({rho * std::cos(a), rho * std::sin(a), minor * std::sin(b)});
+      const double rho = major + minor * math::cos(b);
+      build.vertex({rho * math::cos(a), rho * math::sin(a), minor * math::sin(b)});
     }
   }
   const auto at = [&](int i, int j) { return i % major_segments * minor_segments + j % minor_segments; };
@@ -196,11 +205,12 @@ TriangleMesh torus(double major, double minor, int major_segments, int minor_seg
 }
 
 TriangleMesh roundedCube(double half, double rounding, int segments) {
+  PINCER_DEMAND(0 < rounding && rounding < half && segments >= 1, "roundedCube: a rounding below half the edge, in 1 segment or more");
   GridWelder weld("rounded cube", half);
   const double core = half - rounding;
   std::vector<double> grid;  // on a cube's face, so that the roundings get equal angles
-  for (int i = 0; i <= segments; ++i) grid.push_back(-core - rounding * std::tan(M_PI / 4 * (1 - static_cast<double>(i) / segments)));
-  for (int i = 0; i <= segments; ++i) grid.push_back(core + rounding * std::tan(M_PI / 4 * i / segments));
+  for (int i = 0; i <= segments; ++i) grid.push_back(-core - rounding * math::tan(M_PI / 4 * (1 - static_cast<double>(i) / segments)));
+  for (int i = 0; i <= segments; ++i) grid.push_back(core + rounding * math::tan(M_PI / 4 * i / segments));
   const auto vertexUnder = [&](const Vec3& p) {
     const Vec3 c = p.cwiseMax(-core).cwiseMin(core);
     return weld.vertex(c + rounding * (p - c).normalized());
@@ -237,6 +247,7 @@ TriangleMesh box(const Vec3& half) {
 }
 
 TriangleMesh gridBox(const Vec3& half, int cells) {
+  PINCER_DEMAND(half.minCoeff() > 0 && cells >= 1, "gridBox: positive half edges, cut into 1 cell or more");
   GridWelder weld("box", half.maxCoeff());
   for (int axis = 0; axis < 3; ++axis) {
     for (const double side : {-1.0, 1.0}) {
@@ -256,11 +267,12 @@ TriangleMesh gridBox(const Vec3& half, int cells) {
 }
 
 TriangleMesh uvSphere(double radius, int rings, int segments) {
+  PINCER_DEMAND(radius > 0 && rings >= 2 && segments >= 3, "uvSphere: a positive radius, 2 rings and 3 segments at least");
   Builder build("uv sphere");
   for (int k = 1; k < rings; ++k) {
     for (int i = 0; i < segments; ++i) {
       const double a = M_PI * k / rings, b = 2 * M_PI * i / segments;
-      build.vertex(radius * Vec3(std::sin(a) * std::cos(b), std::sin(a) * std::sin(b), std::cos(a)));
+      build.vertex(radius * Vec3(math::sin(a) * math::cos(b), math::sin(a) * math::sin(b), math::cos(a)));
     }
   }
   const std::int32_t north = build.vertex({0, 0, radius}), south = build.vertex({0, 0, -radius});
@@ -281,17 +293,18 @@ TriangleMesh ellipsoid(const Vec3& half, int n) {
 }
 
 TriangleMesh bumpySphere(double radius, double amplitude, double waves, int n) {
+  PINCER_DEMAND(0 <= amplitude && amplitude < 1, "bumpySphere: an amplitude in [0, 1)");
   TriangleMesh mesh = geodesicSphere(1, n);
   mesh.source = "bumpy sphere";
   for (Vec3& d : mesh.vertices) {
-    const double f = std::sin(waves * d.x()) * std::sin(waves * d.y() + 1) * std::sin(waves * d.z() + 2);
+    const double f = math::sin(waves * d.x()) * math::sin(waves * d.y() + 1) * math::sin(waves * d.z() + 2);
     d *= radius * (1 + amplitude * f);
   }
   return mesh;
 }
 
 TriangleMesh grooveBlock(double half_angle, double depth, double half_width, double half_length) {
-  const double opening = depth * std::tan(half_angle);
+  const double opening = depth * math::tan(half_angle);
   const std::array<Vec2, 7> outline = {{{-half_width, -depth},  // (x, z), counter-clockwise seen from -y
                                         {half_width, -depth},
                                         {half_width, depth},
@@ -330,6 +343,7 @@ TriangleMesh noisy(TriangleMesh mesh, double amplitude, std::uint64_t seed) {
 }
 
 TriangleMesh transformed(TriangleMesh mesh, const Pose& X, double factor) {
+  PINCER_DEMAND(isUnit(X.q), "transformed: the quaternion has length 1; normalise it");
   for (Vec3& v : mesh.vertices) v = X * (factor * v);
   for (Vec3& n : mesh.normals) n = X.q * n;
   return mesh;

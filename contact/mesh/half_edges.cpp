@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <tuple>
 
+#include "contact/invariants.h"
+
 namespace pincer::contact {
 
 namespace {
@@ -15,6 +17,7 @@ HalfEdge halfEdge(std::span<const std::array<std::int32_t, 3>> triangles, std::s
 template <class Visit>
 void forEachHalfEdge(std::span<const std::array<std::int32_t, 3>> triangles, Visit&& visit) {
   for (std::size_t t = 0; t < triangles.size(); ++t) {
+    PINCER_ASSERT(std::min({triangles[t][0], triangles[t][1], triangles[t][2]}) >= 0);
     if (namesAVertexTwice(triangles[t])) continue;
     for (std::size_t i = 0; i < 3; ++i) visit(halfEdge(triangles, t, i));
   }
@@ -45,6 +48,7 @@ std::vector<HalfEdge> sortedHalfEdges(std::span<const std::array<std::int32_t, 3
 }
 
 std::span<const HalfEdge> edgeAt(std::span<const HalfEdge> half_edges, std::size_t first) {
+  PINCER_ASSERT(first < half_edges.size());
   std::size_t end = first + 1;
   while (end < half_edges.size() && half_edges[end].low == half_edges[first].low && half_edges[end].high == half_edges[first].high) ++end;
   return half_edges.subspan(first, end - first);

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "contact/mesh/triangle_mesh.h"
+#include "contact/triangle_mesh.h"
 
 namespace pincer::contact {
 

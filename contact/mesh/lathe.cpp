@@ -81,7 +81,7 @@ TriangleMesh lathe(const std::vector<Vec2>& given, int segments) {
     const Vec2& p = profile[static_cast<std::size_t>(i)];
     for (int k = 0; k < segments; ++k) {
       const double angle = 2 * std::numbers::pi * k / segments;
-      mesh.vertices.emplace_back(p.x() * std::cos(angle), p.x() * std::sin(angle), p.y());
+      mesh.vertices.emplace_back(p.x() * math::cos(angle), p.x() * math::sin(angle), p.y());
     }
   }
   const int bottom = rings * segments, top = bottom + 1;

@@ -6,7 +6,7 @@
 #pragma once
 #include <vector>
 
-#include "contact/mesh/triangle_mesh.h"
+#include "contact/triangle_mesh.h"
 
 namespace pincer::contact {
 

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "contact/invariants.h"
+
 namespace pincer::contact {
 
 namespace {
@@ -42,6 +44,7 @@ void MeshBuilder::reserveFaces(std::size_t faces, std::int32_t place) {
 }
 
 void MeshBuilder::addVertex(const Vec3& p, std::int32_t place) {
+  PINCER_ASSERT(p.allFinite());
   const Vec3 scaled = options_.metres_per_unit * p;
   const double farthest = scaled.cwiseAbs().maxCoeff();
   if (!(farthest <= kMaxCoordinate)) {
@@ -52,6 +55,7 @@ void MeshBuilder::addVertex(const Vec3& p, std::int32_t place) {
 }
 
 void MeshBuilder::addNormal(const Vec3& n, std::int32_t place) {
+  PINCER_ASSERT(n.allFinite());
   const double largest = n.cwiseAbs().maxCoeff();
   if (largest == 0) {
     file_.failAt(place, fmt::format("normal {} is zero and has no direction. Recompute the normals, or export the mesh without them.",
@@ -74,6 +78,7 @@ void MeshBuilder::beginFace(std::int64_t corners, std::int32_t place) {
 }
 
 void MeshBuilder::addCorner(std::int64_t vertex, std::int64_t normal) {
+  PINCER_ASSERT(!faces_.empty());  // begun
   corners_.push_back({inRange(vertex, "vertex"), inRange(normal, "normal")});
 }
 
@@ -92,6 +97,8 @@ TriangleMesh MeshBuilder::build() {
   dropUnusedFeatures();
   mesh_.triangles.reserve(triangles_);
   for (std::size_t i = 0; i < faces_.size(); ++i) addPolygon(polygon(i));
+  PINCER_ASSERT(mesh_.triangle_normals.empty() || mesh_.triangle_normals.size() == mesh_.triangles.size());
+  PINCER_ASSERT(mesh_.smoothing_groups.empty() || mesh_.smoothing_groups.size() == mesh_.triangles.size());
   return std::move(mesh_);
 }
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "contact/mesh/mesh_file.h"
-#include "contact/mesh/mesh_reader.h"
 #include "contact/mesh/polygon.h"
+#include "contact/mesh_reader.h"
 
 namespace pincer::contact {
 

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "contact/mesh/mesh_pieces.h"
-#include "contact/mesh/mesh_report.h"
 #include "contact/mesh/mesh_topology.h"
+#include "contact/mesh_report.h"
 
 namespace pincer::contact {
 

@@ -1,4 +1,4 @@
-#include "contact/mesh/mesh_format.h"
+#include "contact/mesh_format.h"
 
 #include <fmt/format.h>
 

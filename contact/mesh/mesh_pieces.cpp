@@ -1,5 +1,7 @@
 #include "contact/mesh/mesh_pieces.h"
 
+#include "contact/invariants.h"
+
 namespace pincer::contact {
 
 namespace {
@@ -29,7 +31,7 @@ void measure(const TriangleMesh& mesh, const MeshTopology& topology, std::vector
 
 double solidAngle(const Vec3& a, const Vec3& b, const Vec3& c) {
   const double la = a.norm(), lb = b.norm(), lc = c.norm();
-  return 2 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+  return 2 * math::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
 }
 
 bool boxHolds(const MeshPiece& outer, const MeshPiece& inner) {
@@ -91,6 +93,7 @@ class Nesting {
 }  // namespace
 
 MeshPieces findPieces(const TriangleMesh& mesh, const std::vector<HalfEdge>& half_edges, const MeshTopology& topology) {
+  PINCER_ASSERT(topology.piece_of.size() == mesh.triangles.size());
   MeshPieces pieces;
   pieces.list.resize(static_cast<std::size_t>(topology.pieces));
   measure(mesh, topology, pieces.list);

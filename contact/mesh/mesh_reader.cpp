@@ -1,4 +1,4 @@
-#include "contact/mesh/mesh_reader.h"
+#include "contact/mesh_reader.h"
 
 #include <fmt/format.h>
 

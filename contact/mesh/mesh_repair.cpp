@@ -1,4 +1,4 @@
-#include "contact/mesh/mesh_repair.h"
+#include "contact/mesh_repair.h"
 
 #include <fmt/format.h>
 

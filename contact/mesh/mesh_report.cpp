@@ -1,4 +1,4 @@
-#include "contact/mesh/mesh_report.h"
+#include "contact/mesh_report.h"
 
 #include <algorithm>
 

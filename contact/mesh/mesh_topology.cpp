@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "contact/invariants.h"
+
 namespace pincer::contact {
 
 namespace {
@@ -75,6 +77,7 @@ MeshTopology findTopology(const TriangleMesh& mesh, const std::vector<HalfEdge>&
     joinFans(edge, fans);
     for (const HalfEdge& h : edge) pieces.join(edge[0].triangle, h.triangle);
   });
+  PINCER_ASSERT(half_edges.size() <= 3 * mesh.triangles.size());
   topology.piece_of.assign(mesh.triangles.size(), -1);
   numberPieces(mesh, pieces, topology);
   countTouchingVertices(mesh, fans, topology);
@@ -112,6 +115,7 @@ std::vector<bool> usedVertices(const TriangleMesh& mesh) {
 }
 
 std::vector<std::int32_t> firstAtSamePlace(const TriangleMesh& mesh, const std::vector<bool>& candidate) {
+  PINCER_ASSERT(candidate.size() == mesh.vertices.size());
   struct Key {
     double x, y, z;
     std::int32_t vertex;

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "contact/mesh/half_edges.h"
-#include "contact/mesh/triangle_mesh.h"
 #include "contact/mesh/union_find.h"
+#include "contact/triangle_mesh.h"
 
 namespace pincer::contact {
 

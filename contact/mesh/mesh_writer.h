@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "contact/mesh/mesh_format.h"
-#include "contact/mesh/triangle_mesh.h"
+#include "contact/mesh_format.h"
+#include "contact/triangle_mesh.h"
 
 namespace pincer::contact {
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "contact/invariants.h"
+
 namespace pincer::contact {
 
 namespace {
@@ -21,6 +23,7 @@ double smallestPositiveRoot(double a, double b, double c) {
 }  // namespace
 
 std::int32_t MovingMesh::add(const MovingPoint& point) {
+  PINCER_ASSERT(isUnit(point.n));
   points_.push_back(point);
   return static_cast<std::int32_t>(points_.size()) - 1;
 }
@@ -30,6 +33,7 @@ void MovingMesh::addTriangle(std::int32_t a, std::int32_t b, std::int32_t c) {
 }
 
 void MovingMesh::addFace(const std::array<std::int32_t, 3>& corners, const Vec3& normal, std::int32_t source) {
+  PINCER_ASSERT(isUnit(normal));
   faces_.push_back({corners, normal, source});
   triangles_.push_back(corners);
 }

@@ -6,7 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "contact/mesh/triangle_mesh.h"
+#include "contact/assert.h"
+#include "contact/triangle_mesh.h"
 
 namespace pincer::contact {
 
@@ -31,7 +32,10 @@ class MovingMesh {
   // The side from `a` to `b` of the input's triangle `source` must not turn round.
   void addSide(std::int32_t a, std::int32_t b, std::int32_t source);
 
-  const MovingPoint& point(std::int32_t i) const { return points_[static_cast<std::size_t>(i)]; }
+  const MovingPoint& point(std::int32_t i) const {
+    PINCER_ASSERT(i >= 0 && static_cast<std::size_t>(i) < points_.size());
+    return points_[static_cast<std::size_t>(i)];
+  }
   RadiusLimit limit() const;
   TriangleMesh at(double rho, const std::string& source) const;
 

@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "contact/mesh/mesh_file.h"
-#include "contact/mesh/mesh_reader.h"
+#include "contact/mesh_reader.h"
 
 namespace pincer::contact {
 

@@ -6,7 +6,7 @@
 // Source: ply_header.h.
 #pragma once
 #include "contact/mesh/mesh_file.h"
-#include "contact/mesh/mesh_reader.h"
+#include "contact/mesh_reader.h"
 
 namespace pincer::contact {
 

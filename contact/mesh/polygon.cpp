@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "contact/invariants.h"
+
 namespace pincer::contact {
 
 namespace {
@@ -16,6 +18,7 @@ Vec3 newellNormal(const std::vector<Vec3>& polygon) {
 }
 
 std::vector<Vec2> inPlane(const std::vector<Vec3>& polygon, const Vec3& n) {
+  PINCER_ASSERT(isUnit(n));
   const Mat3 R = frameFromNormal(n);
   std::vector<Vec2> flat;
   flat.reserve(polygon.size());
@@ -42,7 +45,7 @@ bool isStrictlyConvex(const std::vector<Vec2>& p) {
     const Vec2& b = p[(i + 1) % n];
     const Vec2& c = p[(i + 2) % n];
     if (!turnsLeft(a, b, c)) return false;
-    turn += std::atan2(cross(b - a, c - b), (b - a).dot(c - b));
+    turn += math::atan2(cross(b - a, c - b), (b - a).dot(c - b));
   }
   return turn < 7;  // 2 pi, or at least 4 pi
 }
@@ -63,6 +66,7 @@ class EarClipper {
       for (int i = first_, k = 0; k < left_; i = next_[i], ++k) ear_[i] = isEar(i);
       clipKnownEars();
     }
+    PINCER_ASSERT(left_ >= 3 || triangles_.size() + 2 == p_.size());
     return left_ < 3 ? triangles_ : std::vector<CornerTriple>();
   }
 
@@ -123,6 +127,7 @@ bool hasZeroArea(const Vec3& p0, const Vec3& p1, const Vec3& p2) {
 }
 
 std::vector<CornerTriple> triangulate(const std::vector<Vec3>& polygon) {
+  PINCER_ASSERT(polygon.size() >= 3);
   const Vec3 n = newellNormal(polygon);
   if (!(n.norm() > 0)) return {};
   const std::vector<Vec2> flat = inPlane(polygon, n.normalized());

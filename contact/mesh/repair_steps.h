@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "contact/mesh/mesh_repair.h"
+#include "contact/mesh_repair.h"
 
 namespace pincer::contact {
 

@@ -75,7 +75,7 @@ void joinWedges(const TriangleMesh& mesh, std::span<const HalfEdge> edge, UnionF
   for (const HalfEdge& h : edge) {
     const std::int32_t top = mesh.triangles[static_cast<std::size_t>(h.triangle)][static_cast<std::size_t>((h.side + 2) % 3)];
     const Vec3 o = mesh.vertices[static_cast<std::size_t>(top)] - p;
-    blades.push_back({std::atan2(R.col(1).dot(o), R.col(0).dot(o)), h});
+    blades.push_back({math::atan2(R.col(1).dot(o), R.col(0).dot(o)), h});
   }
   std::stable_sort(blades.begin(), blades.end(), [](const Blade& a, const Blade& b) { return a.angle < b.angle; });
   for (std::size_t k = 0; k < blades.size(); ++k) {

@@ -5,12 +5,13 @@
 #include <algorithm>
 #include <map>
 
+#include "contact/invariants.h"
 #include "contact/mesh/cone_tips.h"
 #include "contact/mesh/connectivity.h"
 #include "contact/mesh/edge_balls.h"
 #include "contact/mesh/mesh_findings.h"
-#include "contact/mesh/mesh_report.h"
 #include "contact/mesh/moving_mesh.h"
+#include "contact/mesh_report.h"
 
 namespace pincer::contact {
 
@@ -22,8 +23,10 @@ using Chain = std::vector<std::int32_t>;  // points in a row
 
 // The unit vector at the share `x` of the way along the great circle from `a` to `b`.
 Vec3 onGreatCircle(const Vec3& a, const Vec3& b, double x) {
-  const double angle = std::atan2(a.cross(b).norm(), a.dot(b));
-  return (std::sin((1 - x) * angle) * a + std::sin(x * angle) * b).normalized();
+  PINCER_ASSERT(isUnit(a) && isUnit(b));
+  PINCER_ASSERT(0 <= x && x <= 1);
+  const double angle = math::atan2(a.cross(b).norm(), a.dot(b));
+  return (math::sin((1 - x) * angle) * a + math::sin(x * angle) * b).normalized();
 }
 
 class EdgeRounder {
@@ -137,7 +140,7 @@ class EdgeRounder {
     if (!is_new) return it->second;
     const ConeTip& cone = tip.cone;
     const Vec3 touch = cone.touch((vertex(far_end) - tip.p).normalized());
-    const std::size_t rings = segmentsOf(std::atan2(cone.cos, cone.sin));
+    const std::size_t rings = segmentsOf(math::atan2(cone.cos, cone.sin));
     for (std::size_t k = 0; k < rings; ++k) {
       const double share = static_cast<double>(k) / static_cast<double>(rings);
       const Vec3 u = onGreatCircle((touch - cone.centre()).normalized(), cone.axis, share);
@@ -207,6 +210,7 @@ class EdgeRounder {
     std::vector<Fan> fans = {ball.creases[0].right};
     while (fans.size() < ball.creases.size()) {
       const auto next = std::find_if(ball.creases.begin(), ball.creases.end(), [&](const CreaseEnd& c) { return c.right == fans.back(); });
+      PINCER_ASSERT(next != ball.creases.end());
       fans.push_back(next->left);
     }
     return fans;
@@ -292,7 +296,7 @@ class EdgeRounder {
   }
   // To three digits.
   static std::string roundedDown(double x) {
-    const double unit = std::pow(10, std::floor(std::log10(x)) - 2);
+    const double unit = math::pow(10, std::floor(math::log10(x)) - 2);
     return fmt::format("{:.3g}", std::floor(x / unit) * unit);
   }
 

@@ -14,7 +14,7 @@
 // edge. Parts that aren't neighbours may come to overlap where concave edges are rounded; that isn't checked.
 #pragma once
 #include "contact/error.h"
-#include "contact/mesh/triangle_mesh.h"
+#include "contact/triangle_mesh.h"
 
 namespace pincer::contact {
 

@@ -7,7 +7,7 @@
 // Source: 3D Systems, "Stereolithography Interface Specification", 1989.
 #pragma once
 #include "contact/mesh/mesh_file.h"
-#include "contact/mesh/mesh_reader.h"
+#include "contact/mesh_reader.h"
 
 namespace pincer::contact {
 

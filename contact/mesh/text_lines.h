@@ -29,8 +29,6 @@ class TextLines {
   // Where the next line begins, and how many bytes there are from there on.
   std::size_t position() const { return position_; }
   std::size_t bytesLeft() const { return file_.bytes().size() - position_; }
-  // Whether the current line is the file's last and has no end: the file may be cut off there.
-  bool isOpen() const { return last_line_is_open_; }
 
   // Throws InputError "name:line: message" for the current line. A defect on a last line without an end says so.
   [[noreturn]] void fail(const std::string& message) const;

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "contact/assert.h"
+
 namespace pincer::contact {
 
 class UnionFind {
@@ -33,7 +35,10 @@ class UnionFind {
   }
 
  private:
-  std::int32_t& parent(std::int32_t i) { return parent_[static_cast<std::size_t>(i)]; }
+  std::int32_t& parent(std::int32_t i) {
+    PINCER_ASSERT(i >= 0 && static_cast<std::size_t>(i) < parent_.size());
+    return parent_[static_cast<std::size_t>(i)];
+  }
   std::vector<std::int32_t> parent_;
 };
 

@@ -1,3 +1,4 @@
+#include "contact/invariants.h"
 #include "contact/shape/closed_forms.h"
 #include "contact/shape/direction.h"
 
@@ -22,6 +23,7 @@ NearestPoint nearestFace(const Vec3& p_BC, const Vec3& beyond, const Vec3& signs
 }  // namespace
 
 NearestPoint nearestPoint(const Box& box, const Vec3& p_BC) {
+  PINCER_ASSERT(box.half.minCoeff() > 0);
   const Vec3 signs = signsOf(p_BC);
   const Vec3 beyond = p_BC.cwiseAbs() - box.half;
   const Vec3 outside = signs.cwiseProduct(beyond.cwiseMax(0));

@@ -13,7 +13,7 @@
 // the interval: the solid D x [-h, h] has d = max(d_D, |z| - h) where one of the two is negative, their hypotenuse where none is.
 #pragma once
 #include "contact/math.h"
-#include "contact/shape/shape.h"
+#include "contact/shape.h"
 
 namespace pincer::contact {
 

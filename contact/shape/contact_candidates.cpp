@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact/invariants.h"
+
 namespace pincer::contact {
 namespace {
 
@@ -26,6 +28,7 @@ struct Group {
   Vec3 flat(const Vec3& v) const { return v - normal().dot(v) * normal(); }
 
   void add(const PairPoint& p) {
+    PINCER_ASSERT(count < kMost);
     kept[static_cast<std::size_t>(count++)] = &p;
     side_count = 0;
     for (int i = 0; i < count; ++i) {
@@ -88,6 +91,8 @@ void ContactCandidates::keepBest(const Pose& X_WF, PairPoints& out) {
   const auto keep = [&](int i, Group& g) {
     group_of[static_cast<std::size_t>(i)] = kTaken;
     g.add(at(i));
+    PINCER_ASSERT(out.count < kMaxPairPoints);
+    PINCER_ASSERT(isUnitIfFinite(at(i).n_W));
     PairPoint& point = out.points[static_cast<std::size_t>(out.count++)] = at(i);
     point.p_W = X_WF * point.p_W;
     point.n_W = X_WF.q * point.n_W;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "contact/shape/pair_query.h"
+#include "contact/pair_query.h"
 
 namespace pincer::contact {
 

@@ -4,7 +4,8 @@
 #include <cmath>
 #include <type_traits>
 
-#include "contact/shape/polytope.h"
+#include "contact/invariants.h"
+#include "contact/polytope.h"
 
 namespace pincer::contact {
 namespace {
@@ -258,6 +259,7 @@ void facet(const Convex& c, const Vec3& d, Facet& f) {
       if (!best || s > most) most = s, best = &hull.faces()[static_cast<std::size_t>(i)];
     }
   }
+  PINCER_ASSERT(best);  // every corner of a hull has edges
   f.n = best->n;
   const std::span<const int> corners = hull.cornersOf(*best), edges = hull.edgesOf(*best);
   const std::size_t stride = (corners.size() + Facet::kMost - 1) / Facet::kMost;
@@ -315,6 +317,7 @@ constexpr bool kConvex = !std::is_same_v<Solid, HalfSpace> && !std::is_same_v<So
 template <class F>
 auto onConvex(const Shape& shape, F f) {
   using Result = decltype(f(std::declval<const Box&>()));
+  PINCER_ASSERT(isConvex(shape));  // the others have no features
   return std::visit(
       [&](const auto& solid) -> Result {
         if constexpr (kConvex<std::decay_t<decltype(solid)>>)
@@ -351,6 +354,7 @@ void facetOf(const Shape& shape, const Vec3& d, Facet& f) {
 void addRimCorner(const Vec2& towards, Facet& f) {
   const double length = towards.norm();
   if (!(length > 0) || f.count + 1 > Facet::kMost) return;
+  PINCER_ASSERT(f.rim_radius > 0);
   const Vec2 rim = f.rim_radius / length * towards;
   const double up = f.n.z();
   for (int i = 0; i < f.count; ++i) {
@@ -370,6 +374,7 @@ void addRimCorner(const Vec2& towards, Facet& f) {
 }
 
 double reachOf(const Shape& shape, const Vec3& p, const Vec3& d) {
+  PINCER_ASSERT(isUnitIfFinite(d));
   return onConvex(shape, [&](const auto& s) -> double { return reach(s, p, d); });
 }
 void strataOf(const Shape& shape, const Vec3& d, Strata& found) {
@@ -377,6 +382,7 @@ void strataOf(const Shape& shape, const Vec3& d, Strata& found) {
   onConvex(shape, [&](const auto& s) -> void { strata(s, d, found); });
 }
 Mat3 bendOf(const Shape& shape, const Vec3& d) {
+  PINCER_ASSERT(isUnitIfFinite(d));
   return onConvex(shape, [&](const auto& s) -> Mat3 { return bend(s, d); });
 }
 bool isRound(const Shape& shape) { return std::holds_alternative<Cylinder>(shape) || std::holds_alternative<CylinderWithFlat>(shape); }

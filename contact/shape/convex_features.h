@@ -19,7 +19,7 @@
 #include <cstdint>
 
 #include "contact/math.h"
-#include "contact/shape/shape.h"
+#include "contact/shape.h"
 
 namespace pincer::contact {
 

@@ -1,5 +1,6 @@
 #include "contact/shape/convex_pairs.h"
 
+#include "contact/invariants.h"
 #include "contact/shape/direction.h"
 #include "contact/shape/facet_overlap.h"
 #include "contact/shape/separation.h"
@@ -56,6 +57,7 @@ void collideConvex(const Shape& a, const Pose& X_WA, const Shape& b, const Pose&
                    PairPoints& out) {
   out.count = 0;
   const double radius_a = boundingRadius(a), radius_b = boundingRadius(b);
+  PINCER_ASSERT(isConvex(a) && isConvex(b) && a.index() <= b.index());
   const double furthest = radius_a + radius_b + margin;
   const Vec3 p_BA = X_WA.p - X_WB.p;
   if (!(p_BA.squaredNorm() < furthest * furthest)) return;

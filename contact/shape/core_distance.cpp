@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "contact/invariants.h"
+
 namespace pincer::contact {
 namespace {
 
@@ -122,6 +124,7 @@ CoreDistance nearestToOrigin(Furthest furthest, const Vec3& start, double size, 
 
 CoreDistance distanceOfCores(const PosedSolid& a, const PosedSolid& b, const Vec3& shift, const Vec3& start, double size,
                              const CoreAccuracy& accuracy) {
+  PINCER_ASSERT(size > 0 && accuracy.relative > 0);
   return nearestToOrigin([&](const Vec3& v) -> Vec3 { return a.support(-v) + shift - b.support(v); }, start, size, accuracy);
 }
 

@@ -1,4 +1,5 @@
 // Nearest points of right cylinders: first in the section (x, y), then along z.
+#include "contact/invariants.h"
 #include "contact/shape/closed_forms.h"
 #include "contact/shape/direction.h"
 
@@ -13,6 +14,7 @@ struct SectionPoint {
 };
 
 SectionPoint nearestOnDisc(double radius, const Vec2& q) {
+  PINCER_ASSERT(radius > 0);
   const auto [n, length] = directionOf<Vec2>(q, Vec2::UnitX());
   return {radius * n, n, length - radius};
 }
@@ -20,6 +22,7 @@ SectionPoint nearestOnDisc(double radius, const Vec2& q) {
 // The disc without x > flat_distance. Its corners (flat_distance, +-half_chord) are nearest to the points between their two normals;
 // everywhere else the section, being the intersection of disc and half-plane, has the larger of their two distances.
 SectionPoint nearestOnCutDisc(double radius, double flat_distance, const Vec2& q) {
+  PINCER_ASSERT(0 < flat_distance && flat_distance < radius);
   const double half_chord = std::sqrt((radius - flat_distance) * (radius + flat_distance));
   const double y = std::abs(q.y());
   if (y > half_chord && q.x() * half_chord > y * flat_distance) {
@@ -34,6 +37,7 @@ SectionPoint nearestOnCutDisc(double radius, double flat_distance, const Vec2& q
 
 // The section drawn out to |z| <= half_length.
 NearestPoint drawnOut(const SectionPoint& s, double half_length, const Vec3& p_BC) {
+  PINCER_ASSERT(half_length > 0);
   const double sign = p_BC.z() < 0 ? -1 : 1;  // not copysign: -0.0 must choose like 0.0
   const double beyond_end = std::abs(p_BC.z()) - half_length;
   if (s.distance > 0 && beyond_end > 0) {  // the rim

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "contact/invariants.h"
+
 namespace pincer::contact {
 namespace {
 
@@ -69,6 +71,8 @@ EdgePart overLine(const Vec3& p, const Vec3& e, double length, const Vec3& n, co
 }  // namespace
 
 EdgePart partOverFacet(const Vec3& p, const Vec3& e, double length, const Vec3& n, const PosedSolid& solid, double slack) {
+  PINCER_ASSERT(isUnitIfFinite(e) && isUnitIfFinite(n));
+  PINCER_ASSERT(!(std::abs(e.dot(n)) > 1e-3));  // normals of slivers lean by their round-off
   Facet facet;
   const Vec3 p_B = solid.inwards(p - solid.p), e_B = solid.inwards(e), n_B = solid.inwards(n);
   facetOf(solid.shape, n_B, facet);

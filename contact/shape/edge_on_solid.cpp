@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "contact/invariants.h"
+
 namespace pincer::contact {
 namespace {
 
@@ -107,6 +109,8 @@ class EdgeSearch {
 }  // namespace
 
 EdgeContacts edgeOnSolid(const Vec3& p, const Vec3& e, const Vec3& n_lo, const Vec3& n_hi, const PosedSolid& solid, double deepest) {
+  PINCER_ASSERT(isUnitIfFinite(e) && isUnitIfFinite(n_lo) && isUnitIfFinite(n_hi));
+  PINCER_ASSERT(deepest < 0);
   return EdgeSearch(p, n_lo.cross(n_hi).dot(e) < 0 ? Vec3(-e) : e, solid, deepest).find(n_lo, n_hi);
 }
 

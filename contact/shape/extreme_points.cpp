@@ -1,7 +1,7 @@
 #include "contact/shape/extreme_points.h"
 
-#include "contact/shape/polytope.h"
-#include "contact/surface/smooth_mesh.h"
+#include "contact/polytope.h"
+#include "contact/smooth_mesh.h"
 
 namespace pincer::contact {
 namespace {

@@ -17,8 +17,9 @@
 #include <cstdint>
 #include <span>
 
+#include "contact/assert.h"
 #include "contact/math.h"
-#include "contact/shape/shape.h"
+#include "contact/shape.h"
 
 namespace pincer::contact {
 
@@ -38,6 +39,7 @@ struct ExtremePointStore {
   int count = 0;
 
   void add(const Vec3& p_A, std::uint32_t feature) {
+    PINCER_ASSERT(count < kMost);
     points[count] = p_A;
     features[count++] = feature;
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "contact/invariants.h"
 #include "contact/shape/point_choice.h"
 
 namespace pincer::contact {
@@ -292,6 +293,8 @@ void reachOut(const PosedSolid& cylinder, const PosedSolid& other, const Facet& 
 
 bool overlapFacets(const PosedSolid& a, const PosedSolid& b, const Separation& along, double size, double margin, PairPoints& out) {
   const Vec3& n = along.n;
+  PINCER_ASSERT(isUnitIfFinite(n));
+  PINCER_ASSERT(size > 0);
   const View view{frameFromNormal(n)};
   Facet facet_a, facet_b;
   facetOf(a.shape, a.inwards(-n), facet_a);

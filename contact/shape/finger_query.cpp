@@ -1,16 +1,18 @@
-#include "contact/shape/finger_query.h"
+#include "contact/finger_query.h"
 
 #include <type_traits>
 
+#include "contact/invariants.h"
+#include "contact/pair_query.h"
 #include "contact/shape/closed_forms.h"
-#include "contact/shape/pair_query.h"
-#include "contact/surface/smooth_mesh.h"
+#include "contact/smooth_mesh.h"
 
 namespace pincer::contact {
 namespace {
 
 SurfaceContacts contactAt(const NearestPoint& s, double r) {
   SurfaceContacts found;
+  PINCER_ASSERT(isUnitIfFinite(s.n_B));
   found.points[0] = {s.p_BS, s.n_B, s.distance - r, 0};
   found.count = 1;
   return found;
@@ -19,6 +21,7 @@ SurfaceContacts contactAt(const NearestPoint& s, double r) {
 }  // namespace
 
 SurfaceContacts querySphere(const Shape& shape, const Vec3& p_BC, double r, double margin, SurfaceTracker& tracker, PatchCache& cache) {
+  PINCER_ASSERT(r > 0 && !(margin < 0));
   return std::visit(
       [&](const auto& solid) -> SurfaceContacts {
         if constexpr (std::is_same_v<decltype(solid), const Mesh&>) {
@@ -94,6 +97,7 @@ class FingerDescent {
   }
 
   void add(const SurfaceContact& point, std::uint32_t ball) {
+    PINCER_ASSERT(out_.count < kMaxFingerContacts);
     const auto i = static_cast<std::size_t>(out_.count++);
     out_.points[i] = point;
     out_.points[i].feature = ball * kMaxSurfaceContacts + point.feature;
@@ -125,6 +129,7 @@ class FingerDescent {
 
 FingerContacts queryFinger(const Shape& shape, const FingerShape& finger, const Pose& X_BF, double margin, FingerTracker& tracker,
                            PatchCache& cache) {
+  PINCER_ASSERT(isUnitIfFinite(X_BF.q));
   return FingerDescent(shape, finger, X_BF, margin, tracker, cache).run();
 }
 

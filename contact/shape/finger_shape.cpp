@@ -1,14 +1,17 @@
-#include "contact/shape/finger_shape.h"
+#include "contact/finger_shape.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
+#include "contact/invariants.h"
+#include "contact/polytope.h"
 #include "contact/shape/closed_forms.h"
-#include "contact/shape/polytope.h"
 
 namespace pincer::contact {
 namespace {
+
+[[maybe_unused]] constexpr double kUnitByHand = 1e-5;  // of a pad's axes as their author wrote them: buildGrasp takes lengths within 1e-6
 
 double leastCurvatureRadius(const Vec3& a) { return a.minCoeff() * a.minCoeff() / a.maxCoeff(); }
 
@@ -65,7 +68,7 @@ Vec3 directionBetween(const Vec3& a, const Vec3& b, double angle, double s) {
   if (angle < 1e-9) return b;
   Vec3 across = b - b.dot(a) * a;
   if (across.norm() < 1e-12) across = frameFromNormal(a).col(0);  // opposite: any way round
-  return std::cos(s * angle) * a + std::sin(s * angle) * across.normalized();
+  return math::cos(s * angle) * a + math::sin(s * angle) * across.normalized();
 }
 
 }  // namespace
@@ -86,11 +89,19 @@ double boundingRadiusOf(const FingerShape& finger) {
 
 Vec3 coreSupportOf(const FingerShape& finger, const Vec3& d_F) { return std::visit(CoreSupport{d_F}, finger); }
 
-Vec3 supportOf(const FingerShape& finger, const Vec3& d_F) { return coreSupportOf(finger, d_F) + roundingOf(finger) * d_F; }
+Vec3 supportOf(const FingerShape& finger, const Vec3& d_F) {
+  PINCER_ASSERT(!(std::abs(d_F.squaredNorm() - 1) > kUnitByHand));
+  return coreSupportOf(finger, d_F) + roundingOf(finger) * d_F;
+}
 
-Vec3 nearestOnCore(const FingerShape& finger, const Vec3& p_F, const Vec3& d_F) { return std::visit(CoreOf{p_F, d_F}, finger); }
+Vec3 nearestOnCore(const FingerShape& finger, const Vec3& p_F, const Vec3& d_F) {
+  PINCER_ASSERT(isUnitIfFinite(d_F));
+  return std::visit(CoreOf{p_F, d_F}, finger);
+}
 
 double arcOverSkin(const FingerShape& finger, const Vec3& from_F, const Vec3& normal_F, const Vec3& to_F) {
+  PINCER_ASSERT(!(std::abs(from_F.squaredNorm() - 1) > kUnitByHand));
+  PINCER_ASSERT(isUnitIfFinite(normal_F));
   const double angle = angleBetween(from_F, normal_F), rho = roundingOf(finger);
   double arc = rho * angle;
   if (std::holds_alternative<Sphere>(finger)) return arc;

@@ -3,7 +3,7 @@
 #include "contact/shape/contact_candidates.h"
 #include "contact/shape/mesh_rules.h"
 #include "contact/shape/posed_solid.h"
-#include "contact/surface/smooth_mesh.h"
+#include "contact/smooth_mesh.h"
 
 namespace pincer::contact {
 namespace {

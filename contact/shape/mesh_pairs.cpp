@@ -7,7 +7,7 @@
 #include "contact/shape/edge_on_solid.h"
 #include "contact/shape/mesh_rules.h"
 #include "contact/shape/solid_walls.h"
-#include "contact/surface/smooth_mesh.h"
+#include "contact/smooth_mesh.h"
 
 namespace pincer::contact {
 namespace {

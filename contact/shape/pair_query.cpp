@@ -1,18 +1,19 @@
-#include "contact/shape/pair_query.h"
+#include "contact/pair_query.h"
 
 #include <limits>
 
+#include "contact/finger_query.h"
+#include "contact/invariants.h"
+#include "contact/polytope.h"
 #include "contact/shape/convex_features.h"
 #include "contact/shape/convex_pairs.h"
 #include "contact/shape/direction.h"
 #include "contact/shape/extreme_points.h"
-#include "contact/shape/finger_query.h"
 #include "contact/shape/mesh_mesh.h"
 #include "contact/shape/mesh_pairs.h"
 #include "contact/shape/point_choice.h"
-#include "contact/shape/polytope.h"
 #include "contact/shape/support.h"
-#include "contact/surface/smooth_mesh.h"
+#include "contact/smooth_mesh.h"
 
 namespace pincer::contact {
 namespace {
@@ -33,7 +34,10 @@ bool isSphere(const Shape& shape) { return std::holds_alternative<Sphere>(shape)
 bool isMesh(const Shape& shape) { return std::holds_alternative<Mesh>(shape); }
 bool isSupport(const Shape& shape) { return std::holds_alternative<HalfSpace>(shape) || std::holds_alternative<Dish>(shape); }
 
-void addPoint(const PairPoint& point, PairPoints& out) { out.points[out.count++] = point; }
+void addPoint(const PairPoint& point, PairPoints& out) {
+  PINCER_ASSERT(out.count < kMaxPairPoints);
+  out.points[out.count++] = point;
+}
 
 // n out of the support.
 template <class Support>
@@ -105,6 +109,8 @@ void collideShapes(const Shape& a, const Pose& X_WA, const Shape& b, const Pose&
                    const Vec3& last_n_W) {
   out.count = 0;
   if (isSupport(a) && isSupport(b)) return;
+  PINCER_ASSERT(isUnitIfFinite(X_WA.q) && isUnitIfFinite(X_WB.q));
+  PINCER_ASSERT(!(margin < 0));
   if (isSphere(a)) return collideSphere(std::get<Sphere>(a), X_WA, b, X_WB, margin, cache, out);
   if (isConvex(a) && isConvex(b) && !isSphere(b) && a.index() <= b.index()) return collideConvex(a, X_WA, b, X_WB, margin, last_n_W, out);
   if (isMesh(a) && isConvex(b) && !isSphere(b)) return collideMeshWithConvex(std::get<Mesh>(a), X_WA, b, X_WB, margin, out);

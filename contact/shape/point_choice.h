@@ -19,9 +19,10 @@
 #include <array>
 #include <limits>
 
+#include "contact/assert.h"
+#include "contact/pair_query.h"
 #include "contact/shape/direction.h"
 #include "contact/shape/extreme_points.h"
-#include "contact/shape/pair_query.h"
 
 namespace pincer::contact {
 
@@ -100,6 +101,7 @@ class PointChoice {
     forEachNear([&](const Chosen& c) {
       if (first.index < 0 && c.gap <= deepest_ + kSameGap) first = c;
     });
+    PINCER_ASSERT(first.index >= 0);  // as many near ones as this is called for can't all be no number
     chosen_[count_++] = first;
     n_A_ = support_.normal(chosenPoint(0));
   }

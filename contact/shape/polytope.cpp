@@ -1,4 +1,4 @@
-#include "contact/shape/polytope.h"
+#include "contact/polytope.h"
 
 #include <fmt/format.h>
 
@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "contact/error.h"
+#include "contact/invariants.h"
 #include "contact/mesh/union_find.h"
 #include "contact/shape/quick_hull.h"
 #include "contact/surface/convex_hull.h"
@@ -138,6 +139,7 @@ Polytope::Polytope(const std::vector<Vec3>& points, const std::string& source) {
     throw InputError(
         fmt::format("{}: the hull has {} corners, more than {}. Use fewer points, or a mesh.", source, vertices_.size(), kMaxVertices));
   setEdges(source);
+  PINCER_ASSERT(vertices_.size() + faces_.size() == edges_.size() + 2);  // Euler
   setSurroundings();
   double thickness = sizeOf(points);
   Vec3 middle = Vec3::Zero();

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <map>
 
+#include "contact/invariants.h"
+
 namespace pincer::contact {
 namespace {
 
@@ -93,6 +95,7 @@ class QuickHull {
   // Replaces the facets that the furthest point outside of facet `f` sees by a fan from their border to it.
   void addFurthest(int f) {
     const std::vector<int>& outside = facet(f).outside;
+    PINCER_ASSERT(facet(f).alive && !outside.empty());
     const int p = *std::max_element(outside.begin(), outside.end(), [&](int x, int y) { return above(f, x) < above(f, y); });
     std::vector<int> seen = {f};
     std::vector<std::pair<int, int>> border;
@@ -117,6 +120,7 @@ class QuickHull {
     }
     // An edge may have come to the border before the facet beyond it turned out to be seen.
     std::erase_if(border, [&](const auto& e) { return !facet(across_.at({e.second, e.first})).alive; });
+    PINCER_ASSERT(border.size() >= 3);
     for (const auto& [from, to] : border) fan.push_back(addFacet(from, to, p));
     share(orphans, fan);
   }

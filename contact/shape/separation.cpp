@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "contact/invariants.h"
 #include "contact/shape/core_distance.h"
 #include "contact/shape/direction.h"
 
@@ -304,7 +305,10 @@ class Search {
 
 }  // namespace
 
-double gapAlong(const PosedSolid& a, const PosedSolid& b, const Vec3& n) { return n.dot(a.support(-n)) - n.dot(b.support(n)); }
+double gapAlong(const PosedSolid& a, const PosedSolid& b, const Vec3& n) {
+  PINCER_ASSERT(isUnitIfFinite(n));
+  return n.dot(a.support(-n)) - n.dot(b.support(n));
+}
 
 Separation separate(const PosedSolid& a, const PosedSolid& b, double size, double reach, const Vec3& last) {
   Search search(a, b, size);

@@ -5,9 +5,9 @@
 // The point is in the solid where no height is positive; then the largest is the shortest way out.
 #pragma once
 #include "contact/math.h"
+#include "contact/polytope.h"
 #include "contact/shape/closed_forms.h"
 #include "contact/shape/direction.h"
-#include "contact/shape/polytope.h"
 
 namespace pincer::contact {
 

@@ -9,8 +9,8 @@
 //               of a circle about A's z axis the point in that direction is the deepest, exactly, for both
 #pragma once
 #include "contact/math.h"
+#include "contact/shape.h"
 #include "contact/shape/direction.h"
-#include "contact/shape/shape.h"
 
 namespace pincer::contact {
 

@@ -2,11 +2,13 @@
 
 #include <numeric>
 
+#include "contact/invariants.h"
 #include "contact/surface/outward_float.h"
 
 namespace pincer::contact {
 
 AabbTree::AabbTree(const std::vector<Aabb>& boxes) : order_(boxes.size()) {
+  PINCER_ASSERT(!boxes.empty());
   std::iota(order_.begin(), order_.end(), 0);
   nodes_.reserve(boxes.size());
   nodes_.emplace_back();
@@ -20,6 +22,7 @@ void AabbTree::split(std::size_t node, std::int32_t begin, std::int32_t end, con
   Aabb all = box(first), centres{centre(first), centre(first)};
   for (std::int32_t i = begin; i < end; ++i) {
     const std::int32_t item = order_[static_cast<std::size_t>(i)];
+    PINCER_ASSERT((box(item).low.array() <= box(item).high.array()).all());
     all = {all.low.cwiseMin(box(item).low), all.high.cwiseMax(box(item).high)};
     centres = {centres.low.cwiseMin(centre(item)), centres.high.cwiseMax(centre(item))};
   }

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "contact/assert.h"
 #include "contact/math.h"
 
 namespace pincer::contact {
@@ -85,6 +86,7 @@ void AabbTree::visitBox(const Vec3& low, const Vec3& high, int max_visits, Visit
     const Node& node = nodes_[static_cast<std::size_t>(stack[--size])];
     if (!meets(node)) continue;
     if (node.left >= 0) {
+      PINCER_ASSERT(size + 2 <= kMaxDepth);
       stack[size++] = node.left + 1;
       stack[size++] = node.left;
       continue;
@@ -116,6 +118,7 @@ void AabbTree::visitNear(const Vec3& p, const double& bound2, Visit&& visit) con
       for (std::int32_t i = 0; i < node.count; ++i) visit(-1 - node.left + i);
       continue;
     }
+    PINCER_ASSERT(size + 2 <= kMaxDepth);
     const std::size_t before = size;
     push(node.left + 1);
     push(node.left);

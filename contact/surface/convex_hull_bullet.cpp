@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "contact/shape/bullet_memory.h"
 #include "contact/surface/convex_hull.h"
 
 namespace pincer::contact {
@@ -11,6 +12,7 @@ static_assert(sizeof(btScalar) == sizeof(double));
 
 void computeHull(const std::vector<Vec3>& points, double shrink, double clamp, btConvexHullComputer& hull) {
   if (points.empty()) return;
+  letBulletThrow();
   hull.compute(points.front().data(), sizeof(Vec3), static_cast<int>(points.size()), shrink, clamp);
 }
 

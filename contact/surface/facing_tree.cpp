@@ -2,6 +2,8 @@
 
 #include <numeric>
 
+#include "contact/invariants.h"
+
 namespace pincer::contact {
 
 namespace {
@@ -16,6 +18,7 @@ void widen(FacingBox& box, const FacingBox& other) {
     box.low[k] = std::min(box.low[k], other.low[k]);
     box.high[k] = std::max(box.high[k], other.high[k]);
   }
+  PINCER_ASSERT((box.cone.isFull() || isUnit(box.cone.axis)) && (other.cone.isFull() || isUnit(other.cone.axis)));
   box.cone = joined(box.cone, other.cone);
   box.hollow = std::max(box.hollow, other.hollow);
 }
@@ -40,6 +43,7 @@ std::int32_t leavesOfChild(std::int32_t leaves) {
 
 FacingTree::FacingTree(const std::vector<FacingBox>& boxes, const std::function<void(double)>& progress)
     : order_(boxes.size()), progress_(progress) {
+  PINCER_ASSERT(!boxes.empty());
   std::iota(order_.begin(), order_.end(), 0);
   for (const FacingBox& box : boxes) {
     for (std::size_t k = 0; k < 3; ++k) extent_ = std::max<double>({extent_, std::abs(box.low[k]), std::abs(box.high[k])});
@@ -89,6 +93,7 @@ FacingTree::Bounds FacingTree::build(std::size_t node, Range range, const std::v
   const std::int32_t middle = halve(range, child_size, boxes);
   const std::int32_t first = halve({range.begin, middle}, child_size, boxes), last = halve({middle, range.end}, child_size, boxes);
   const std::array<Range, kLanes> ranges{Range{range.begin, first}, Range{first, middle}, Range{middle, last}, Range{last, range.end}};
+  PINCER_ASSERT(range.begin <= first && first <= middle && middle <= last && last <= range.end);
   FacingBox all{};
   for (int lane = 0; lane < kLanes; ++lane) {
     const auto i = static_cast<std::size_t>(lane);

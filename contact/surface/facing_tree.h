@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "contact/assert.h"
 #include "contact/surface/four_lanes.h"
 #include "contact/surface/tree_walk.h"
 
@@ -138,6 +139,7 @@ void FacingTree::visitFacing(const Vec3& p, const double& bound2, Facing facing,
     const std::size_t first = size;
     for (int i = 0; i < kLanes; ++i) {
       if (!may_face[i] || !(d.box2[i] < bound2)) continue;
+      PINCER_ASSERT(size < stack.size());
       std::size_t to = size++;
       for (; to > first && stack[to - 1].distance2 < d.box2[i]; --to) stack[to] = stack[to - 1];
       stack[to] = {node.child[static_cast<std::size_t>(i)], d.box2[i]};
@@ -156,6 +158,7 @@ void FacingTree::walkWhere(TreeWalk& walk, int most, Test&& test, Visit&& visit)
     const Node& node = at(top);
     const LaneMask wanted = test(node);
     for (int i = kLanes - 1; i >= 0; --i) {
+      PINCER_ASSERT(!wanted[i] || walk.size < TreeWalk::kMostWaiting);
       if (wanted[i]) walk.waiting[walk.size++] = node.child[static_cast<std::size_t>(i)];
     }
   }

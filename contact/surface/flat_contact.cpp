@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "contact/invariants.h"
 #include "contact/surface/flat_minimum.h"
 #include "contact/surface/shell_edge.h"
 
@@ -119,7 +120,7 @@ ShellContact FlatWalk::onVertex(int corner) const {
   const bool has_border = net_.visitCorners({triangle_, corner}, [&](const CellCorner& c) {
     const Vec3& p = net_.vertex(c.triangle, c.corner);
     const Vec3 e = net_.vertex(c.triangle, (c.corner + 1) % 3) - p, f = net_.vertex(c.triangle, (c.corner + 2) % 3) - p;
-    outward += std::atan2(e.cross(f).norm(), e.dot(f)) * net_.facetNormal(c.triangle);
+    outward += math::atan2(e.cross(f).norm(), e.dot(f)) * net_.facetNormal(c.triangle);
   });
   if (has_border) return rolledOver(outward);
   const double sign = R.dot(outward) < 0 ? -1 : 1;
@@ -142,7 +143,9 @@ void shadeForce(const SurfaceNet& net, const SurfaceTracker& tracker, SurfaceCon
   constexpr double kSame = 1e-9;  // 1 - cosine to the facet's normal, which a rolled-over border has lost
   for (int i = 0; i < contacts.count; ++i) {
     SurfaceContact& contact = contacts.points[static_cast<std::size_t>(i)];
+    PINCER_ASSERT(contact.feature < tracker.slots.size());
     const SurfaceSlot& slot = tracker.slots[contact.feature];
+    PINCER_ASSERT(slot.triangle >= 0);
     if (contact.n_B.dot(net.facetNormal(slot.triangle)) < 1 - kSame) continue;
     const auto n = [&](int corner) -> const Vec3& { return net.shadingNormal(slot.triangle, corner); };
     contact.n_B = ((1 - slot.u - slot.v) * n(0) + slot.u * n(1) + slot.v * n(2)).normalized();

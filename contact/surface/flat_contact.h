@@ -13,7 +13,7 @@
 // shading for haptic shape perception", ASME DSC-58, 1996; sign at a vertex: J. A. Baerentzen, H. Aanaes, IEEE TVCG 11(3), 2005.
 #pragma once
 #include "contact/surface/shell_solver.h"
-#include "contact/surface/surface_contact.h"
+#include "contact/surface_contact.h"
 
 namespace pincer::contact {
 

@@ -1,5 +1,6 @@
 #include "contact/surface/lone_contact.h"
 
+#include "contact/invariants.h"
 #include "contact/surface/surface_search.h"
 
 namespace pincer::contact {
@@ -20,13 +21,15 @@ LoneContact::LoneContact(const Vec3& C, const Vec3& n, double h, double reach, d
       along_(n),
       hollowest_(LanesPoint::toLanes(kFits / reach)),
       rounding_(LanesPoint::toLanes(rounding)) {
+  PINCER_ASSERT(isUnitIfFinite(n));
+  PINCER_ASSERT(!(reach <= 0) && !(h <= most));
   setWay(most);
 }
 
 void LoneContact::setWay(double way) {
   way_ = way;
   rho_ = reach_ * kSinBeta + way;
-  zone_ = std::hypot(rho_, h_ + rho_ * kTanBeta);
+  zone_ = math::hypot(rho_, h_ + rho_ * kTanBeta);
   way_lanes_ = atLeast(way_);
   rho_lanes_ = atLeast(rho_);
   zone_lanes_ = atLeast(std::max(zone_, reach_ + way_));

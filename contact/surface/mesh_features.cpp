@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "contact/invariants.h"
+
 namespace pincer::contact {
 namespace {
 
@@ -130,6 +132,7 @@ std::span<const std::int32_t> MeshFeatures::trianglesAt(std::int32_t v) const {
 }
 
 MeshFeatures::Triangle MeshFeatures::triangle(std::int32_t t) const {
+  PINCER_ASSERT(isIndex(t, mesh_->triangles.size()));
   const auto at = static_cast<std::size_t>(t);
   const auto& v = cornersOf(t);
   Triangle triangle{{vertex(v[0]), vertex(v[1]), vertex(v[2])}, crossOf(*mesh_, v).normalized(), v, owned_[at], {}};
@@ -169,6 +172,7 @@ Vec3 MeshFeatures::normalAcross(std::int32_t t, int edge) const {
 }
 
 MeshFeatures::Nearest MeshFeatures::nearest(const Vec3& q, double bound) const {
+  PINCER_ASSERT(!(bound < 0));
   constexpr double kOnSurface = 1e-20;  // [m^2]
   double bound2 = bound * bound;
   std::int32_t best = -1;
@@ -198,6 +202,7 @@ MeshFeatures::Nearest MeshFeatures::nearest(const Vec3& q, double bound) const {
 }
 
 bool MeshFeatures::liesAbove(std::int32_t v, const Vec3& n, double slack) const {
+  PINCER_ASSERT(isUnitIfFinite(n));
   const Vec3& p = vertex(v);
   for (const std::int32_t t : trianglesAt(v)) {
     for (const std::int32_t other : cornersOf(t)) {

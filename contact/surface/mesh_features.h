@@ -16,8 +16,8 @@
 #include <vector>
 
 #include "contact/mesh/connectivity.h"
-#include "contact/mesh/triangle_mesh.h"
 #include "contact/surface/aabb_tree.h"
+#include "contact/triangle_mesh.h"
 
 namespace pincer::contact {
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "contact/invariants.h"
 #include "contact/surface/outward_float.h"
 #include "contact/surface/surface_search.h"
 
@@ -34,6 +35,7 @@ void keepMinima(const SurfaceNet& net, const SurfaceSearch& search, double gone_
 }  // namespace
 
 void beginNearParts(const SurfaceNet& net, const SurfaceLook& look, NearParts& found) {
+  PINCER_ASSERT(!(look.reach <= 0));
   found.net = net.fingerprint();
   found.look = look;
   found.look.horizon = kLookHorizon * look.reach;
@@ -49,6 +51,7 @@ void continueNearParts(const SurfaceNet& net, const SurfaceSearch& search, doubl
   const ConesAlong passed(look.n);
   search.walkParts(look.p_BC, look.reach, found.look.horizon, passed, found.walk, most, [&](std::int32_t place, double approach) {
     if (found.parts.size() == kMostParts) halve(found);
+    PINCER_ASSERT(found.parts.size() < found.parts.capacity());  // the tick allocates nothing
     const float rounded = below(approach);
     if (approach < found.look.horizon) found.parts.push_back({place, rounded, gone_at_look + rounded, 0});
   });
@@ -64,6 +67,7 @@ void forgetDues(double gone_at_look, NearParts& parts) {
 
 void takeDues(const NearParts& from, NearParts& to) {
   if (from.net != to.net) return;
+  PINCER_ASSERT(isAscending(from.parts, &NearPart::place) && isAscending(to.parts, &NearPart::place));
   auto known = from.parts.begin();
   for (NearPart& part : to.parts) {
     while (known != from.parts.end() && known->place < part.place) ++known;

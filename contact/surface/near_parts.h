@@ -20,8 +20,8 @@
 #include <vector>
 
 #include "contact/surface/four_lanes.h"
-#include "contact/surface/surface_contact.h"
 #include "contact/surface/tree_walk.h"
+#include "contact/surface_contact.h"
 
 namespace pincer::contact {
 

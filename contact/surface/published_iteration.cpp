@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "contact/invariants.h"
+
 namespace pincer::contact {
 
 namespace {
@@ -52,6 +54,7 @@ int advance(const SurfaceNet& net, Foot& foot, Vec3 d) {
     ++crossings;
   }
   const double sum = foot.b[0] + foot.b[1] + foot.b[2];
+  PINCER_ASSERT(!(sum <= 0));
   for (double& b : foot.b) b /= sum;
   return crossings;
 }

@@ -10,7 +10,7 @@
 #pragma once
 #include <cstdint>
 
-#include "contact/mesh/triangle_mesh.h"
+#include "contact/triangle_mesh.h"
 
 namespace pincer::contact {
 

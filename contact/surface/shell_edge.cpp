@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "contact/invariants.h"
+
 namespace pincer::contact {
 
 namespace {
@@ -63,6 +65,7 @@ SharpEdgePoint evaluate(const SharpEdge& edge, double s) {
 }
 
 EdgeFoot footOnEdge(const SharpEdge& edge, const Vec3& C, double s) {
+  PINCER_ASSERT(edge.curve[3] != edge.curve[0]);
   const double tolerance = kEdgeTolerance * (edge.curve[3] - edge.curve[0]).norm();
   double low = -1, high = 2;  // beyond the ends: those aren't known yet
   s = std::clamp(s, 0.0, 1.0);

@@ -44,7 +44,7 @@ Vec2 stepAlongResidual(const PatchPoint& x, const Residual& r) {
 
 // T divided by the sizes of the eigenvalues of the symmetric matrix [p q; q s].
 Vec2 divideByEigenvalueSizes(double p, double q, double s, const Vec2& T) {
-  const double mean = 0.5 * (p + s), half_gap = std::hypot(0.5 * (p - s), q);
+  const double mean = 0.5 * (p + s), half_gap = math::hypot(0.5 * (p - s), q);
   const auto inverse = [](double lambda) { return 1 / std::max(std::abs(lambda), kLeastEigenvalue); };
   const double f1 = inverse(mean + half_gap), f2 = inverse(mean - half_gap);
   if (half_gap < 1e-12) return f1 * T;

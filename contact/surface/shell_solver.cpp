@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "contact/invariants.h"
 #include "contact/surface/shell_edge.h"
 #include "contact/surface/shell_face.h"
 
@@ -23,6 +24,7 @@ double longest(const std::array<double, 3>& db) { return std::max({std::abs(db[0
   if (b[0] < 0 || b[1] < 0 || b[2] < 0) return false;
   contact.foot.b = b;
   contact.n = (x.N + u * x.Nu + v * x.Nv).normalized();
+  PINCER_ASSERT(isUnitIfFinite(contact.n));
   contact.h = (C - x.S - u * x.Su - v * x.Sv).dot(contact.n);
   contact.converged = true;
   return true;
@@ -61,6 +63,7 @@ class ShellWalk {
  public:
   ShellWalk(const SurfaceNet& net, PatchCache& cache, const Vec3& C, const Foot& start, std::span<const std::int32_t> ends)
       : net_(net), cache_(cache), C_(C), ends_(ends), done_(kDone * net.length()), nearly_(kNear * net.length()), foot_(start) {
+    PINCER_ASSERT(isIndex(start.triangle, static_cast<std::size_t>(net.size())));
     result_.foot = start;
   }
 
@@ -292,6 +295,8 @@ bool ShellWalk::leaveVertexAlongEdge(const CellCorner& at) {
 }
 
 void ShellWalk::accept(const Vec3& n, double h) {
+  PINCER_ASSERT(isUnitIfFinite(n));
+  PINCER_ASSERT(!(std::abs(foot_.b[0] + foot_.b[1] + foot_.b[2] - 1) > 1e-6));  // steps may lead kAlong across an edge
   result_ = {foot_, n, h, true, {}};
   state_ = State::ended;
 }

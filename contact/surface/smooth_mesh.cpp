@@ -1,12 +1,14 @@
-#include "contact/surface/smooth_mesh.h"
+#include "contact/smooth_mesh.h"
 
 #include <fmt/format.h>
 
 #include <mutex>
 
-#include "contact/mesh/mesh_report.h"
+#include "contact/invariants.h"
+#include "contact/mesh_report.h"
 #include "contact/surface/contact_slots.h"
 #include "contact/surface/convex_hull.h"
+#include "contact/surface/mesh_features.h"
 #include "contact/surface/surface_net.h"
 #include "contact/surface/surface_search.h"
 
@@ -76,6 +78,7 @@ std::shared_ptr<const SmoothMesh> SmoothMesh::build(TriangleMesh mesh, const Sur
 }
 
 SurfaceContacts SmoothMesh::querySphere(const Vec3& p_BC, double r, double margin, SurfaceTracker& tracker, PatchCache& cache) const {
+  PINCER_DEMAND(r > 0, "querySphere: the fingertip's radius is positive");
   return touchSurface({data_->net, data_->search, data_->variant}, p_BC, r, margin, tracker, cache);
 }
 

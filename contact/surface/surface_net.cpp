@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "contact/invariants.h"
 #include "contact/surface/edge_cubic.h"
 #include "contact/surface/large_pages.h"
 
@@ -217,12 +218,14 @@ SurfaceNet::SurfaceNet(TriangleMesh mesh, double crease_angle, bool use_file_nor
     for (std::size_t i = 0; i < 3; ++i) {
       const auto [other, edge] = neighbours[t][i];
       links_[t].across[i] = other < 0 ? -1 : 8 * other + edge;
+      PINCER_ASSERT(other < 0 || neighbours[at(other)][at(edge)].triangle == static_cast<std::int32_t>(t));  // and back
     }
   }
   if (variant != SurfaceVariant::facet) {
     const CornerNormals corners = findCornerNormals(mesh_, neighbours, crease_angle, use_file_normals);
     NormalNumbers numbers(mesh_, corners);
     normals_ = std::move(numbers.distinct);
+    PINCER_ASSERT(std::all_of(normals_.begin(), normals_.end(), [](const Vec3& n) { return isUnit(n); }));
     for (std::size_t t = 0; t < links_.size(); ++t) links_[t].normals = numbers.numbers[t];
   }
   for (std::int32_t t = 0; t < size(); ++t) {

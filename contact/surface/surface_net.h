@@ -13,11 +13,12 @@
 #include <type_traits>
 #include <vector>
 
+#include "contact/assert.h"
 #include "contact/mesh/connectivity.h"
-#include "contact/mesh/triangle_mesh.h"
 #include "contact/surface/patch_cache.h"
 #include "contact/surface/surface_cell.h"
-#include "contact/surface/surface_contact.h"
+#include "contact/surface_contact.h"
+#include "contact/triangle_mesh.h"
 
 namespace pincer::contact {
 
@@ -54,8 +55,12 @@ class SurfaceNet {
   Vec3 normal(std::int32_t triangle, int corner) const { return is_flat_ ? facetNormal(triangle) : shadingNormal(triangle, corner); }
   Vec3 facetNormal(std::int32_t triangle) const;  // unit; zero for a triangle without area
   // Not of a `facet`.
-  const Vec3& shadingNormal(std::int32_t triangle, int corner) const { return normals_[at(links_[at(triangle)].normals[at(corner)])]; }
+  const Vec3& shadingNormal(std::int32_t triangle, int corner) const {
+    PINCER_ASSERT(variant_ != SurfaceVariant::facet);
+    return normals_[at(links_[at(triangle)].normals[at(corner)])];
+  }
   Neighbour neighbour(std::int32_t triangle, int edge) const {
+    PINCER_ASSERT(0 <= triangle && triangle < size() && 0 <= edge && edge < 3);
     const std::int32_t code = links_[at(triangle)].across[at(edge)];
     return code < 0 ? Neighbour{} : Neighbour{code / 8, static_cast<std::int8_t>(code % 4)};
   }

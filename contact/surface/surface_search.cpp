@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "contact/invariants.h"
 #include "contact/surface/edge_cubic.h"
 #include "contact/surface/lone_contact.h"
 #include "contact/surface/outward_float.h"
@@ -188,6 +189,7 @@ double SurfaceSearch::wayAlone(const Vec3& p, const Vec3& n, double h, double re
 }
 
 std::optional<Foot> SurfaceSearch::minimumOn(const SurfaceNet& net, std::int32_t place, const Vec3& p, double reach) const {
+  PINCER_ASSERT(isIndex(place, tree_.order().size()));
   const std::int32_t triangle = triangleAt(place);
   const FlatPoint flat = closestOnFacet(net, triangle, p);
   const double outer = reach + bulge(place);

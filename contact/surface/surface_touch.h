@@ -5,8 +5,8 @@
 #pragma once
 #include <algorithm>
 
-#include "contact/short_list.h"
 #include "contact/surface/contact_slots.h"
+#include "contact/surface/short_list.h"
 #include "contact/surface/surface_variant.h"
 #include "contact/surface/turns.h"
 

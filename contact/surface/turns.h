@@ -10,12 +10,15 @@
 #include <cmath>
 #include <cstdint>
 
+#include "contact/assert.h"
+
 namespace pincer::contact {
 
 class Turns {
  public:
   // Those on the way from `from` to `to` >= `from` >= 0 [m]; a period of 0: everyone's.
   Turns(double from, double to, double period) : period_(period) {
+    PINCER_ASSERT(0 <= from && from <= to);
     if (!(period > 0)) return;
     begin_ = from / period - std::floor(from / period);
     end_ = begin_ + (to - from) / period;

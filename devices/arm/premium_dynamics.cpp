@@ -46,8 +46,9 @@ Inertia inertia(double tip_mass) {
 
 MassMatrix massMatrix(const Inertia& i, const Vec3& q) {
   MassMatrix m;
-  m.s2 = std::sin(q[1]), m.c2 = std::cos(q[1]);
-  m.s3 = std::sin(q[2]), m.c3 = std::cos(q[2]);
+  const auto upper = math::sinCos(q[1]), fore = math::sinCos(q[2]);
+  m.s2 = upper.sin, m.c2 = upper.cos;
+  m.s3 = fore.sin, m.c3 = fore.cos;
   m.m11 = i.base + i.u_c * m.c2 * m.c2 + i.u_s * m.s2 * m.s2 + i.f_c * m.c3 * m.c3 + i.f_s * m.s3 * m.s3 + i.x * m.c2 * m.s3;
   m.m22 = i.u;
   m.m33 = i.f;

@@ -6,30 +6,33 @@
 namespace pincer::devices::premium {
 namespace {
 
-double reach(const Vec3& q) { return l1 * std::cos(q[1]) + l2 * std::sin(q[2]); }
+double reach(const Vec3& q) { return l1 * math::cos(q[1]) + l2 * math::sin(q[2]); }
 
 }  // namespace
 
 Vec3 forward(const Vec3& q) {
-  const double r = reach(q);
-  return {r * std::sin(q[0]), l2 - l2 * std::cos(q[2]) + l1 * std::sin(q[1]), r * std::cos(q[0]) - l1};
+  const auto [s1, c1] = math::sinCos(q[0]);
+  const auto [s2, c2] = math::sinCos(q[1]);
+  const auto [s3, c3] = math::sinCos(q[2]);
+  const double r = l1 * c2 + l2 * s3;
+  return {r * s1, l2 - l2 * c3 + l1 * s2, r * c1 - l1};
 }
 
 std::optional<Vec3> inverse(const Vec3& p_DF) {
-  const double R = std::hypot(p_DF.x(), p_DF.z() + l1);
+  const double R = math::hypot(p_DF.x(), p_DF.z() + l1);
   const double h = p_DF.y() - l2;
-  const double D = std::hypot(R, h);  // from the shoulder to the fingertip
+  const double D = math::hypot(R, h);  // from the shoulder to the fingertip
   const double at_shoulder = (l1 * l1 + D * D - l2 * l2) / (2 * l1 * D);
   const double at_elbow = (l1 * l1 + l2 * l2 - D * D) / (2 * l1 * l2);
   if (!(std::abs(at_shoulder) <= 1 && std::abs(at_elbow) <= 1)) return std::nullopt;  // D = 0 makes at_shoulder infinite
-  const double q2 = std::atan2(h, R) + std::acos(at_shoulder);
-  return Vec3(std::atan2(p_DF.x(), p_DF.z() + l1), q2, q2 + std::acos(at_elbow) - std::numbers::pi / 2);
+  const double q2 = math::atan2(h, R) + math::acos(at_shoulder);
+  return Vec3(math::atan2(p_DF.x(), p_DF.z() + l1), q2, q2 + math::acos(at_elbow) - std::numbers::pi / 2);
 }
 
 Mat3 jacobian(const Vec3& q) {
-  const double s1 = std::sin(q[0]), c1 = std::cos(q[0]);
-  const double s2 = std::sin(q[1]), c2 = std::cos(q[1]);
-  const double s3 = std::sin(q[2]), c3 = std::cos(q[2]);
+  const auto [s1, c1] = math::sinCos(q[0]);
+  const auto [s2, c2] = math::sinCos(q[1]);
+  const auto [s3, c3] = math::sinCos(q[2]);
   const double r = l1 * c2 + l2 * s3;
   Mat3 J;
   J << c1 * r, -l1 * s1 * s2, l2 * s1 * c3,  //
@@ -38,7 +41,7 @@ Mat3 jacobian(const Vec3& q) {
   return J;
 }
 
-double dexterity(const Vec3& q) { return reach(q) / l1 * std::cos(q[1] - q[2]); }
+double dexterity(const Vec3& q) { return reach(q) / l1 * math::cos(q[1] - q[2]); }
 
 bool withinLimits(const JointLimits& limits, const Vec3& q) {
   return (q.array() >= limits.min.array()).all() && (q.array() <= limits.max.array()).all() && std::abs(q[1] - q[2]) <= limits.elbow;

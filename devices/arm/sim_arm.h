@@ -81,7 +81,6 @@ class SimArm final : public Arm {
   void step(double h);
   void driveMotors(double h);
   void takeSample();
-  Vec3 handTorque(const Vec3& q) const;
   Vec3 measuredAngles() const;
 
   SimArmSettings settings_;

@@ -41,7 +41,7 @@ SimCld::SimCld(const SimCldSettings& settings) : settings_(settings), kinematics
   const double w = 2 * std::numbers::pi * settings.natural_frequency;
   const double decay = settings.damping_ratio * w;
   const double wd = w * std::sqrt(1 - settings.damping_ratio * settings.damping_ratio);
-  const double e = std::exp(-decay * kTick), s = std::sin(wd * kTick) / wd, c = std::cos(wd * kTick);
+  const double e = math::exp(-decay * kTick), s = math::sin(wd * kTick) / wd, c = math::cos(wd * kTick);
   a11_ = e * (c + decay * s);
   a12_ = e * s;
   a21_ = -w * w * e * s;

@@ -66,12 +66,15 @@ TwoDofKinematics::TwoDofKinematics(const TwoDofGeometry& geometry, FingerProfile
 
 Vec3 TwoDofKinematics::tactorRoot(const Vec3& q) const {
   const double R = geometry_.ring_radius;
-  return {q[0] + R * std::cos(q[2]) * std::sin(q[1]), R * std::sin(q[2]), -R * std::cos(q[2]) * std::cos(q[1])};
+  const auto [sa, ca] = math::sinCos(q[1]);
+  const auto [sb, cb] = math::sinCos(q[2]);
+  return {q[0] + R * cb * sa, R * sb, -R * cb * ca};
 }
 
 Mat3 TwoDofKinematics::jacobian(const Vec3& q) const {
   const double R = geometry_.ring_radius;
-  const double sa = std::sin(q[1]), ca = std::cos(q[1]), sb = std::sin(q[2]), cb = std::cos(q[2]);
+  const auto [sa, ca] = math::sinCos(q[1]);
+  const auto [sb, cb] = math::sinCos(q[2]);
   Mat3 J;
   J << 1, R * cb * ca, -R * sb * sa,  //
       0, 0, R * cb,                   //
@@ -94,8 +97,9 @@ PadWay TwoDofKinematics::wayOf(const Vec3& q) const {
 Vec2 TwoDofKinematics::placeAt(const PadWay& way) const {
   const double r = profile_.radius;
   if (way.along <= 0) return {way.along, r * way.round};
-  const Vec2 across(std::cos(way.round) * std::sin(way.along / r), std::sin(way.round));
-  const double t = std::atan2(across.norm(), std::cos(way.round) * std::cos(way.along / r));
+  const auto round = math::sinCos(way.round), along = math::sinCos(way.along / r);
+  const Vec2 across(round.cos * along.sin, round.sin);
+  const double t = math::atan2(across.norm(), round.cos * along.cos);
   return across * (r * t / across.norm());  // |across| > 0, because along > 0 and both angles stay within a right angle
 }
 
@@ -103,8 +107,9 @@ PadWay TwoDofKinematics::wayTo(const Vec2& place_L) const {
   const double r = profile_.radius;
   if (place_L.x() <= 0) return {place_L.x(), place_L.y() / r};
   const double t = place_L.norm() / r;
-  const Vec2 across = place_L * (std::sin(t) / place_L.norm());
-  return {r * std::atan2(across.x(), std::cos(t)), std::asin(std::clamp(across.y(), -1.0, 1.0))};
+  const auto [sin, cos] = math::sinCos(t);
+  const Vec2 across = place_L * (sin / place_L.norm());
+  return {r * math::atan2(across.x(), cos), math::asin(std::clamp(across.y(), -1.0, 1.0))};
 }
 
 bool TwoDofKinematics::reaches(const PadWay& way) const {

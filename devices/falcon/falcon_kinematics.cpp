@@ -14,7 +14,7 @@ constexpr double kCountAngle = 2 * kPi / (4 * 320) * 0.01425 / 0.110;  // [rad]
 
 // `p` in the frame of leg `i`.
 Vec3 inLeg(const Vec3& p, int i, const Geometry& g) {
-  const double cs = std::cos(kLegAngles[static_cast<std::size_t>(i)]), sn = std::sin(kLegAngles[static_cast<std::size_t>(i)]);
+  const auto [sn, cs] = math::sinCos(kLegAngles[static_cast<std::size_t>(i)]);
   return {cs * p.x() + sn * p.y() - g.r, -sn * p.x() + cs * p.y() - g.s, p.z()};
 }
 
@@ -37,12 +37,13 @@ std::optional<LegEquation> legEquation(const Vec3& p, double t, int i, const Geo
   const auto m = shin(P, g);
   if (!m) return std::nullopt;
   const double L = g.d + g.e + *m;
-  const double u = P.x() + g.c - g.a * std::cos(t), w = P.z() - g.a * std::sin(t);
+  const auto knee = math::sinCos(t);
+  const double u = P.x() + g.c - g.a * knee.cos, w = P.z() - g.a * knee.sin;
   const Vec3 by_leg(2 * u, 2 * L * (P.y() + g.f) / *m, 2 * w);  // dL/dP_v = -(P_v + f) / m
-  const double cs = std::cos(kLegAngles[static_cast<std::size_t>(i)]), sn = std::sin(kLegAngles[static_cast<std::size_t>(i)]);
+  const auto [sn, cs] = math::sinCos(kLegAngles[static_cast<std::size_t>(i)]);
   LegEquation e;
   e.F = u * u + w * w - L * L;
-  e.by_angle = 2 * g.a * (u * std::sin(t) - w * std::cos(t));
+  e.by_angle = 2 * g.a * (u * knee.sin - w * knee.cos);
   e.by_place = Vec3(cs * by_leg.x() - sn * by_leg.y(), sn * by_leg.x() + cs * by_leg.y(), by_leg.z());
   return e;
 }
@@ -56,10 +57,10 @@ std::optional<Vec3> inverse(const Vec3& p, const Geometry& g) {
     const auto m = shin(P, g);
     if (!m) return std::nullopt;
     const double L = g.d + g.e + *m;
-    const double u = P.x() + g.c, rho = std::hypot(u, P.z());
+    const double u = P.x() + g.c, rho = math::hypot(u, P.z());
     const double cosine = (rho * rho + g.a * g.a - L * L) / (2 * g.a * rho);
     if (!(std::abs(cosine) <= 1)) return std::nullopt;
-    angles[i] = std::atan2(P.z(), u) - std::acos(cosine);
+    angles[i] = math::atan2(P.z(), u) - math::acos(cosine);
   }
   return angles;
 }

@@ -120,6 +120,8 @@ namespace {
 class LibusbBus final : public UsbBus {
  public:
   LibusbBus(UsbPorts& ports, Clock clock) : ports_(ports), clock_(std::move(clock)) {
+    for (auto* some : {&arrived_, &left_}) some->reserve(kMostPlugs);
+    fds_.reserve(kMostFds);
     wake_fd_ = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
     if (wake_fd_ < 0) throw std::runtime_error("USB: no more file descriptors. Close other programs.");
     if (const int error = libusb_init(&context_); error != 0) {
@@ -144,7 +146,18 @@ class LibusbBus final : public UsbBus {
   }
 
  private:
-  void run() {
+  static constexpr std::size_t kMostPlugs = 256, kMostFds = 256;  // between two looks; of libusb. A bus has at most 127 devices
+
+  void run() noexcept {  // where memory ends, it is as if all devices were unplugged: motors go limp by themselves
+    for (const auto part : {&LibusbBus::serveAll, &LibusbBus::closeAll}) {
+      try {
+        (this->*part)();
+      } catch (const std::exception&) {
+      }
+    }
+  }
+
+  void serveAll() {
     // Just below the servo's priority, where the system permits it: a command that waits for this thread waits for nothing else.
     const sched_param priority{.sched_priority = 79};
     pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority);
@@ -161,7 +174,6 @@ class LibusbBus final : public UsbBus {
       openArrived();
       for (int i = 0; i < kMaxPorts; ++i) serve(i);
     }
-    closeAll();
   }
 
   // Whether the system tells of plugs.
@@ -173,7 +185,8 @@ class LibusbBus final : public UsbBus {
   }
   static int LIBUSB_CALL plugged(libusb_context*, libusb_device* device, libusb_hotplug_event event, void* self) {
     auto& bus = *static_cast<LibusbBus*>(self);
-    (event == LIBUSB_HOTPLUG_EVENT_DEVICE_ARRIVED ? bus.arrived_ : bus.left_).push_back(libusb_ref_device(device));
+    auto& some = event == LIBUSB_HOTPLUG_EVENT_DEVICE_ARRIVED ? bus.arrived_ : bus.left_;
+    if (some.size() < kMostPlugs) some.push_back(libusb_ref_device(device));  // nothing may be thrown through libusb, which is C
     return 0;
   }
   // Where the system doesn't: once a second.
@@ -196,7 +209,7 @@ class LibusbBus final : public UsbBus {
     fds_.clear();
     fds_.push_back({wake_fd_, POLLIN, 0});
     if (const libusb_pollfd** list = libusb_get_pollfds(context_)) {
-      for (const libusb_pollfd** fd = list; *fd != nullptr; ++fd) fds_.push_back({(*fd)->fd, (*fd)->events, 0});
+      for (const libusb_pollfd** fd = list; *fd != nullptr && fds_.size() < kMostFds; ++fd) fds_.push_back({(*fd)->fd, (*fd)->events, 0});
       libusb_free_pollfds(list);
     }
     ::poll(fds_.data(), fds_.size(), kWaitMs);
@@ -255,6 +268,7 @@ class LibusbBus final : public UsbBus {
     for (Transfer& t : p.in) {
       t.port = &p;
       t.transfer = libusb_alloc_transfer(0);
+      if (t.transfer == nullptr) return void(p.closing = true);
       libusb_fill_interrupt_transfer(t.transfer, p.handle, p.endpoints.in, t.buffer.data(), static_cast<int>(t.buffer.size()), markDone, &t,
                                      0);
       t.transfer->type = p.endpoints.in_type;
@@ -262,6 +276,7 @@ class LibusbBus final : public UsbBus {
     }
     p.out.port = &p;
     p.out.transfer = libusb_alloc_transfer(0);
+    if (p.out.transfer == nullptr) return void(p.closing = true);
     libusb_fill_interrupt_transfer(p.out.transfer, p.handle, p.endpoints.out, p.packet.data(), kFrameSize, markDone, &p.out, 0);
     p.out.transfer->type = p.endpoints.out_type;
   }

@@ -40,6 +40,7 @@ class WindowSurface final : public Surface {
     glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
     window_ = glfwCreateWindow(options.size.width, options.size.height, options.title.c_str(), nullptr, nullptr);
     if (!window_) throwNoWindow("The display can't open a window with OpenGL 3.3");
+    events_.reserve(kMostEvents);
     glfwSetWindowUserPointer(window_, this);
     listen();
     WindowSurface::makeCurrent();
@@ -83,7 +84,12 @@ class WindowSurface final : public Surface {
     return {kind, 0, false, x * drawn.width / std::max(width, 1), y * drawn.height / std::max(height, 1), {}};
   }
   void listen();
+  // From GLFW, which is C: nothing may be thrown through it. Nobody makes so many events between two pictures.
+  void note(const InputEvent& event) noexcept {
+    if (events_.size() < kMostEvents) events_.push_back(event);
+  }
 
+  static constexpr std::size_t kMostEvents = 4096;
   GlfwLibrary library_;
   GLFWwindow* window_ = nullptr;
   std::vector<InputEvent> events_;
@@ -93,7 +99,7 @@ class WindowSurface final : public Surface {
 void WindowSurface::listen() {
   glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int mods) {
     if (key == GLFW_KEY_RIGHT_SHIFT) key = GLFW_KEY_LEFT_SHIFT;
-    of(window).events_.push_back({InputKind::kKey, key, action != GLFW_RELEASE, 0, 0, modifiers(mods)});
+    of(window).note({InputKind::kKey, key, action != GLFW_RELEASE, 0, 0, modifiers(mods)});
   });
   glfwSetMouseButtonCallback(window_, [](GLFWwindow* window, int button, int action, int mods) {
     double x = 0, y = 0;
@@ -102,13 +108,10 @@ void WindowSurface::listen() {
     event.code = button;
     event.down = action == GLFW_PRESS;
     event.modifiers = modifiers(mods);
-    of(window).events_.push_back(event);
+    of(window).note(event);
   });
-  glfwSetCursorPosCallback(
-      window_, [](GLFWwindow* window, double x, double y) { of(window).events_.push_back(of(window).at(InputKind::kMove, x, y)); });
-  glfwSetScrollCallback(window_, [](GLFWwindow* window, double x, double y) {
-    of(window).events_.push_back({InputKind::kWheel, 0, false, x, y, {}});
-  });
+  glfwSetCursorPosCallback(window_, [](GLFWwindow* window, double x, double y) { of(window).note(of(window).at(InputKind::kMove, x, y)); });
+  glfwSetScrollCallback(window_, [](GLFWwindow* window, double x, double y) { of(window).note({InputKind::kWheel, 0, false, x, y, {}}); });
 }
 
 void WindowSurface::toggleFullScreen() {

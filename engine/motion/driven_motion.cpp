@@ -2,9 +2,12 @@
 
 #include <cmath>
 
+#include "contact/invariants.h"
+
 namespace pincer::engine {
 
 Vec3 cubicBetween(const Vec3& p_0, const Vec3& v_0, const Vec3& p_1, const Vec3& v_1, double h, double s, Vec3& v) {
+  PINCER_ASSERT(h > 0);
   const Vec3 slope = (p_1 - p_0) / h;
   const Vec3 c2 = 3 * slope - 2 * v_0 - v_1;
   const Vec3 c3 = v_0 + v_1 - 2 * slope;
@@ -13,6 +16,8 @@ Vec3 cubicBetween(const Vec3& p_0, const Vec3& v_0, const Vec3& p_1, const Vec3&
 }
 
 DrivenPlace drivenPlace(const DrivenPlace& start, const DrivenPlace& end, double h, double s) {
+  PINCER_ASSERT(s >= 0);
+  PINCER_ASSERT(isUnitIfFinite(start.X_WB.q) && isUnitIfFinite(end.X_WB.q));
   if (s >= 1) return end;
   DrivenPlace now;
   now.X_WB.p = cubicBetween(start.X_WB.p, start.motion.v_W, end.X_WB.p, end.motion.v_W, h, s, now.motion.v_W);
@@ -26,10 +31,11 @@ DrivenPlace drivenPlace(const DrivenPlace& start, const DrivenPlace& end, double
 }
 
 Vec3 rotationVectorOf(const Quat& q) {
+  PINCER_ASSERT(isUnitIfFinite(q));
   const double sign = q.w() < 0 ? -1 : 1;
   const double sine = q.vec().norm();
   if (sine == 0) return Vec3::Zero();
-  return (sign * 2 * std::atan2(sine, std::abs(q.w())) / sine) * q.vec();
+  return (sign * 2 * math::atan2(sine, std::abs(q.w())) / sine) * q.vec();
 }
 
 }  // namespace pincer::engine

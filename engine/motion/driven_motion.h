@@ -7,18 +7,9 @@
 // Source: C. de Boor, A Practical Guide to Splines, 1978, ch. IV (cubic Hermite interpolation).
 #pragma once
 #include "contact/math.h"
+#include "engine/motion.h"
 
 namespace pincer::engine {
-
-// Velocity of a body's centre of mass or of a point, and angular velocity; a point's is zero.
-struct Motion {
-  Vec3 v_W = Vec3::Zero(), w_W = Vec3::Zero();
-};
-
-struct DrivenPlace {
-  Pose X_WB;
-  Motion motion;
-};
 
 // Where the body is at share `s` of a span of `h` seconds, h > 0.
 DrivenPlace drivenPlace(const DrivenPlace& start, const DrivenPlace& end, double h, double s);

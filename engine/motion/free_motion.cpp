@@ -1,18 +1,16 @@
 #include "engine/motion/free_motion.h"
 
+#include "contact/invariants.h"
+
 namespace pincer::engine {
 namespace {
 
 constexpr double kEqual = 1e-13;  // relative difference of moments, some 400 ulp: they come from sums over triangles
 
-struct SinCos {
-  double sin, cos;
-};
-
-// Series to round-off where steps are small, as they are at 1 kHz: a quarter of the time of std::sin and std::cos.
-SinCos sinCos(double a) {
+// Series to round-off where steps are small, as they are at 1 kHz: a quarter of the time of math::sinCos.
+math::SinCos sinCos(double a) {
   const double x = a * a;
-  if (!(x < 0.01)) return {std::sin(a), std::cos(a)};
+  if (!(x < 0.01)) return math::sinCos(a);
   const double xx = x * x;
   return {a * ((1 - x * (1.0 / 6)) + xx * ((1.0 / 120 - x * (1.0 / 5040)) + xx * (1.0 / 362880))),
           (1 - x * 0.5) + xx * ((1.0 / 24 - x * (1.0 / 720)) + xx * (1.0 / 40320))};
@@ -25,7 +23,7 @@ struct SpinningBody {
 
   void turnAboutK(double angle) {
     turn(angle, L_i, L_j);
-    const SinCos half = sinCos(0.5 * angle);
+    const math::SinCos half = sinCos(0.5 * angle);
     const SpinningBody q = *this;
     w = q.w * half.cos - q.z * half.sin;
     x = q.x * half.cos + q.y * half.sin;
@@ -34,7 +32,7 @@ struct SpinningBody {
   }
   void turnAboutJ(double angle) {
     turn(angle, L_k, L_i);
-    const SinCos half = sinCos(0.5 * angle);
+    const math::SinCos half = sinCos(0.5 * angle);
     const SpinningBody q = *this;
     w = q.w * half.cos - q.y * half.sin;
     x = q.x * half.cos - q.z * half.sin;
@@ -45,7 +43,7 @@ struct SpinningBody {
  private:
   // L's components (a, b) in axes that turn from a to b.
   static void turn(double angle, double& a, double& b) {
-    const SinCos s = sinCos(angle);
+    const math::SinCos s = sinCos(angle);
     const double a_before = a;
     a = s.cos * a_before + s.sin * b;
     b = s.cos * b - s.sin * a_before;
@@ -92,6 +90,7 @@ Quat quatOfStep(const Vec3& a) {
 
 FreeRotation::FreeRotation(const Vec3& moments)
     : inverse_moments(moments.cwiseInverse()), root_inverse_moments(inverse_moments.cwiseSqrt()) {
+  PINCER_ASSERT((moments.array() > 0).all());
   double least = INFINITY;
   for (int axis = 0; axis < 3; ++axis) {
     const double difference = std::abs(inverse_moments[(axis + 1) % 3] - inverse_moments[(axis + 2) % 3]);
@@ -108,6 +107,7 @@ FreeRotation::FreeRotation(const Vec3& moments)
 }
 
 void rotateFreely(const FreeRotation& rotation, const Vec3& L_W, double h, Quat& q_WI) {
+  PINCER_ASSERT(isUnitIfFinite(q_WI));
   const Quat about_L = quatOfStep(h * rotation.inverse_moments[rotation.i] * L_W);
   if (rotation.kind != FreeRotation::Kind::kSpherical) turnAboutOwnAxes(rotation, q_WI.conjugate() * L_W, h, q_WI);
   q_WI = about_L * q_WI;
@@ -120,6 +120,7 @@ Vec3 angularVelocity(const FreeRotation& rotation, const Quat& q_WI, const Vec3&
 }
 
 Mat3 inverseInertia(const FreeRotation& rotation, const Quat& q_WI) {
+  PINCER_ASSERT(isUnitIfFinite(q_WI));
   if (rotation.kind == FreeRotation::Kind::kSpherical) return rotation.inverse_moments[0] * Mat3::Identity();
   const Mat3 R = q_WI.toRotationMatrix();
   return R * rotation.inverse_moments.asDiagonal() * R.transpose();

@@ -12,21 +12,9 @@
 // Measured on a 20 x 40 x 80 mm box at 20 rad/s about its middle axis, 1 ms, angle after 1 s: Strang 3e-6, triple jump 5e-10, this 9e-12 rad.
 #pragma once
 #include "contact/math.h"
+#include "engine/motion.h"
 
 namespace pincer::engine {
-
-// How the rotation of a body is advanced, chosen once from its moments of inertia.
-struct FreeRotation {
-  enum class Kind : unsigned char { kSpherical, kSymmetric, kTriaxial };
-  Kind kind = Kind::kSpherical;
-  int k = 2, i = 0, j = 1;  // principal axes, right-handed: k is the symmetry axis, or the one whose removal leaves the two closest moments
-  Vec3 inverse_moments = Vec3::Ones();       // [1/(kg m^2)]
-  Vec3 root_inverse_moments = Vec3::Ones();  // their roots
-
-  // Moments that agree to 1e-13 count as equal.  moments  each > 0 [kg m^2]
-  explicit FreeRotation(const Vec3& moments);
-  FreeRotation() = default;
-};
 
 // Advances the orientation q_WI of the principal frame by `h` [s] with the angular momentum L_W [kg m^2/s] (about the centre of mass, in W)
 // constant. Exact for spherical and symmetric bodies; 4th order in h for triaxial ones. q_WI stays a unit quaternion to round-off.

@@ -3,8 +3,9 @@
 #include <fmt/format.h>
 
 #include "contact/error.h"
-#include "contact/shape/polytope.h"
-#include "contact/surface/smooth_mesh.h"
+#include "contact/invariants.h"
+#include "contact/polytope.h"
+#include "contact/smooth_mesh.h"
 
 namespace pincer::engine {
 namespace {
@@ -47,9 +48,10 @@ Moments momentsOf(const contact::Capsule& c) {
 //   of y^2 = (r^4/12)(3 alpha - 3 sin cos - 2 sin^3 cos),            sin and cos of alpha
 Moments momentsOf(const contact::CylinderWithFlat& c) {
   const double r = c.radius, d = c.flat_distance;
+  PINCER_ASSERT(0 < d && d < r);
   const double cosine = -d / r;
   const double sine = std::sqrt((r - d) * (r + d)) / r;
-  const double alpha = std::acos(cosine);
+  const double alpha = math::acos(cosine);
   const double sc = sine * cosine, sssc = sine * sine * sc;
   const double area = r * r * (alpha - sc);
   const double x = -2.0 / 3.0 * r * r * r * sine * sine * sine / area;
@@ -76,6 +78,7 @@ Moments momentsOf(const contact::TriangleMesh& mesh) {
   Vec3 first = Vec3::Zero();
   Mat3 second = Mat3::Zero();
   for (const auto& triangle : mesh.triangles) {
+    PINCER_ASSERT(std::all_of(triangle.begin(), triangle.end(), [&](auto v) { return isIndex(v, mesh.vertices.size()); }));
     const auto corner = [&](std::size_t k) -> Vec3 { return mesh.vertices[static_cast<std::size_t>(triangle[k])] - origin; };
     const Vec3 a = corner(0), b = corner(1), c = corner(2), s = a + b + c;
     const double det = a.dot(b.cross(c));

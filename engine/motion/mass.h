@@ -1,7 +1,7 @@
 // mass: mass, centre of mass and inertia of solids.
 #pragma once
-#include "contact/mesh/triangle_mesh.h"
-#include "contact/shape/shape.h"
+#include "contact/shape.h"
+#include "contact/triangle_mesh.h"
 
 namespace pincer::engine {
 

@@ -4,6 +4,9 @@
 #include <array>
 #include <cmath>
 
+#include "contact/functions/elementary.h"
+#include "contact/invariants.h"
+
 namespace pincer::engine {
 namespace {
 
@@ -53,21 +56,23 @@ OneFreedomCourse sumSeries(const OneFreedomLaw& law, double rate, double h) {
 
 // Of a constant force a.
 OneFreedomCourse decay(double a, double c, double rate, double h) {
-  const double gone = -std::expm1(-c * h), last = a / c;
+  const double gone = -math::expm1(-c * h), last = a / c;
   return {last * h + (rate - last) * gone / c, last + (rate - last) * (1 - gone)};
 }
 
 OneFreedomCourse decayTurning(const OneFreedomLaw& law, double rate, double h) {
   if (!law.turns) return decay(law.a, law.c, rate, h);
   const double middle = decay(law.a, law.c, rate, 0.5 * h).way;
-  return decay(law.a * std::cos(middle) + law.b * std::sin(middle), law.c, rate, h);
+  const auto [sin, cos] = math::sinCos(middle);
+  return decay(law.a * cos + law.b * sin, law.c, rate, h);
 }
 
 }  // namespace
 
 OneFreedomCourse followFreedom(const OneFreedomLaw& law, double rate, double h) {
+  PINCER_ASSERT(law.c >= 0);
   if (!(h > 0)) return {0, rate};
-  const double turning = law.turns ? h * (std::abs(rate) + std::sqrt(std::hypot(law.a, law.b))) / kLongestTurn : 0;
+  const double turning = law.turns ? h * (std::abs(rate) + std::sqrt(math::hypot(law.a, law.b))) / kLongestTurn : 0;
   const double steps = std::ceil(std::max({1.0, turning, h * law.c / kLargestDecay}));
   if (!(h * law.c <= kMostDecay)) return decayTurning(law, rate, h);
   if (!(steps <= kMostSteps)) return {h * (rate + h * law.a), rate + h * law.a};  // several turns in a tick: only finite
@@ -77,7 +82,7 @@ OneFreedomCourse followFreedom(const OneFreedomLaw& law, double rate, double h) 
     const OneFreedomCourse part = sumSeries(here, end.rate, h / steps);
     end = {end.way + part.way, part.rate};
     if (!law.turns || steps == 1) continue;
-    const double cos = std::cos(end.way), sin = std::sin(end.way);
+    const auto [sin, cos] = math::sinCos(end.way);
     here.a = law.a * cos + law.b * sin;
     here.b = law.b * cos - law.a * sin;
   }
@@ -85,15 +90,16 @@ OneFreedomCourse followFreedom(const OneFreedomLaw& law, double rate, double h) 
 }
 
 double dampedShare(double c, double h) {
+  PINCER_ASSERT(c >= 0);
   const double x = c * h;
-  return x > 0 ? -std::expm1(-x) / x : 1;
+  return x > 0 ? -math::expm1(-x) / x : 1;
 }
 
 double dampedWay(double c, double h) {
   constexpr double kSmall = 0.1;  // below, the series is exact to round-off and the difference isn't
   const double x = c * h, xx = x * x;
   if (x < kSmall) return 0.5 + x * (1.0 / 12 - xx * (1.0 / 720 - xx * (1.0 / 30240 - xx / 1209600)));
-  return -1 / std::expm1(-x) - 1 / x;
+  return -1 / math::expm1(-x) - 1 / x;
 }
 
 }  // namespace pincer::engine

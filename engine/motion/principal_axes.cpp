@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "contact/error.h"
+#include "contact/invariants.h"
 #include "engine/motion/mass.h"
 
 namespace pincer::engine {
@@ -57,6 +58,8 @@ PrincipalInertia principalInertia(const MassProperties& properties) {
   }
   const Vec3 moments = A.diagonal();
   check(moments);
+  PINCER_ASSERT(isSymmetric(properties.I_BBcm));  // only what is above the diagonal was read
+  PINCER_ASSERT(isRotation(R));
   return {{Quat(R).normalized(), properties.p_BBcm}, moments};
 }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "contact/invariants.h"
+
 namespace pincer::engine {
 namespace {
 
@@ -88,6 +90,7 @@ void BlockLu::begin(int nodes) {
 }
 
 void BlockLu::connect(int a, int b) {
+  PINCER_ASSERT(0 <= a && a < nodes_ && 0 <= b && b < nodes_);
   if (nodes_ > max_nodes_ || a == b) return;
   neighbours_[a][b / 64] |= std::uint64_t{1} << (b % 64);
   neighbours_[b][a / 64] |= std::uint64_t{1} << (a % 64);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "contact/invariants.h"
 #include "engine/solve/contact_equations.h"
 #include "engine/solve/gauss_seidel.h"
 #include "engine/solve/interior_point.h"
@@ -268,7 +269,7 @@ SolverScratch::SolverScratch(int contacts, int movers)
   y.resize(kMoverFreedoms * static_cast<std::size_t>(movers));
   weight.resize(n);
   rhs.resize(std::max(m, y.size()));
-  interior.resize(kInteriorPointVectors * m);
+  workspace.resize(kInteriorPointVectors * m);
   pivots.resize(rows);
   node.resize(static_cast<std::size_t>(movers));
   sides.resize(n);
@@ -361,6 +362,8 @@ void solveContacts(const ContactProblem& problem, const SolverOptions& options, 
                    SolveResult& result) {
   result = {};
   if (problem.contactCount() == 0) return;
+  PINCER_ASSERT(problem.first_row.size() == problem.mu.size() + 1 && problem.sides.size() == problem.mu.size());
+  PINCER_ASSERT(problem.firstRow(problem.contactCount()) == problem.rowCount());
   project(problem, r);
   const bool is_solved = solveSmallProblem(problem, options, r, u, result);
   spend(kPerSmallStep * (1 + result.iterations), scratch);

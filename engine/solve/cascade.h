@@ -19,45 +19,14 @@
 
 #include "engine/solve/block_lu.h"
 #include "engine/solve/contact_problem.h"
+#include "engine/solver.h"
 
 namespace pincer::engine {
-
-struct SolverOptions {
-  double tolerance = 1e-10;  // on the residual, see contactResidual [-]; range [1e-14, 1e-2]
-  // What is enough once Newton's method has failed, whichever allows more: a residual [-], or a speed [m/s]. Contacts that contradict each
-  // other by the round-off of their gaps (a mesh at rest in a dish) have no better answer, and 10 nm/s is far below anything felt.
-  double contentment = 1e-8;
-  double content_speed = 1e-8;
-  double largest_give =
-      0;  // by how much contacts that contradict each other may give way once Newton's method has failed, see SolveResult [m/s]
-  int newton_iterations = 12;          // each time that Newton's method is tried
-  int proximal_rounds = 12;            // of Newton's method with a proximal term
-  int interior_point_iterations = 30;  // each time that the interior-point method is tried
-  int shift_updates = 3;               // of the interior-point method with frozen shift
-  int gauss_seidel_sweeps = 60;
-  int large_sweeps = 10;  // of Gauss-Seidel, where Newton's method failed on many contacts
-  // What the iterations of all solves of a tick may cost [s], 0 or 1e-6 .. 10; 0: no limit. Counted by kOperationsPerSecond, not measured, so
-  // that results don't depend on what else the machine does. Where it runs out the best iterate counts, flagged and energy-safe.
-  double budget = 0;
-};
 
 // Multiplications in a second, of iterations as they are counted (contact_equations.h): few enough that on an AMD EPYC at 3.7 GHz capped ticks take no
 // longer than their cap (`pincer stress` shows the longest; decision 4).
 constexpr double kOperationsPerSecond = 8e8;
 constexpr std::int64_t kNoLimit = std::numeric_limits<std::int64_t>::max() / 2;
-
-enum class SolveMethod : std::uint8_t { kNoContact, kWarmStart, kNewton, kProximalNewton, kInteriorPoint, kGaussSeidel, kNotConverged };
-
-struct SolveResult {
-  SolveMethod method = SolveMethod::kNoContact;
-  int iterations = 0;   // of all methods together
-  double residual = 0;  // of the returned impulses [-]
-  double start = 0;     // residual of the warm start [-]
-  bool converged =
-      true;  // to the tolerance, or to contentment by the costlier methods; false: the returned r is the best iterate in the cones, scaled so that it adds no energy
-  double give = 0;      // not 0: r and u are the answer for q + SolverScratch::give, of which this is the largest row [m/s]
-  bool yields = false;  // no answer exists (squeeze.h): r is that of contacts that are a little soft (newton.h), not converged
-};
 
 // How a contact takes part in the linear equations of contact_equations.h; blocks row-major with stride kMaxContactRows.
 enum class Coupling : std::uint8_t { kNone, kIdentity, kGeneral };
@@ -79,8 +48,9 @@ struct SolverScratch {
   std::vector<double> W, q, scale, y;
   std::vector<double> weight;  // w_i, mean of W_ii's diagonal [1/kg]
   std::vector<double> shift;   // |u_T| at which interior_point.h freezes it
-  std::vector<double> jacobian, step, rhs, response, interior, shift_centre,
-      give;                                                 // linear equations and vectors of newton.h and interior_point.h
+  // Linear equations and vectors of newton.h and interior_point.h. `give`: by what contacts gave way; r and u are the answer for q + give.
+  std::vector<double> jacobian, step, rhs, response, shift_centre, give;
+  std::vector<double> workspace;                            // of whichever method runs, kInteriorPointVectors per row
   std::array<std::vector<double>, 3> impulses, velocities;  // current, trial and best iterate
   std::vector<int> active, pivots;                          // contacts in the dense equations; row swaps
   std::vector<ContactTerms> terms;                          // contact_equations.h

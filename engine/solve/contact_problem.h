@@ -19,17 +19,13 @@
 #include <type_traits>
 
 #include "contact/math.h"
+#include "engine/solver.h"
 
 namespace pincer::engine {
 
 using VectorMap = Eigen::Map<Eigen::VectorXd>;
 
-constexpr int kNormalRow = 2;
-constexpr int kMaxContactRows = 6;
-constexpr int kTorsionRow = 3, kRollingRow = 4;  // about n; the first of two, about t1 and t2
 constexpr int kMoverFreedoms = 6;
-
-using ContactVector = Eigen::Matrix<double, kMaxContactRows, 1, Eigen::DontAlign>;  // of one contact; rows that it doesn't have are 0
 
 // Calls act with the number of rows, as a constant where it is three: nearly all contacts have three, and the compiler knows what to do then.
 template <class Act>

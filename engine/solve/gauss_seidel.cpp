@@ -46,7 +46,7 @@ GaussSeidel::GaussSeidel(const SweptProblem& problem, SolverScratch& scratch, do
       change_(scratch.step.data()),
       way_(scratch.response.data()),
       y_before_(scratch.rhs.data()),
-      y_way_(scratch.interior.data()),
+      y_way_(scratch.workspace.data()),
       weight_(scratch.weight.data()) {
   const int most = mostRows(problem);
   stride_ = kTermsBefore + 2 * most * most;

@@ -18,7 +18,7 @@ class CentralPath {
   CentralPath(const ScaledProblem& problem, const double* shift, ContactEquations& equations, SolverScratch& scratch, Iterate& it)
       : problem_(problem), shift_(shift), equations_(equations), scratch_(scratch), it_(it) {
     double** const vectors[] = {&x_, &z_, &dx_, &dz_, &lambda_, &target_, &defect_, &t_};
-    double* memory = scratch.interior.data();
+    double* memory = scratch.workspace.data();
     for (double** vector : vectors) {
       *vector = memory;
       memory += problem.rowCount();
@@ -43,7 +43,7 @@ class CentralPath {
     if (!spend(kPerContact * problem_.contactCount() + costOfLook(problem_), scratch_) || !linearise()) return false;
     aimAtBoundary();
     const double predicted = std::min(1.0, direct());
-    const double centring = std::clamp(std::pow(std::max(meanGap(predicted), 0.0) / gap, 3), 1e-6, 1.0);
+    const double centring = std::clamp(math::cube(std::max(meanGap(predicted), 0.0) / gap), 1e-6, 1.0);
     aimAtCentre((predicted < 0.1 ? std::max(centring, 0.3) : centring) * gap, predicted < 0.1 ? 0 : 1);
     const double length = std::min(1.0, kStepFraction * direct());
     if (!(length > kSmallestStep)) return false;

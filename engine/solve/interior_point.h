@@ -12,7 +12,7 @@
 
 namespace pincer::engine {
 
-constexpr int kInteriorPointVectors = 8;  // of working memory in SolverScratch::interior
+constexpr int kInteriorPointVectors = 8;  // of working memory in SolverScratch::workspace
 
 // From a point well inside the cones, up to `iterations` steps towards the solution, until residual or gap and defect are within `tolerance`.
 // Fills and evaluates `it`; returns the number of steps. It comes close to where solutions are, not within 1e-10 of them: Newton's method follows.

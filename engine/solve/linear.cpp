@@ -3,6 +3,8 @@
 #include <cmath>
 #include <utility>
 
+#include "contact/invariants.h"
+
 namespace pincer::engine {
 namespace {
 
@@ -40,7 +42,10 @@ bool factoriseLu(double* A, int n, int* pivots) {
 }
 
 void solveLu(const double* LU, int n, const int* pivots, double* b) {
-  for (int k = 0; k < n; ++k) std::swap(b[k], b[pivots[k]]);
+  for (int k = 0; k < n; ++k) {
+    PINCER_ASSERT(k <= pivots[k] && pivots[k] < n);
+    std::swap(b[k], b[pivots[k]]);
+  }
   for (int k = 0; k < n; ++k) subtractScaled(b, b[k], LU + k * n, k + 1, n);
   for (int k = n - 1; k >= 0; --k) {
     b[k] /= LU[k + k * n];

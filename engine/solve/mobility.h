@@ -87,12 +87,4 @@ inline void respond(std::span<const ContactSides> sides, std::span<const int> fi
   for (std::size_t i = 0; i < sides.size(); ++i) addImpulse(sides[i], first_row[i + 1] - first_row[i], r + first_row[i], y);
 }
 
-// u = W r + q; y (movers) is working memory, A^T r on return.
-inline void contactVelocities(std::span<const ContactSides> sides, std::span<const int> first_row, const double* q, const double* r,
-                              int movers, double* y, double* u) {
-  respond(sides, first_row, r, movers, y);
-  for (std::size_t i = 0; i < sides.size(); ++i)
-    velocityOf(sides[i], first_row[i + 1] - first_row[i], q + first_row[i], y, u + first_row[i]);
-}
-
 }  // namespace pincer::engine

@@ -89,7 +89,7 @@ class NewtonStep {
       equations_.solve(dr_);
       return true;
     }
-    double* const b = scratch_.interior.data();
+    double* const b = scratch_.workspace.data();
     double* const correction = b + m;
     std::copy(dr_, dr_ + m, b);
     const double enough = kCorrected * largestOf(b, m);

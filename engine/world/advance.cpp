@@ -1,13 +1,14 @@
 // From impulses to momenta, from momenta to poses.
 #include <algorithm>
 
+#include "engine/motion/free_motion.h"
 #include "engine/world/contact_rows.h"
 #include "engine/world/held_body.h"
 #include "engine/world/impact.h"
 #include "engine/world/island_sleep.h"
 #include "engine/world/joints.h"
 #include "engine/world/rest.h"
-#include "engine/world/step.h"
+#include "engine/world/stages.h"
 
 namespace pincer::engine {
 namespace {
@@ -62,10 +63,11 @@ void spreadClosing(const WorldModel& model, WorldScratch& scratch) {
   }
 }
 
-void advanceDriven(BodyScratch& scratch, BodyState& s) {
-  const BodyState end{scratch.X_WB_end, scratch.free.v_W, scratch.free.w_W};
-  scratch.still = s.v_W.isZero(0) && s.L_W.isZero(0) && same(end, s);
+void advanceDriven(BodyScratch& scratch, BodyState& s, Vec3& w_W) {
+  const BodyState end{scratch.X_WB_end, scratch.free.v_W, Vec3::Zero()};
+  scratch.still = s.v_W.isZero(0) && w_W.isZero(0) && scratch.free.w_W.isZero(0) && same(end, s);
   s = end;
+  w_W = scratch.free.w_W;
 }
 
 }  // namespace
@@ -171,7 +173,7 @@ void advancePoint(const std::array<AxisForm, 3>& forms, double h, PointScratch& 
 
 void advance(const WorldModel& model, WorldState& state, WorldScratch& scratch) {
   const double h = scratch.h;
-  scratch.sleep.still_bodies = 0;
+  scratch.still_bodies = 0;
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
     const BodyModel& body = model.bodies[i];
     if (isHeldBody(model, body)) {
@@ -179,9 +181,9 @@ void advance(const WorldModel& model, WorldState& state, WorldScratch& scratch) 
       advanceHeldBody(model, model.joint_groups[n], scratch.joint_groups[n], h, scratch.bodies[i], state.bodies[i]);
     } else if (body.dynamic && !isIdle(scratch, static_cast<int>(i))) {
       advanceBody(body, h, scratch.bodies[i], state.bodies[i]);
-      scratch.sleep.still_bodies += scratch.bodies[i].still;
+      scratch.still_bodies += scratch.bodies[i].still;
     }
-    if (body.driven) advanceDriven(scratch.bodies[i], state.bodies[i]);
+    if (body.driven) advanceDriven(scratch.bodies[i], state.bodies[i], state.driven_w_W[static_cast<std::size_t>(body.motion)]);
   }
   for (std::size_t i = 0; i < model.points.size(); ++i) {
     advancePoint(model.point_forms[i], h, scratch.points[i], state.points[i]);

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/world/model.h"
+#include "engine/model.h"
 
 namespace pincer::engine {
 

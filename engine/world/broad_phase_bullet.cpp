@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact/invariants.h"
+#include "contact/shape/bullet_memory.h"
 #include "engine/world/broad_phase.h"
 #include "engine/world/scratch.h"
 
@@ -82,7 +84,7 @@ struct BroadPhase::Tree {
   }
 };
 
-BroadPhase::BroadPhase(const WorldModel& model) : tree_(std::make_unique<Tree>(model)) {
+BroadPhase::BroadPhase(const WorldModel& model) : tree_((contact::letBulletThrow(), std::make_unique<Tree>(model))) {
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
     if (model.bodies[i].dynamic) dynamic_.push_back(static_cast<int>(i));
     if (!isBounded(model.bodies[i])) unbounded_.push_back(static_cast<int>(i));
@@ -117,11 +119,13 @@ std::span<const BodyPair> BroadPhase::candidates(const WorldModel& model, const 
   if (!model.excluded_pairs.empty()) pairs_.erase(std::remove_if(pairs_.begin(), pairs_.end(), excluded), pairs_.end());
   sortBy(&BodyPair::b);
   sortBy(&BodyPair::a);
+  PINCER_ASSERT(isAscending(pairs_, [](const BodyPair& p) { return std::pair(p.a, p.b); }));
   return pairs_;
 }
 
 // Counts and places, keeping the order of equals: a third of the time of comparing.
 void BroadPhase::sortBy(int BodyPair::*key) {
+  PINCER_ASSERT(std::all_of(pairs_.begin(), pairs_.end(), [&](const BodyPair& p) { return isIndex(p.*key, first_.size() - 1); }));
   std::fill(first_.begin(), first_.end(), 0);
   for (const BodyPair& pair : pairs_) ++first_[static_cast<std::size_t>(pair.*key) + 1];
   for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];

@@ -1,6 +1,7 @@
 #include <algorithm>
 
-#include "contact/shape/pair_query.h"
+#include "contact/invariants.h"
+#include "contact/pair_query.h"
 #include "engine/world/budget.h"
 #include "engine/world/impact.h"
 #include "engine/world/island_sleep.h"
@@ -40,6 +41,8 @@ Vec3 lastNormal(const WorldModel& model, const WorldState& state, const BodyPair
 void collidePair(const WorldModel& model, const WorldState& state, const BodyPair& pair, const Material* material, double h,
                  contact::PairPoints& found, WorldScratch& scratch) {
   if (isIdle(scratch, pair.a) && isIdle(scratch, pair.b)) return;
+  PINCER_ASSERT(pair.a < pair.b);
+  PINCER_ASSERT(model.bodies[pair.a].dynamic || model.bodies[pair.b].dynamic);
   const BodyModel &a = model.bodies[pair.a], &b = model.bodies[pair.b];
   const BodyScratch &sa = scratch.bodies[pair.a], &sb = scratch.bodies[pair.b];
   // What closes within the tick must be seen at its middle: the far end of a sheet that slaps down as well.

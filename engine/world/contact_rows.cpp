@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "contact/invariants.h"
 #include "engine/world/hollow_inertia.h"
 #include "engine/world/impact.h"
 #include "engine/world/push_out.h"
@@ -85,6 +86,7 @@ void fillContact(const WorldModel& model, const Rates& rates, WorldScratch& scra
       r_i[k] = memory ? rates.longer * memory->r[k] : 0;
     }
   });
+  PINCER_ASSERT(!(c.mu < 0));
   scratch.mu[i] = c.mu;
 }
 
@@ -94,6 +96,9 @@ void fillContacts(const WorldModel& model, const WorldState& state, WorldScratch
   const int n = static_cast<int>(scratch.contacts.size());
   const Rates rates(model, state, scratch.h);
   std::span<const ContactMemory> memories(state.contacts.data(), static_cast<std::size_t>(state.contact_count));
+  PINCER_ASSERT(isAscending(scratch.contacts, &Contact::id));
+  PINCER_ASSERT(isAscending(memories, &ContactMemory::id));
+  PINCER_ASSERT(scratch.contacts.size() <= scratch.mu.size());
   scratch.first_row[0] = 0;
   if (model.has_hollows) {
     for (Contact& c : scratch.contacts) recallContact(memories, scratch, c);

@@ -19,8 +19,8 @@
 #include <span>
 
 #include "engine/solve/contact_problem.h"
+#include "engine/state.h"
 #include "engine/world/scratch.h"
-#include "engine/world/state.h"
 
 namespace pincer::engine {
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact/invariants.h"
 #include "engine/world/joints.h"
 
 namespace pincer::engine {
@@ -58,6 +59,7 @@ void fillSide(const WorldModel& model, const WorldScratch& scratch, const Contac
   out.is_point = side.kind == SideKind::kPoint && rows == kTorsionRow;
   const double sign = is_a ? 1 : -1;
   if (side.kind == SideKind::kPoint) return fillPointSide(c, rows, sign, scratch.points[side.index], out);
+  PINCER_ASSERT(isIndex(mover, root_inertia.size()) && model.bodies[side.index].dynamic);
   const BodyModel& body = model.bodies[side.index];
   const Vec3& arm_W = is_a ? c.arm_a_W : c.arm_b_W;
   if (body.joint_group < 0) {
@@ -69,6 +71,7 @@ void fillSide(const WorldModel& model, const WorldScratch& scratch, const Contac
 }
 
 void joinSides(int rows, ContactSides& sides) {
+  PINCER_ASSERT(sides[0].mover == sides[1].mover);
   for (int k = 0; k < rows; ++k) {
     for (int j = 0; j < kMoverFreedoms; ++j) sides[0].A[k][j] += sides[1].A[k][j];
   }

@@ -7,8 +7,8 @@
 #pragma once
 #include <vector>
 
+#include "engine/model.h"
 #include "engine/solve/contact_problem.h"
-#include "engine/world/model.h"
 #include "engine/world/scratch.h"
 
 namespace pincer::engine {

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "contact/invariants.h"
+#include "engine/motion/free_motion.h"
 #include "engine/motion/one_freedom.h"
 
 namespace pincer::engine {
@@ -14,6 +16,7 @@ void findAxis(const WorldModel& model, const WorldState& state, const JointGroup
   const Pose X_WJ = joint.b < 0 ? joint.X_BJ : state.bodies[joint.b].X_WI * joint.X_BJ;
   held.p_WJ = X_WJ.p;
   held.axis_W = X_WJ.q * Vec3::UnitZ();
+  PINCER_ASSERT(isUnitIfFinite(held.axis_W));
 }
 
 double rateOf(const WorldModel& model, const JointGroup& g, const HeldScratch& held, const BodyState& s) {
@@ -87,6 +90,7 @@ void predictHeldBody(const WorldModel& model, const WorldState& state, const Joi
   out.free = motionAt(model, g, held, placeAt(model, g, held, s.X_WI, end.way), end.rate);
   out.end = out.free;
   held.inverse_inertia = dampedShare(law.c, scratch.h) / g.inertia;
+  PINCER_ASSERT(held.inverse_inertia > 0);
   held.gained_way = scratch.h * dampedWay(law.c, scratch.h);
   fillFactor(model, g, out.X_WI_mid, group);
 }
@@ -111,6 +115,7 @@ void advanceHeldBody(const WorldModel& model, const JointGroup& g, const JointGr
 
 BodyState heldBodyAt(const WorldModel& model, const JointGroup& g, const JointGroupScratch& group, const BodyScratch& scratch,
                      const BodyState& s, double h, double t) {
+  PINCER_ASSERT(h > 0 && t >= 0);
   const HeldScratch& held = group.held;
   const double share = t / h, end_rate = held.free_rate + held.gained_rate;
   if (scratch.closing) return stateAt(model, g, held, placeAt(model, g, held, s.X_WI, t * end_rate), end_rate);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "contact/invariants.h"
 #include "engine/solve/local_contact.h"
 #include "engine/world/contact_rows.h"
 
@@ -79,6 +80,7 @@ void holdBackHits(const WorldModel& model, const WorldState& state, WorldScratch
   for (const auto* pairs : {&scratch.fast_pairs, &scratch.pushed_pairs}) {
     for (const ImpactPair& pair : *pairs) {
       if (isNoted(scratch.impact_pairs, pair.a, pair.b) || isTouching(state, pair.a, pair.b) || hasLanded(scratch, pair)) continue;
+      PINCER_ASSERT(scratch.impact_pairs.size() < scratch.impact_pairs.capacity());  // the tick allocates nothing
       scratch.impact_pairs.push_back(pair);
     }
   }
@@ -229,6 +231,7 @@ double gapAcceleration(const WorldModel& model, const Contact& c) {
 }
 
 double bounceRestitution(double restitution, double u, double acceleration, double h) {
+  PINCER_ASSERT(0 <= restitution && restitution <= 1);
   if (!(u < -kClosingSpeed)) return 0;
   const double flight = -2 * restitution * u;  // times the acceleration that closes the gap
   const double shortest = std::max(kShortestFlight, 1 - restitution) * h;
@@ -236,6 +239,7 @@ double bounceRestitution(double restitution, double u, double acceleration, doub
 }
 
 void noteFastPair(const WorldModel& model, int a, int b, WorldScratch& scratch) {
+  PINCER_ASSERT(a < b);
   const Vec3 way = model.options.h * (scratch.bodies[a].start.v_W - scratch.bodies[b].start.v_W);
   if (!isFarFor(model, a, b, way)) return;
   if (scratch.fast_pairs.size() < scratch.fast_pairs.capacity()) scratch.fast_pairs.push_back({a, b});

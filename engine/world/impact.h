@@ -4,7 +4,7 @@
 //
 //   u_n-  normal velocity of a relative to b when the gap closes [m/s], < 0;   e  coefficient of restitution [-]
 // The moment is the root of the gap along the path that the bodies would take in this part of the tick; a sphere above a plane is hit on a
-// parabola, so exactly. The tick is cut there (step.h).
+// parabola, so exactly. The tick is cut there (stages.h).
 //
 // Bounces end: where gravity closes the gap again with acceleration a, a flight lasts T = 2 e |u_n-| / a and all flights to come T / (1 - e).
 // A hit bounces if T is at least a sixteenth of a tick and all that would follow lasts at least a tick; else it lands.
@@ -17,7 +17,7 @@
 // Departure from W. J. Stronge, Impact Mechanics, 2000, whose energetic coefficient needs the course of each hit: for bodies of convex shape
 // that don't rub they are the same.
 #pragma once
-#include "engine/world/step.h"
+#include "engine/world/stages.h"
 
 namespace pincer::engine {
 

@@ -48,7 +48,7 @@ class BiasFit {
         rows_(problem.rowCount()),
         size_(kMoverFreedoms * problem.movers),
         most_steps_(problem.contactCount() <= kFewContacts ? kMostSteps : std::max(kFewestSteps, kFitVisits / problem.contactCount())) {
-    double* next = memory.interior.data();
+    double* next = memory.workspace.data();
     for (double** vector : {&b_, &image_, &weight_}) {
       *vector = next;
       next += rows_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "contact/invariants.h"
 #include "engine/world/rest.h"
 
 namespace pincer::engine {
@@ -21,7 +22,7 @@ bool isStill(const WorldScratch& scratch, const Island& island) {
 }
 
 void putToSleep(const WorldModel& model, const WorldState& state, const Island& island, WorldScratch& scratch) {
-  SleepScratch& sleep = scratch.sleep;
+  WorldSleep& sleep = scratch.sleep;
   ++sleep.last_group;
   for (int n = 0; n < island.contacts; ++n) {
     const int i = scratch.islands.order[static_cast<std::size_t>(island.place + n)];
@@ -35,7 +36,7 @@ void putToSleep(const WorldModel& model, const WorldState& state, const Island& 
   }
 }
 
-bool isAsleep(const SleepScratch& sleep, const Contact& c) {
+bool isAsleep(const WorldSleep& sleep, const Contact& c) {
   bool asleep = false;
   forBodiesOf(c, [&](std::size_t body) { asleep = asleep || sleep.group[body] > 0; });
   return asleep;
@@ -43,7 +44,7 @@ bool isAsleep(const SleepScratch& sleep, const Contact& c) {
 
 // Contacts of those that fell asleep are put aside, with what they remember.
 void putContactsAside(const WorldState& state, WorldScratch& scratch) {
-  SleepScratch& sleep = scratch.sleep;
+  WorldSleep& sleep = scratch.sleep;
   for (const Contact& c : scratch.contacts) {
     if (isAsleep(sleep, c)) sleep.contacts.push_back({c, {}, 0});
   }
@@ -54,6 +55,7 @@ void putContactsAside(const WorldState& state, WorldScratch& scratch) {
   int place = 0;
   for (SleepingContact& c : sleep.contacts) {
     while (state.contacts[static_cast<std::size_t>(place)].id != c.contact.id) ++place;
+    PINCER_ASSERT(place < state.contact_count);  // what sleeps was remembered
     c.place = place;
     c.memory = state.contacts[static_cast<std::size_t>(place)];
   }
@@ -71,19 +73,20 @@ void noteStanding(const WorldModel& model, const WorldState& state, WorldScratch
 // Whether the driven body is where its input leads it, and stays there.
 bool stands(const WorldModel& model, std::size_t body, const WorldState& state, const StepInputs& inputs) {
   const BodyState& s = state.bodies[body];
-  if (!s.v_W.isZero(0) || !s.L_W.isZero(0)) return false;
   const auto motion = static_cast<std::size_t>(model.bodies[body].motion);
+  if (!s.v_W.isZero(0) || !state.driven_w_W[motion].isZero(0)) return false;
   return motion >= inputs.motions.size() || same(inputs.motions[motion], MotionInput{s.X_WI, {}});
 }
 
-bool sameMemories(const WorldState& state, const SleepScratch& sleep) {
+bool sameMemories(const WorldState& state, const WorldSleep& sleep) {
   return std::all_of(sleep.contacts.begin(), sleep.contacts.end(), [&](const SleepingContact& c) {
     return c.place < state.contact_count && same(state.contacts[static_cast<std::size_t>(c.place)], c.memory);
   });
 }
 
 void wake(int group, WorldScratch& scratch) {
-  SleepScratch& sleep = scratch.sleep;
+  PINCER_ASSERT(group > 0);  // 0 is of all that is awake
+  WorldSleep& sleep = scratch.sleep;
   std::erase_if(sleep.contacts, [&](const SleepingContact& c) {
     bool is_of_group = false;
     forBodiesOf(c.contact, [&](std::size_t body) { is_of_group = is_of_group || sleep.group[body] == group; });
@@ -96,12 +99,13 @@ void wake(int group, WorldScratch& scratch) {
     sleep.idle[i] = false;
     --sleep.bodies;
   }
+  PINCER_ASSERT(sleep.bodies >= 0);
 }
 
 }  // namespace
 
 void wakeChanged(const WorldModel& model, const WorldState& state, const StepInputs& inputs, WorldScratch& scratch) {
-  SleepScratch& sleep = scratch.sleep;
+  WorldSleep& sleep = scratch.sleep;
   if (state.h_last != model.options.h || !sameMemories(state, sleep)) return wakeAll(scratch);
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
     const BodyModel& body = model.bodies[i];
@@ -114,7 +118,7 @@ void wakeChanged(const WorldModel& model, const WorldState& state, const StepInp
 }
 
 bool wakeTouched(WorldScratch& scratch) {
-  SleepScratch& sleep = scratch.sleep;
+  WorldSleep& sleep = scratch.sleep;
   const int before = sleep.bodies;
   if (scratch.contacts_dropped) {
     scratch.contacts_dropped = false;
@@ -132,7 +136,7 @@ bool wakeTouched(WorldScratch& scratch) {
 }
 
 void wakeAll(WorldScratch& scratch) {
-  SleepScratch& sleep = scratch.sleep;
+  WorldSleep& sleep = scratch.sleep;
   if (sleep.bodies == 0) return;
   sleep.bodies = 0;
   sleep.contacts.clear();
@@ -142,8 +146,8 @@ void wakeAll(WorldScratch& scratch) {
 }
 
 void fallAsleep(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
-  SleepScratch& sleep = scratch.sleep;
-  if (sleep.still_bodies == 0) return;
+  WorldSleep& sleep = scratch.sleep;
+  if (scratch.still_bodies == 0) return;
   const int before = sleep.bodies;
   for (const Island& island : scratch.islands.islands) {
     if (isStill(scratch, island)) putToSleep(model, state, island, scratch);

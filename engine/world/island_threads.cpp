@@ -1,12 +1,19 @@
 #include "engine/world/island_threads.h"
 
+#include "contact/invariants.h"
+#include <exception>
+
 namespace pincer::engine {
 namespace {
 constexpr int kLooks = 2000;  // for the next round, before a thread goes to sleep: some tens of microseconds
 }
 
 IslandThreads::IslandThreads(int threads) {
-  for (int t = 1; t < threads; ++t) threads_.emplace_back([this, t] { work(t); });
+  PINCER_ASSERT(threads >= 2);
+  try {
+    for (int t = 1; t < threads; ++t) threads_.emplace_back([this, t] { work(t); });
+  } catch (const std::exception&) {  // no memory, or no more threads: fewer do the same work
+  }
 }
 
 IslandThreads::~IslandThreads() {
@@ -17,6 +24,7 @@ IslandThreads::~IslandThreads() {
 }
 
 void IslandThreads::handOver(int count) {
+  PINCER_ASSERT(busy_ == 0);  // one round at a time
   count_ = count;
   next_ = 0;
   busy_ = static_cast<int>(threads_.size());

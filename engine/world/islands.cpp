@@ -5,6 +5,7 @@
 #include <numeric>
 #include <span>
 
+#include "contact/invariants.h"
 #include "engine/world/contact_rows.h"
 #include "engine/world/contact_sides.h"
 #include "engine/world/island_threads.h"
@@ -76,6 +77,7 @@ void sortContacts(std::span<const ContactEnds> all, IslandScratch& s) {
   const int n = static_cast<int>(all.size());
   s.islands.clear();
   for (int i = 0; i < n; ++i) {
+    PINCER_ASSERT(all[i].a >= 0 || all[i].b >= 0);  // two that never move have no contact
     const int root = rootOf(s.parent, std::max(all[i].a, all[i].b));
     if (s.island_of[root] < 0) {
       s.island_of[root] = static_cast<int>(s.islands.size());
@@ -94,10 +96,12 @@ void sortContacts(std::span<const ContactEnds> all, IslandScratch& s) {
     Island& island = s.islands[s.contact_island[i]];
     s.order[island.place + island.contacts++] = i;
   }
+  PINCER_ASSERT(place == n);
 }
 
 int numberOf(const WorldModel& model, const WorldScratch& scratch, const Side& side, int mover, Island& island, IslandScratch& s) {
   if (mover < 0) return -1;
+  PINCER_ASSERT(isIndex(mover, s.number.size()));
   if (s.number[mover] < 0) {
     s.number[mover] = island.movers++;
     if (side.kind == SideKind::kBody)
@@ -156,6 +160,7 @@ void copyRows(const WorldScratch& scratch, int k, int row, Island& island, Islan
     });
     rows_before += rows;
   }
+  PINCER_ASSERT(row + rows_before <= static_cast<int>(s.q.size()));
   island.first_row[island.contacts] = island.rows = rows_before;
 }
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact/invariants.h"
 #include "engine/world/joints.h"
 
 namespace pincer::engine {
@@ -14,6 +15,7 @@ class Basis {
 
   // Takes the part of v that is new; false if nothing is.
   bool add(const double* v) {
+    if (count_ == size_) return false;  // it spans all, so that nothing is new
     double* const w = v_ + static_cast<std::ptrdiff_t>(count_) * size_;
     std::copy(v, v + size_, w);
     const double before = std::sqrt(dot(w, w));
@@ -75,7 +77,9 @@ RootOfMass rootOfMass(const BodyModel& body, const Quat& q_WI) {
 }
 
 int placeInGroup(const JointGroup& g, int body) {
-  return static_cast<int>(std::lower_bound(g.bodies.begin(), g.bodies.end(), body) - g.bodies.begin());
+  const auto place = std::lower_bound(g.bodies.begin(), g.bodies.end(), body);
+  PINCER_ASSERT(place != g.bodies.end() && *place == body);
+  return static_cast<int>(place - g.bodies.begin());
 }
 
 // The row's S^T g, in the order of the group's bodies.
@@ -115,6 +119,7 @@ void applyDampers(const WorldModel& model, const WorldScratch& scratch, const Jo
   for (int i = 0; i < free; ++i) {  // Cholesky, and N L^-T column by column
     for (int j = 0; j <= i; ++j) {
       for (int k = 0; k < j; ++k) mass[i][j] -= mass[i][k] * mass[j][k];
+      PINCER_ASSERT(i != j || !(mass[i][i] <= 0));
       mass[i][j] = i == j ? std::sqrt(mass[i][i]) : mass[i][j] / mass[j][j];
     }
     for (int k = 0; k < size; ++k) {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "contact/invariants.h"
+#include "engine/motion/free_motion.h"
 #include "engine/solve/linear.h"
 #include "engine/world/held_body.h"
 
@@ -84,7 +86,10 @@ class RowWriter {
  private:
   void point(const Vec3& n_W, double e) { add({a_.body, b_.body, n_W, a_.arm_W.cross(n_W), b_.arm_W.cross(n_W), Vec3::Zero(), 0, 0, e}); }
   void turn(const Vec3& m_W, double e) { add({a_.body, b_.body, Vec3::Zero(), m_W, m_W, m_W, 0, 0, e}); }
-  void add(const JointRow& row) { group_.rows.push_back(row); }
+  void add(const JointRow& row) {
+    PINCER_ASSERT(group_.rows.size() < group_.rows.capacity());  // the tick allocates nothing
+    group_.rows.push_back(row);
+  }
 
   JointSide a_, b_;
   Mat3 R_WJ_;
@@ -107,6 +112,7 @@ double response(const JointRow& row, int body, const Vec3& mlin_W, const Vec3& m
 // A, factorised.
 void factorise(const WorldModel& model, const JointMoment& moment, JointGroupScratch& group) {
   const int m = static_cast<int>(group.rows.size());
+  PINCER_ASSERT(group.rows.size() * group.rows.size() <= group.A.size());
   for (int j = 0; j < m; ++j) {
     const JointRow& row = group.rows[j];
     for (int i = 0; i < m; ++i) group.A[i + j * m] = 0;
@@ -158,6 +164,7 @@ double turnOfRow(const JointRow& row, const WorldScratch& scratch, const Vec3& a
 
 void setDamping(const WorldModel& model, const WorldScratch& scratch, double damping, JointRow& row) {
   const double hd = scratch.h * damping;
+  PINCER_ASSERT(hd > 0);
   double mobility = 0;
   for (int side = 0; side < 2; ++side) {
     const int body = side == 0 ? row.a : row.b;

@@ -1,4 +1,4 @@
-#include "engine/world/model.h"
+#include "engine/model.h"
 
 #include <fmt/format.h>
 
@@ -6,8 +6,12 @@
 #include <cmath>
 #include <limits>
 
-#include "contact/shape/pair_query.h"
+#include "contact/invariants.h"
+#include "contact/pair_query.h"
+#include "engine/motion/mass.h"
+#include "engine/solve/contact_problem.h"
 #include "engine/world/broad_phase.h"
+#include "engine/world/most_numbered.h"
 
 namespace pincer::engine {
 namespace {
@@ -94,6 +98,8 @@ void groupJoints(WorldModel& model) {
   for (int i = 0; i < static_cast<int>(model.bodies.size()); ++i) {
     if (model.bodies[i].joint_group >= 0) model.joint_groups[model.bodies[i].joint_group].bodies.push_back(i);
   }
+  PINCER_ASSERT(model.joint_groups.empty() ||
+                model.joint_groups.back().first + model.joint_groups.back().count == static_cast<int>(model.joints.size()));
 }
 
 // Whether the group has one coordinate, and what that one is.
@@ -105,6 +111,7 @@ void findHeldBody(const WorldModel& model, JointGroup& group) {
   const BodyModel& body = model.bodies[joint.a];
   group.is_held_body = true;
   group.axis_A = joint.X_AJ.q * Vec3::UnitZ();
+  PINCER_ASSERT(isUnit(group.axis_A));
   const double about_centre = group.axis_A.cwiseAbs2().dot(body.moments), arm2 = group.axis_A.cross(joint.X_AJ.p).squaredNorm();
   group.inertia = turns ? about_centre + body.mass * arm2 : body.mass;
 }
@@ -137,6 +144,7 @@ bool comesBefore(const PairModel& x, const PairModel& y) { return std::pair(x.a,
 }  // namespace
 
 Material materialOf(const WorldModel& model, int a, int b) {
+  PINCER_ASSERT(a < b);  // the special pairs are sorted so
   const PairModel pair{a, b, {}};
   const auto own = std::lower_bound(model.special_pairs.begin(), model.special_pairs.end(), pair, comesBefore);
   if (own != model.special_pairs.end() && !comesBefore(pair, *own)) return own->material;
@@ -155,9 +163,10 @@ Material combine(const Material& a, const Material& b) {
 }
 
 double slidingFriction(const Material& m, double speed) {
+  PINCER_ASSERT(m.mu_d <= m.mu_s);
   if (m.stribeck_speed <= 0 || m.mu_d == m.mu_s) return m.mu_d;
   const double ratio = speed / m.stribeck_speed;
-  return m.mu_d + (m.mu_s - m.mu_d) * std::exp(-ratio * ratio);
+  return m.mu_d + (m.mu_s - m.mu_d) * math::exp(-ratio * ratio);
 }
 
 WorldBuilder::WorldBuilder(const WorldOptions& options) {
@@ -176,6 +185,10 @@ WorldBuilder::WorldBuilder(const WorldOptions& options) {
 }
 
 int WorldBuilder::addBody(const BodySpec& spec) {
+  if (model_.bodies.size() == kMostNumbered)
+    throw InputError(
+        fmt::format("body \"{}\": the world has {} bodies already, the most that its contacts can tell apart. Use several worlds.",
+                    spec.name, kMostNumbered));
   checkMaterial(spec.name, spec.material);
   BodyModel body;
   body.name = spec.name;
@@ -196,6 +209,9 @@ int WorldBuilder::addBody(const BodySpec& spec) {
 }
 
 int WorldBuilder::addPoint(const DrivenPointModel& point) {
+  if (model_.points.size() == kMostNumbered)
+    throw InputError(
+        fmt::format("{}: the world has {} driven points already, the most that its contacts can tell apart.", point.name, kMostNumbered));
   requireRange(point.name + ".mass", point.mass, 0, 1e6, "A proxy's mass is zero or positive, in kilograms.");
   requireRange(point.name + ".twist_stiffness", point.twist_stiffness, 0, 1e6, "In N m/rad; a fingertip has about 0.3.");
   requireRange(point.name + ".twist_damping", point.twist_damping, 0, 1e6, "In N m s/rad; 0.001 suits a fingertip.");
@@ -212,11 +228,15 @@ int WorldBuilder::addPoint(const DrivenPointModel& point) {
   return static_cast<int>(model_.points.size()) - 1;
 }
 
-void WorldBuilder::excludePair(int a, int b) { excluded_.emplace_back(std::min(a, b), std::max(a, b)); }
+void WorldBuilder::excludePair(int a, int b) {
+  PINCER_DEMAND(isIndex(a, model_.bodies.size()) && isIndex(b, model_.bodies.size()), "excludePair: add both bodies first");
+  excluded_.emplace_back(std::min(a, b), std::max(a, b));
+}
 
 void WorldBuilder::setPairMaterial(int a, int b, const Material& material) {
+  PINCER_DEMAND(isIndex(a, model_.bodies.size()) && isIndex(b, model_.bodies.size()), "setPairMaterial: add both bodies first");
   checkMaterial(
-      fmt::format("pair {} and {}", model_.bodies.at(static_cast<std::size_t>(a)).name, model_.bodies.at(static_cast<std::size_t>(b)).name),
+      fmt::format("pair {} and {}", model_.bodies[static_cast<std::size_t>(a)].name, model_.bodies[static_cast<std::size_t>(b)].name),
       material);
   std::vector<PairModel>& special = model_.special_pairs;
   const PairModel pair{std::min(a, b), std::max(a, b), material};
@@ -239,6 +259,7 @@ int WorldBuilder::addJoint(const JointModel& joint) {
     throw InputError(
         fmt::format("{}: its first body \"{}\" never moves by itself. Name the moving one first.", name, model_.bodies[joint.a].name));
   }
+  PINCER_DEMAND(isUnit(joint.X_AJ.q) && isUnit(joint.X_BJ.q), "addJoint: the frames' quaternions have length 1; normalise them");
   JointModel inertial = joint;
   inertial.X_AJ = model_.bodies[joint.a].X_IB * joint.X_AJ;
   if (joint.b >= 0) inertial.X_BJ = model_.bodies[joint.b].X_IB * joint.X_BJ;

@@ -1,8 +1,11 @@
 // Where everything would be in the middle of the tick, and how fast at its end, if nothing touched.
+#include "contact/invariants.h"
+#include "engine/motion/driven_motion.h"
+#include "engine/motion/free_motion.h"
 #include "engine/world/held_body.h"
 #include "engine/world/island_sleep.h"
 #include "engine/world/joints.h"
-#include "engine/world/step.h"
+#include "engine/world/stages.h"
 
 namespace pincer::engine {
 namespace {
@@ -27,6 +30,7 @@ void place(const BodyModel& body, BodyScratch& out) {
 }
 
 void predictBody(const BodyModel& body, const BodyState& s, const Vec3& dv_gravity_W, double h, BodyScratch& out) {
+  PINCER_ASSERT(isUnitIfFinite(s.X_WI.q));
   out.start.v_W = s.v_W;
   out.free.v_W = s.v_W + dv_gravity_W;
   if (!body.may_touch) return;  // moves alone: advance needs nothing more
@@ -42,15 +46,16 @@ void predictHeld(const WorldModel& model, const WorldState& state, int i, WorldS
   if (model.joint_groups[body.joint_group].may_touch) place(body, scratch.bodies[i]);
 }
 
-void predictDriven(const BodyState& s, const MotionInput& in, double h, BodyScratch& out) {
+void predictDriven(const BodyState& s, const Vec3& w_W, const MotionInput& in, double h, BodyScratch& out) {
+  PINCER_ASSERT(h > 0);
   out.X_WB_end = in.X_WB;
-  out.start = {s.v_W, s.L_W};
+  out.start = {s.v_W, w_W};
   out.free = in.motion;
   // Predicted as that of a dynamic body: what rests on it has its acceleration, and the gap between them must not show it.
-  out.X_WI_mid = {quatFromRotationVector(0.5 * h * s.L_W) * s.X_WI.q, s.X_WI.p + 0.5 * h * s.v_W};
+  out.X_WI_mid = {quatFromRotationVector(0.5 * h * w_W) * s.X_WI.q, s.X_WI.p + 0.5 * h * s.v_W};
   // What slides on it is measured against the way that it goes, not against the mean of two velocities.
   out.end.v_W = 2 / h * (in.X_WB.p - s.X_WI.p) - s.v_W;
-  out.end.w_W = 2 / h * rotationVectorOf(in.X_WB.q * s.X_WI.q.conjugate()) - s.L_W;
+  out.end.w_W = 2 / h * rotationVectorOf(in.X_WB.q * s.X_WI.q.conjugate()) - w_W;
 }
 
 // One axis of a driven point: (effective mass) v+ = momentum + contact impulse, with the spring-damper's impulse over the tick inside.
@@ -93,6 +98,7 @@ void predictTwist(const DrivenPointModel& point, const PointState& s, const Poin
   const double theta = out.twist_share_of_end = s.touching ? 0.5 : 1.0;
   out.inverse_twist = 1 / implicitMass(a, theta);
   out.twist_rate = out.inverse_twist * implicitMomentum(a, theta);
+  PINCER_ASSERT(!out.input_ok || isUnit(in.n_W));
   if (out.input_ok) out.R_WA.col(2) = in.n_W;
   out.start.w_W += s.twist_rate * out.R_WA.col(2);
   out.free.w_W += out.twist_rate * out.R_WA.col(2);
@@ -120,6 +126,7 @@ void findMobility(const DrivenPointModel& point, const std::array<AxisForm, 3>& 
     if (forms[i] == AxisForm::kFourthOrder) out.inverse_mass[i] = 1 / fourthOrderMass(a);
     if (forms[i] == AxisForm::kImplicit) out.inverse_mass[i] = 1 / implicitMass(a, out.share_of_end[i]);
   }
+  PINCER_ASSERT(out.inverse_mass.allFinite() && out.inverse_mass.minCoeff() >= 0);
   out.root_inverse_mass = out.inverse_mass.cwiseSqrt();
 }
 
@@ -145,6 +152,7 @@ void predictAxes(const DrivenPointModel& point, const std::array<AxisForm, 3>& f
   const PointMotion motion_W{
       s.p_W - s.p_target_W, s.v_W, s.v_target_W, out.v_target_W, out.p_target_W - s.p_target_W, out.input_ok ? in.f_W : Vec3::Zero()};
   if (out.turned) {
+    PINCER_ASSERT(isUnit(in.n_W));
     out.R_WA = frameFromNormal(in.n_W);
     predictAxes(point, forms, motion_W.in(out.R_WA), s.touching, h, out);
     out.free.v_W = out.R_WA * out.free.v_W.eval();
@@ -167,7 +175,8 @@ void predictBodies(const WorldModel& model, const WorldState& state, WorldScratc
     } else {
       BodyScratch& body = scratch.bodies[i];
       body.X_WI_mid = state.bodies[i].X_WI;
-      if (model.bodies[i].driven) predictDriven(state.bodies[i], scratch.motion_inputs[model.bodies[i].motion], h, body);
+      if (const int n = model.bodies[i].motion; n >= 0)
+        predictDriven(state.bodies[i], state.driven_w_W[n], scratch.motion_inputs[n], h, body);
       place(model.bodies[i], scratch.bodies[i]);
     }
   }

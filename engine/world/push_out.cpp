@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "contact/invariants.h"
+#include "engine/motion/free_motion.h"
 #include "engine/world/contact_rows.h"
 
 namespace pincer::engine {
@@ -40,10 +42,6 @@ double gapAfter(const WorldState& state, const WorldScratch& scratch, const Cont
   return c.n_W().dot(pointAfter(state, scratch, c.a, c.arm_a_W + half_W) - pointAfter(state, scratch, c.b, c.arm_b_W - half_W));
 }
 
-// Nothing needs the biases any more: two of them keep what is found here.
-double& gapOf(Contact& c) { return c.bias_C[0]; }
-double& pushOf(Contact& c) { return c.bias_C[kNormalRow]; }
-
 // The contact's normal row on one of its bodies, and that body's mobility.
 struct PushSide {
   Motion* push = nullptr;  // null for what doesn't move
@@ -70,12 +68,12 @@ struct PushSide {
 
 void markBodies(const Contact& c, WorldScratch& scratch) {
   for (const Side& side : {c.a, c.b}) {
-    if (side.kind == SideKind::kBody) scratch.struck[static_cast<std::size_t>(side.index)] = true;
+    if (side.kind == SideKind::kBody) scratch.pushed[static_cast<std::size_t>(side.index)] = true;
   }
 }
 
-double wantedWay(const WorldModel& model, const WorldScratch& scratch, Contact& c) {
-  const double phi = gapOf(c);
+double wantedWay(const WorldModel& model, const WorldScratch& scratch, const Contact& c, double phi) {
+  PINCER_ASSERT(thinner(model, c) > 0);
   if (!isDeep(model, c, phi)) return -std::max(phi - deepGap(model), 0.0);
   const double share = scratch.h / model.options.h;  // of the tick
   const double buried = -phi - thinner(model, c);
@@ -84,12 +82,12 @@ double wantedWay(const WorldModel& model, const WorldScratch& scratch, Contact& 
 }
 
 // Whether it pushes otherwise than before.
-bool relax(const WorldModel& model, WorldScratch& scratch, Contact& c) {
+bool relax(const WorldModel& model, WorldScratch& scratch, const Contact& c, PushedContact& pushed) {
   const PushSide a(model, scratch, c.a, c.arm_a_W, c.n_W()), b(model, scratch, c.b, c.arm_b_W, -c.n_W());
   const double mobility = a.mobility() + b.mobility();
   if (!(mobility > 0)) return false;
-  const double want = wantedWay(model, scratch, c);
-  double& lambda = pushOf(c);
+  const double want = wantedWay(model, scratch, c, pushed.gap);
+  double& lambda = pushed.way;
   const double before = lambda;
   lambda = std::max(0.0, lambda + (want - a.way() - b.way()) / mobility);
   if (lambda == before) return false;
@@ -98,17 +96,17 @@ bool relax(const WorldModel& model, WorldScratch& scratch, Contact& c) {
   return true;
 }
 
-// Half a sweep, over the contacts of bodies that are deep or were pushed, few in most heaps: those are marked in scratch.struck.
+// Half a sweep, over the contacts of bodies that are deep or were pushed, few in most heaps: those are marked in scratch.pushed.
 //   standing  those with what stands, or those between two bodies that can be moved
 void sweepPushes(const WorldModel& model, bool standing, WorldScratch& scratch) {
   for (std::size_t i = 0; i < scratch.contacts.size(); ++i) {
     const ContactEnds& ends = scratch.islands.ends[i];
     const auto isMarked = [&](int mover) {
-      return mover >= 0 && mover < static_cast<int>(scratch.struck.size()) && scratch.struck[static_cast<std::size_t>(mover)];
+      return mover >= 0 && mover < static_cast<int>(scratch.pushed.size()) && scratch.pushed[static_cast<std::size_t>(mover)];
     };
-    Contact& c = scratch.contacts[i];
+    const Contact& c = scratch.contacts[i];
     if ((isMarked(ends.a) || isMarked(ends.b)) && (isFree(model, c.a) != isFree(model, c.b)) == standing) {
-      if (relax(model, scratch, c)) markBodies(c, scratch);
+      if (relax(model, scratch, c, scratch.pushed_contacts[i])) markBodies(c, scratch);
     }
   }
 }
@@ -128,11 +126,11 @@ void pushOut(const WorldModel& model, WorldState& state, WorldScratch& scratch) 
     if (model.bodies[i].dynamic)
       scratch.bodies[i].inverse_inertia_W = inverseInertia(model.bodies[i].rotation, scratch.bodies[i].X_WI_mid.q);
   }
-  std::fill(scratch.struck.begin(), scratch.struck.end(), false);
-  for (Contact& c : scratch.contacts) {
-    gapOf(c) = gapAfter(state, scratch, c);
-    pushOf(c) = 0;
-    if (isDeep(model, c, gapOf(c))) markBodies(c, scratch);
+  std::fill(scratch.pushed.begin(), scratch.pushed.end(), false);
+  for (std::size_t i = 0; i < scratch.contacts.size(); ++i) {
+    const Contact& c = scratch.contacts[i];
+    scratch.pushed_contacts[i] = {gapAfter(state, scratch, c), 0};
+    if (isDeep(model, c, scratch.pushed_contacts[i].gap)) markBodies(c, scratch);
   }
   // What stands comes last: between it and something heavier a light body must not end deeper in it than it was.
   for (int sweep = 0; sweep < kPushSweeps; ++sweep) {

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact/invariants.h"
 #include "engine/world/contact_rows.h"
 
 namespace pincer::engine {
@@ -36,10 +37,12 @@ void carryFrame(const ContactMemory& memory, Mat3& R) {
 
 void recall(const WorldScratch& scratch, Contact& c) {
   const ContactMemory* const memory = c.memory;
+  PINCER_ASSERT(isUnitIfFinite(c.n_W()));
   if (memory)
     carryFrame(*memory, c.R_WC);
   else
     c.R_WC = frameFromNormal(c.n_W());
+  PINCER_ASSERT(isRotationIfFinite(c.R_WC));
   c.arm_a_W = c.p_W - centre(scratch, c.a);
   c.arm_b_W = c.p_W - centre(scratch, c.b);
   c.mover_a = &mover(scratch, c.a);

@@ -1,4 +1,5 @@
 // What each contact remembers of a tick.
+#include "contact/invariants.h"
 #include "engine/world/contact_rows.h"
 #include "engine/world/rest.h"
 
@@ -114,23 +115,26 @@ std::uint64_t nextId(std::span<const SleepingContact> sleeping) {
 
 void rememberContacts(const WorldModel& model, WorldScratch& scratch, WorldState& state) {
   const double h = scratch.h;
-  const bool may_sleep = model.options.sleep && scratch.sleep.still_bodies > 0;
+  const bool may_sleep = model.options.sleep && scratch.still_bodies > 0;
   std::span<SleepingContact> sleeping = scratch.sleep.contacts;
+  PINCER_ASSERT(scratch.contacts.size() + sleeping.size() <= state.contacts.size());
+  PINCER_ASSERT(isAscending(sleeping, [](const SleepingContact& c) { return c.contact.id; }));
   std::uint64_t next_id = nextId(sleeping);
   ContactMemory *const first = state.contacts.data(), *place = first;
-  scratch.sleep.kept.clear();
+  scratch.kept.clear();
   for (Contact& c : scratch.contacts) {
     if (next_id < c.id) {
       place = putSleeping(sleeping, c.id, first, place);
       next_id = nextId(sleeping);
     }
-    if (may_sleep) keepOld(scratch, c, place, scratch.sleep.kept);
+    if (may_sleep) keepOld(scratch, c, place, scratch.kept);
     remember(c, h, *place++);
   }
   if (!sleeping.empty()) place = putSleeping(sleeping, ~std::uint64_t{0}, first, place);
   state.contact_count = static_cast<int>(place - first);
+  PINCER_ASSERT(isAscending(std::span<const ContactMemory>(first, place), &ContactMemory::id));
   alignFaces({first, place}, scratch.sleep.contacts);
-  for (const KeptMemory& kept : scratch.sleep.kept) kept.contact->still = same(*kept.place, kept.memory);
+  for (const KeptMemory& kept : scratch.kept) kept.contact->still = same(*kept.place, kept.memory);
 }
 
 }  // namespace pincer::engine

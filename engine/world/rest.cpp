@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "contact/invariants.h"
+
 namespace pincer::engine {
 namespace {
 
@@ -42,15 +44,18 @@ std::span<const ContactMemory> contactsOf(const WorldState& state) {
 
 // All but the time.
 bool sameState(const WorldState& a, const WorldState& b) {
-  return a.h_last == b.h_last && a.parts == b.parts && sameRange(a.bodies, b.bodies) && sameRange(a.points, b.points) &&
-         sameRange(contactsOf(a), contactsOf(b));
+  return a.h_last == b.h_last && a.parts == b.parts && sameRange(a.bodies, b.bodies) && a.driven_w_W == b.driven_w_W &&
+         sameRange(a.points, b.points) && sameRange(contactsOf(a), contactsOf(b));
 }
 
 void copyState(const WorldState& from, WorldState& to) {
+  PINCER_ASSERT(from.bodies.size() == to.bodies.size() && from.points.size() == to.points.size());
+  PINCER_ASSERT(from.contact_count <= static_cast<int>(to.contacts.size()));
   to.h_last = from.h_last;
   to.parts = from.parts;
   to.contact_count = from.contact_count;
   std::copy(from.bodies.begin(), from.bodies.end(), to.bodies.begin());
+  std::copy(from.driven_w_W.begin(), from.driven_w_W.end(), to.driven_w_W.begin());
   std::copy(from.points.begin(), from.points.end(), to.points.begin());
   std::copy(from.contacts.begin(), from.contacts.begin() + from.contact_count, to.contacts.begin());
 }
@@ -63,13 +68,13 @@ bool isStill(const WorldState& state) {
 }  // namespace
 
 bool repeatsItself(const WorldState& state, const WorldScratch& scratch, const StepInputs& inputs) {
-  const RestScratch& rest = scratch.rest;
+  const RestMemory& rest = scratch.sleep.rest;
   return rest.holds && sameRange(inputs.points, std::span<const PointInput>(rest.points)) &&
          sameRange(inputs.motions, std::span<const MotionInput>(rest.motions)) && sameState(state, rest.state);
 }
 
 void noteRest(const WorldState& state, const StepInputs& inputs, bool calm, WorldScratch& scratch) {
-  RestScratch& rest = scratch.rest;
+  RestMemory& rest = scratch.sleep.rest;
   rest.holds = false;
   if (!calm || inputs.points.size() != rest.points.size() || inputs.motions.size() != rest.motions.size() || !isStill(state)) {
     rest.candidate = false;

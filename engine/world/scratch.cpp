@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "contact/invariants.h"
+#include "engine/world/most_numbered.h"
+
 namespace pincer::engine {
 namespace {
 
@@ -11,21 +14,32 @@ int patchesFor(const WorldModel& model) {
   return std::any_of(model.bodies.begin(), model.bodies.end(), is_mesh) ? 1024 : 1;
 }
 
-void sizeForSleep(const WorldModel& model, SleepScratch& sleep) {
-  const std::size_t bodies = model.bodies.size();
-  sleep.room = static_cast<std::size_t>(model.options.max_contacts);
-  sleep.idle.resize(bodies);
-  sleep.group.resize(bodies);
-  sleep.states.resize(bodies);
-  const bool may_sleep = std::any_of(model.bodies.begin(), model.bodies.end(), [](const BodyModel& body) { return body.dynamic; });
-  if (!model.options.sleep || !may_sleep) return;
-  sleep.contacts.reserve(static_cast<std::size_t>(model.options.max_contacts));
-  sleep.kept.reserve(static_cast<std::size_t>(model.options.max_contacts));
+bool mayIslandsSleep(const WorldModel& model) {
+  return model.options.sleep && std::any_of(model.bodies.begin(), model.bodies.end(), [](const BodyModel& body) { return body.dynamic; });
+}
+
+// So that copying a state into it allocates nothing.
+void sizeState(const WorldModel& model, WorldState& state) {
+  state.bodies.resize(model.bodies.size());
+  state.points.resize(model.points.size());
+  state.driven_w_W.resize(static_cast<std::size_t>(model.driven_count));
+  state.contacts.resize(static_cast<std::size_t>(model.options.max_contacts));
 }
 
 }  // namespace
 
-WorldScratch::WorldScratch(const WorldModel& model) : h(model.options.h), patches(patchesFor(model)), islands(model) {
+WorldSleep::WorldSleep(const WorldModel& model)
+    : room(static_cast<std::size_t>(model.options.max_contacts)),
+      idle(model.bodies.size()),
+      group(model.bodies.size()),
+      states(model.bodies.size()) {
+  sizeState(model, rest.state);
+  rest.points.resize(model.points.size());
+  rest.motions.resize(static_cast<std::size_t>(model.driven_count));
+  if (mayIslandsSleep(model)) contacts.reserve(room);
+}
+
+WorldScratch::WorldScratch(const WorldModel& model) : h(model.options.h), patches(patchesFor(model)), islands(model), sleep(model) {
   const auto contact_count = static_cast<std::size_t>(model.options.max_contacts);
   const std::size_t row_count = contact_count * kMaxContactRows;
   bodies.resize(model.bodies.size());
@@ -47,19 +61,13 @@ WorldScratch::WorldScratch(const WorldModel& model) : h(model.options.h), patche
     out.factor.resize(6 * kMoverFreedoms * group.bodies.size());
     out.may_touch = group.may_touch;
   }
-  for (WorldState* copy : {&before, &coarse}) {  // so that copying a state allocates nothing
-    if (!(model.options.position_tolerance > 0)) break;
-    copy->bodies.resize(model.bodies.size());
-    copy->points.resize(model.points.size());
-    copy->contacts.resize(contact_count);
+  if (model.options.position_tolerance > 0) {
+    for (WorldState* copy : {&before, &coarse}) sizeState(model, *copy);
   }
   struck.resize(model.bodies.size());
-  rest.state.bodies.resize(model.bodies.size());
-  rest.state.points.resize(model.points.size());
-  rest.state.contacts.resize(contact_count);
-  rest.points.resize(model.points.size());
-  rest.motions.resize(static_cast<std::size_t>(model.driven_count));
-  sizeForSleep(model, sleep);
+  pushed.resize(model.bodies.size());
+  pushed_contacts.resize(contact_count);
+  if (mayIslandsSleep(model)) kept.reserve(contact_count);
   point_inputs.resize(model.points.size());
   motion_inputs.resize(static_cast<std::size_t>(model.driven_count));
   first_row.resize(contact_count + 1);
@@ -70,13 +78,43 @@ WorldScratch::WorldScratch(const WorldModel& model) : h(model.options.h), patche
   if (model.has_broad_phase) broad_phase = std::make_unique<BroadPhase>(model);
 }
 
+void DeleteScratch::operator()(WorldScratch* scratch) const { delete scratch; }
+ScratchHandle makeScratch(const WorldModel& model) { return ScratchHandle(new WorldScratch(model)); }
+
+void timeStages(StageClock* clock, WorldScratch& scratch) { scratch.clock = clock; }
+
+int contactCount(const WorldScratch& scratch) { return static_cast<int>(scratch.contacts.size() + scratch.sleep.contacts.size()); }
+
+ContactReport contactAt(const WorldScratch& scratch, int k) {
+  const auto i = static_cast<std::size_t>(k);
+  const std::size_t awake = scratch.contacts.size();
+  const Contact& c = i < awake ? scratch.contacts[i] : scratch.sleep.contacts[i - awake].contact;
+  ContactReport report;
+  report.id = c.id;
+  (c.a.kind == SideKind::kPoint ? report.point : report.other_body) = c.a.index;
+  report.body = c.b.index;
+  report.p_W = c.p_W;
+  report.n_W = c.n_W();
+  report.gap = c.phi;
+  report.f_W = c.impulse_W / scratch.h;
+  for (int row = kTorsionRow; row < rowsOf(c.material); ++row)
+    report.moment_W += (radiusOf(c, row) * c.r[row] / scratch.h) * axisOf(c, row);
+  report.mu = c.mu;
+  report.pushes = c.active();
+  report.sliding = c.sliding;
+  return report;
+}
+
 std::uint64_t contactId(int kind, int a, int b, std::uint32_t feature) {
-  return static_cast<std::uint64_t>(kind) << 62 | static_cast<std::uint64_t>(a & 0x7fff) << 47 |
-         static_cast<std::uint64_t>(b & 0x7fff) << 32 | feature;
+  PINCER_ASSERT(kind == 0 || kind == 1);
+  PINCER_ASSERT(isIndex(a, kMostNumbered) && isIndex(b, kMostNumbered));
+  return static_cast<std::uint64_t>(kind) << 62 | static_cast<std::uint64_t>(a & (kMostNumbered - 1)) << 47 |
+         static_cast<std::uint64_t>(b & (kMostNumbered - 1)) << 32 | feature;
 }
 
 Contact* addContact(WorldScratch& scratch, double phi) {
   std::vector<Contact>& contacts = scratch.contacts;
+  PINCER_ASSERT(scratch.sleep.room <= contacts.capacity());  // the tick allocates nothing
   if (contacts.size() < scratch.sleep.room) {
     contacts.emplace_back().phi = phi;
     return &contacts.back();

@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 
 namespace pincer::engine {
@@ -10,6 +11,8 @@ enum class Stage : std::uint8_t { kPredict, kCollideBodies, kFingerContacts, kSo
 constexpr int kStageCount = static_cast<int>(Stage::kCount);
 constexpr std::array<const char*, kStageCount> kStageNames = {"predict", "body contacts", "finger contacts",
                                                               "solve",   "advance",       "pad places"};
+
+struct WorldScratch;
 
 struct StageClock {
   using Clock = std::chrono::steady_clock;
@@ -26,5 +29,8 @@ struct StageClock {
     last = now;
   }
 };
+
+// From now on the stages of steps with `scratch` are timed by `clock`, which must outlive them; null: no more.
+void timeStages(StageClock* clock, WorldScratch& scratch);
 
 }  // namespace pincer::engine

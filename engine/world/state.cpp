@@ -1,9 +1,11 @@
-#include "engine/world/state.h"
+#include "engine/state.h"
 
 #include <fmt/format.h>
 
 #include <bit>
 
+#include "contact/invariants.h"
+#include "engine/motion/free_motion.h"
 #include "engine/world/joints.h"
 
 namespace pincer::engine {
@@ -56,14 +58,13 @@ WorldState makeState(const WorldModel& model, const std::vector<BodyStart>& star
   for (std::size_t i = 0; i < starts.size(); ++i) {
     const BodyModel& body = model.bodies[i];
     if (!isFinite(starts[i])) throw InputError(fmt::format("body \"{}\": its start isn't finite.", body.name));
+    PINCER_DEMAND(isUnit(starts[i].X_WB.q), "makeState: the starts' quaternions have length 1; normalise them");
     BodyState s;
     s.X_WI = starts[i].X_WB * body.X_BI;
     s.X_WI.q.normalize();
     s.v_W = starts[i].v_W;
-    if (!body.dynamic)
-      s.L_W = starts[i].w_W;
-    else
-      s.L_W = s.X_WI.q * body.moments.cwiseProduct(s.X_WI.q.conjugate() * starts[i].w_W);
+    if (body.driven) state.driven_w_W.push_back(starts[i].w_W);
+    if (body.dynamic) s.L_W = s.X_WI.q * body.moments.cwiseProduct(s.X_WI.q.conjugate() * starts[i].w_W);
     state.bodies.push_back(s);
   }
   for (const Vec3& p : points) {
@@ -84,14 +85,19 @@ WorldState makeState(const WorldModel& model, const std::vector<BodyStart>& star
   return state;
 }
 
-Pose bodyPose(const WorldModel& model, const WorldState& state, int body) { return state.bodies[body].X_WI * model.bodies[body].X_IB; }
+Pose bodyPose(const WorldModel& model, const WorldState& state, int body) {
+  PINCER_ASSERT(isIndex(body, state.bodies.size()));
+  return state.bodies[body].X_WI * model.bodies[body].X_IB;
+}
 
 Vec3 bodyAngularVelocity(const WorldModel& model, const WorldState& state, int body) {
-  if (!model.bodies[body].dynamic) return state.bodies[body].L_W;
+  if (model.bodies[body].driven) return state.driven_w_W[model.bodies[body].motion];
+  if (!model.bodies[body].dynamic) return Vec3::Zero();
   return angularVelocity(model.bodies[body].rotation, state.bodies[body].X_WI.q, state.bodies[body].L_W);
 }
 
 double kineticEnergy(const WorldModel& model, const WorldState& state) {
+  PINCER_DEMAND(state.bodies.size() == model.bodies.size(), "the state is one of this model");
   double energy = 0;
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
     if (!model.bodies[i].dynamic) continue;
@@ -102,6 +108,7 @@ double kineticEnergy(const WorldModel& model, const WorldState& state) {
 }
 
 double potentialEnergy(const WorldModel& model, const WorldState& state) {
+  PINCER_DEMAND(state.bodies.size() == model.bodies.size(), "the state is one of this model");
   double energy = 0;
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
     energy -= model.bodies[i].mass * model.options.gravity_W.dot(state.bodies[i].X_WI.p);
@@ -110,6 +117,7 @@ double potentialEnergy(const WorldModel& model, const WorldState& state) {
 }
 
 std::uint64_t hashOf(const WorldState& state) {
+  PINCER_ASSERT(state.contact_count >= 0 && static_cast<std::size_t>(state.contact_count) <= state.contacts.size());
   Fnv1a hash;
   hash.add(state.time);
   hash.add(static_cast<std::uint64_t>(state.tick));
@@ -119,6 +127,7 @@ std::uint64_t hashOf(const WorldState& state) {
     hash.add(b.X_WI.q);
     for (const Vec3& v : {b.X_WI.p, b.v_W, b.L_W}) hash.add(v);
   }
+  for (const Vec3& w_W : state.driven_w_W) hash.add(w_W);
   for (const PointState& p : state.points) {
     for (const Vec3& v : {p.p_W, p.v_W, p.p_target_W, p.v_target_W}) hash.add(v);
     hash.add(static_cast<std::uint64_t>(p.touching));

@@ -2,12 +2,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact/invariants.h"
+#include "engine/motion/driven_motion.h"
+#include "engine/motion/free_motion.h"
 #include "engine/world/budget.h"
 #include "engine/world/impact.h"
 #include "engine/world/island_sleep.h"
 #include "engine/world/push_out.h"
 #include "engine/world/rest.h"
-#include "engine/world/step.h"
+#include "engine/world/stages.h"
 
 namespace pincer::engine {
 namespace {
@@ -29,6 +32,7 @@ bool isFinite(const PointInput& in) {
 bool isFinite(const WorldState& state) {
   double sum = 0;  // a NaN or infinity anywhere survives the sum
   for (const BodyState& b : state.bodies) sum += b.X_WI.p.sum() + b.X_WI.q.coeffs().sum() + b.v_W.sum() + b.L_W.sum();
+  for (const Vec3& w_W : state.driven_w_W) sum += w_W.sum();
   for (const PointState& p : state.points) sum += p.p_W.sum() + p.v_W.sum() + p.twist + p.twist_rate;
   return std::isfinite(sum);
 }
@@ -79,7 +83,7 @@ class Tick {
   void noteSleep() {
     noteRest(state_, inputs_, report_.status == kStepOk && impacts_ == 0, scratch_);
     const bool is_whole = report_.parts == 1 && impacts_ == 0 && model_.options.position_tolerance == 0;
-    if (is_whole && !scratch_.rest.candidate) fallAsleep(model_, state_, scratch_);
+    if (is_whole && !scratch_.sleep.rest.candidate) fallAsleep(model_, state_, scratch_);
   }
 
   // The contacts of the last tick are those of this one.
@@ -249,6 +253,7 @@ class Tick {
 
   // `landings`: what lands is held back.
   void attempt(double h, bool landings = true) {
+    PINCER_ASSERT(h > 0 && h <= model_.options.h);
     scratch_.h = h;
     setInputs(h);
     if (isSomethingAsleep(scratch_) && h != model_.options.h) wakeAll(scratch_);
@@ -311,7 +316,8 @@ class Tick {
       return;
     }
     out = inputs_.motions[i];
-    if (share < 1) out = drivenPlace({now.X_WI, {now.v_W, now.L_W}}, inputs_.motions[i], left_, share);
+    PINCER_ASSERT(isUnit(out.X_WB.q));
+    if (share < 1) out = drivenPlace({now.X_WI, {now.v_W, state_.driven_w_W[i]}}, inputs_.motions[i], left_, share);
   }
 
   const WorldModel& model_;
@@ -330,7 +336,19 @@ class Tick {
 
 }  // namespace
 
+StepReport step(const WorldModel& model, WorldState& state, WorldScratch& scratch, const StepInputs& inputs) {
+  return step(model, state, scratch, inputs, nullptr);
+}
+
 StepReport step(const WorldModel& model, WorldState& state, WorldScratch& scratch, const StepInputs& inputs, ContactSource* source) {
+  PINCER_DEMAND(inputs.points.size() == model.points.size(), "step: one input per driven point");
+  PINCER_DEMAND(inputs.motions.size() <= static_cast<std::size_t>(model.driven_count), "step: no more motions than driven bodies");
+  PINCER_DEMAND(state.bodies.size() == model.bodies.size() && state.points.size() == model.points.size() &&
+                    state.contacts.size() == static_cast<std::size_t>(model.options.max_contacts),
+                "step: the state is one of this model (makeState)");
+  PINCER_DEMAND(scratch.bodies.size() == model.bodies.size() && scratch.points.size() == model.points.size() &&
+                    scratch.mu.size() == static_cast<std::size_t>(model.options.max_contacts),
+                "step: the scratch is one of this model");
   if (scratch.clock) scratch.clock->start();
   return Tick(model, state, scratch, inputs, source).run();
 }

@@ -2,7 +2,10 @@
 #include <algorithm>
 #include <limits>
 
-#include "contact/shape/pair_query.h"
+#include "contact/invariants.h"
+#include "contact/pair_query.h"
+#include "engine/motion/driven_motion.h"
+#include "engine/motion/free_motion.h"
 #include "engine/world/budget.h"
 #include "engine/world/held_body.h"
 #include "engine/world/impact.h"
@@ -32,12 +35,14 @@ struct Moment {
 };
 
 Moment momentOf(const WorldModel& model, const WorldState& state, const WorldScratch& scratch, int i, double t) {
+  PINCER_ASSERT(scratch.h > 0 && t >= 0);
   const BodyModel& body = model.bodies[i];
   const BodyState& s = state.bodies[i];
   const BodyScratch& now = scratch.bodies[i];
   if (!body.dynamic) {
     if (!body.driven) return {s.X_WI, {}};
-    const DrivenPlace place = drivenPlace({s.X_WI, {s.v_W, s.L_W}}, {now.X_WB_end, now.free}, scratch.h, t / scratch.h);
+    const DrivenPlace place =
+        drivenPlace({s.X_WI, {s.v_W, state.driven_w_W[body.motion]}}, {now.X_WB_end, now.free}, scratch.h, t / scratch.h);
     return {place.X_WB, place.motion};
   }
   if (isHeldBody(model, body)) {

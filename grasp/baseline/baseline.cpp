@@ -1,9 +1,11 @@
-#include "grasp/baseline/baseline.h"
+#include "grasp/baseline.h"
 
 #include <algorithm>
 
+#include "contact/invariants.h"
 #include "grasp/baseline/nearest_outside.h"
-#include "grasp/finger_contacts.h"
+#include "grasp/tick/finger_contacts.h"
+#include "grasp/tick/finger_tick.h"
 
 namespace pincer::grasp {
 namespace {
@@ -37,18 +39,21 @@ struct NearSurfaces {
 
 class BaselineFinger {
  public:
-  BaselineFinger(const GraspModel& model, GraspState& state, GraspScratch& scratch, const FingerInput& input, int finger)
+  BaselineFinger(const GraspModel& model, FingerMethod method, GraspState& state, BaselineState& memory, GraspScratch& scratch,
+                 const FingerInput& input, int finger)
       : model_(model),
         state_(state),
         scratch_(scratch),
         input_(input),
         index_(finger),
         finger_(model.fingers[static_cast<std::size_t>(finger)]),
-        memory_(state.fingers[static_cast<std::size_t>(finger)].baseline),
+        method_(method),
+        memory_(memory),
         k_(finger_.coupling.stiffness.x()) {}
 
   FingerReport run() {
-    if (finger_.method == FingerMethod::kPenalty) {
+    PINCER_ASSERT(isUnitIfFinite(input_.q_WF));
+    if (method_ == FingerMethod::kPenalty) {
       penalty();
     } else {
       godObject();
@@ -108,7 +113,7 @@ class BaselineFinger {
   // Where the proxy is to go: the device, or what friction and shading leave of the way to it.
   Vec3 goalFor(const Vec3& proxy_W, const NearSurface* resting) {
     const Vec3 way = input_.p_WF - proxy_W;
-    if (finger_.method == FingerMethod::kGodObject || !resting || resting->phi > kResting) return input_.p_WF;
+    if (method_ == FingerMethod::kGodObject || !resting || resting->phi > kResting) return input_.p_WF;
     const double pressed = -way.dot(resting->n_W);
     if (pressed <= 0) return input_.p_WF;
     const Vec3 along = way + pressed * resting->n_W;
@@ -157,6 +162,7 @@ class BaselineFinger {
       const double share = placed.lambda[static_cast<std::size_t>(i)] / sum;
       if (share > 0) push(s, share * f_W, share * f_W.dot(s.n_W));
     }
+    PINCER_ASSERT(sum > 0);
     memory_.body = near.all[static_cast<std::size_t>(main)].body;
     memory_.p_P = engine::bodyPose(model_.world, state_.world, memory_.body).inverse() * proxy_W;
   }
@@ -195,19 +201,61 @@ class BaselineFinger {
   const FingerInput& input_;
   const int index_;
   const FingerModel& finger_;
+  const FingerMethod method_;
   BaselineState& memory_;
   const double k_;
   FingerReport report_;
   double largest_ = 0;
 };
 
+// Contacts of the fingers that are proxies; the others act by their forces alone.
+class ProxyContacts final : public engine::ContactSource {
+ public:
+  ProxyContacts(const GraspModel& model, std::span<const FingerMethod> methods, GraspState& state, GraspScratch& scratch,
+                std::span<const FingerInput> inputs)
+      : model_(model), methods_(methods), state_(state), scratch_(scratch), inputs_(inputs) {}
+  void addContacts(engine::WorldScratch&) override {
+    for (std::size_t i = 0; i < methods_.size(); ++i) {
+      if (methods_[i] == FingerMethod::kProxy) findFingerContacts(model_, static_cast<int>(i), state_, scratch_);
+    }
+    engine::mark(scratch_.world, engine::Stage::kFingerContacts);
+  }
+  bool repeatsItself() const override { return keepOrientations(inputs_, scratch_); }
+
+ private:
+  const GraspModel& model_;
+  std::span<const FingerMethod> methods_;
+  GraspState& state_;
+  GraspScratch& scratch_;
+  std::span<const FingerInput> inputs_;
+};
+
 }  // namespace
 
-void renderBaselines(const GraspModel& model, GraspState& state, GraspScratch& scratch, std::span<const FingerInput> inputs) {
-  for (std::size_t i = 0; i < inputs.size(); ++i) {
-    if (model.fingers[i].method == FingerMethod::kProxy) continue;
-    scratch.baselines[i] = BaselineFinger(model, state, scratch, inputs[i], static_cast<int>(i)).run();
+BaselineFingers::BaselineFingers(std::vector<FingerMethod> methods)
+    : methods_(std::move(methods)), memories_(methods_.size()), reports_(methods_.size()) {}
+
+GraspReport BaselineFingers::step(const GraspModel& model, GraspState& state, GraspScratch& scratch, std::span<const FingerInput> inputs,
+                                  std::span<const engine::MotionInput> motions) {
+  setInputs(model, state, inputs, scratch);
+  for (std::size_t i = 0; i < methods_.size(); ++i) {
+    if (methods_[i] == FingerMethod::kProxy) continue;
+    reports_[i] = BaselineFinger(model, methods_[i], state, memories_[i], scratch, inputs[i], static_cast<int>(i)).run();
   }
+  ProxyContacts contacts(model, methods_, state, scratch, inputs);
+  const engine::StepReport report = engine::step(model.world, state.world, scratch.world, {scratch.inputs, motions}, &contacts);
+  if (report.asleep) return {report, scratch.fingers};
+  for (std::size_t i = 0; i < methods_.size(); ++i) {
+    const int finger = static_cast<int>(i);
+    if (methods_[i] == FingerMethod::kProxy) {
+      reportFinger(model, state, finger, scratch);
+    } else {
+      scratch.fingers[i] = reports_[i];
+    }
+    rememberFinger(model, inputs[i], finger, state, scratch);
+  }
+  engine::mark(scratch.world, engine::Stage::kFingerReport);
+  return {report, scratch.fingers};
 }
 
 }  // namespace pincer::grasp

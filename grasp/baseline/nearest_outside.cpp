@@ -2,6 +2,8 @@
 
 #include <Eigen/LU>
 
+#include "contact/invariants.h"
+
 namespace pincer::grasp {
 namespace {
 
@@ -41,6 +43,8 @@ bool solveActive(std::span<const OuterSide> planes, const PlaneSet& set, int cou
 }  // namespace
 
 NearestOutside nearestOutside(std::span<const OuterSide> planes, const Vec3& goal) {
+  PINCER_ASSERT(planes.size() <= static_cast<std::size_t>(kMostPlanes));
+  PINCER_ASSERT(std::all_of(planes.begin(), planes.end(), [](const OuterSide& plane) { return isUnitIfFinite(plane.n); }));
   NearestOutside trial{goal, {}};
   if (isOutside(planes, goal)) return trial;
   const int n = static_cast<int>(planes.size());

@@ -1,8 +1,11 @@
-#include "grasp/coupling/hold_bounds.h"
+#include "grasp/hold_bounds.h"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
+#include <complex>
 
+#include "contact/invariants.h"
 #include "contact/math.h"
 
 namespace pincer::grasp {
@@ -10,6 +13,7 @@ namespace {
 
 // exp(A T) of the arm with the held force as a third, constant state: x, v, f.
 Mat3 heldArm(const ArmPort& arm, double tick) {
+  PINCER_ASSERT(arm.mass > 0 && tick > 0);
   Mat3 A = Mat3::Zero();
   A(0, 1) = 1;
   A(1, 0) = -arm.hand_stiffness / arm.mass;
@@ -29,6 +33,7 @@ Mat3 heldArm(const ArmPort& arm, double tick) {
 }  // namespace
 
 double requiredDamping(double stiffness, double damping, double tick, double lead) {
+  PINCER_ASSERT(-1 <= lead && lead <= 1);
   return 0.5 * stiffness * tick + std::abs(stiffness * lead * tick + damping);
 }
 
@@ -51,7 +56,9 @@ double loopRadius(const ArmPort& arm, double stiffness, double damping, double t
     loop(row, 2) = E(row, 2) * before;
   }
   loop(2, 0) = 1;
-  return Eigen::EigenSolver<Mat3>(loop, false).eigenvalues().cwiseAbs().maxCoeff();
+  double radius = 0;
+  for (const std::complex<double>& z : Eigen::EigenSolver<Mat3>(loop, false).eigenvalues()) radius = std::max(radius, math::hypot(z.real(), z.imag()));
+  return radius;
 }
 
 double stableStiffness(const ArmPort& arm, double damping, double tick, double lead) {

@@ -1,4 +1,8 @@
-#include "grasp/passivity/energy_ledger.h"
+#include "grasp/energy_ledger.h"
+
+#include "grasp/tick/scratch.h"
+
+#include "contact/invariants.h"
 
 namespace pincer::grasp {
 namespace {
@@ -16,6 +20,8 @@ double slippedBy(const GraspScratch& scratch, int finger) {
 }  // namespace
 
 double storedByFinger(const GraspModel& model, const GraspState& state, int finger) {
+  PINCER_DEMAND(isIndex(finger, model.fingers.size()) && isIndex(finger, state.world.points.size()),
+                "storedByFinger: there is no such finger");
   const engine::PointState& point = state.world.points[static_cast<std::size_t>(finger)];
   const engine::DrivenPointModel& coupling = model.fingers[static_cast<std::size_t>(finger)].coupling;
   const Vec3 e = point.p_W - point.p_target_W;
@@ -37,6 +43,8 @@ EnergyLedger::EnergyLedger(const GraspModel& model, const GraspState& state) : e
 }
 
 void EnergyLedger::add(const GraspModel& model, const GraspState& state, const GraspScratch& scratch, std::span<const Vec3> f_W) {
+  PINCER_DEMAND(f_W.empty() || f_W.size() == entries_.size(), "EnergyLedger: one force per finger, or none at all");
+  PINCER_DEMAND(model.fingers.size() == entries_.size(), "EnergyLedger: opened for another model");
   const double h = model.world.options.h;
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     Entry& entry = entries_[i];

@@ -1,4 +1,4 @@
-#include "grasp/passivity/passivity.h"
+#include "grasp/passivity.h"
 
 #include <fmt/format.h>
 
@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "contact/error.h"
+#include "contact/invariants.h"
 
 namespace pincer::grasp {
 namespace {
@@ -28,12 +29,14 @@ ArmPort armOf(const PassivityOptions& options, std::size_t finger) {
 // Of finger i.
 Flow flowOf(const PassivityOptions& options, const PassivityState& state, std::size_t i, const Vec3& f_W, double h) {
   const PortState& port = state.ports[i];
+  PINCER_ASSERT(armOf(options, i).mass > 0);
   const double mobility = 0.5 * h / armOf(options, i).mass;
   return {h * f_W.dot(port.v_W + mobility * port.f_held_W), h * mobility * f_W.squaredNorm()};
 }
 
 // The largest scale, at most 1, with which no more than `allowed` >= 0 flows out.
 double scaleFor(const Flow& flow, double allowed) {
+  PINCER_ASSERT(!(allowed < 0));
   if (!(flow.whole() > allowed)) return 1;
   if (flow.quadratic <= 0) return allowed / flow.linear;
   const double root = std::sqrt(flow.linear * flow.linear + 4 * flow.quadratic * allowed);
@@ -131,6 +134,8 @@ double PassivityState::energy() const {
 }
 
 void observePorts(const PassivityOptions& options, std::span<const Vec3> p_WF, double stored, double h, PassivityState& state) {
+  PINCER_DEMAND(p_WF.size() == state.ports.size(), "observePorts: one place per finger");
+  PINCER_DEMAND(h > 0, "observePorts: the tick's length is positive");
   state.least_stored = state.started ? std::min(state.least_stored, stored) : stored;
   state.started = true;
   const double most = stored - state.least_stored + options.reserve;
@@ -151,6 +156,8 @@ void observePorts(const PassivityOptions& options, std::span<const Vec3> p_WF, d
 
 void controlPorts(const PassivityOptions& options, double h, PassivityState& state, std::span<Vec3> f_W) {
   if (!options.on) return;
+  PINCER_DEMAND(f_W.size() == state.ports.size(), "controlPorts: one force per finger");
+  PINCER_DEMAND(h > 0, "controlPorts: the tick's length is positive");
   bool acted = dampSum(options, h, state, f_W);
   if (options.each) acted |= dampEach(options, h, state, f_W);
   if (options.bound) acted |= boundSum(options, h, state, f_W);
@@ -159,6 +166,7 @@ void controlPorts(const PassivityOptions& options, double h, PassivityState& sta
 }
 
 void holdPorts(std::span<const Vec3> f_W, PassivityState& state) {
+  PINCER_DEMAND(f_W.size() == state.ports.size(), "holdPorts: one force per finger");
   for (std::size_t i = 0; i < f_W.size(); ++i) state.ports[i].f_held_W = f_W[i];
 }
 

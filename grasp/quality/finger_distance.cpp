@@ -1,10 +1,12 @@
-#include "grasp/quality/finger_distance.h"
+#include "grasp/finger_distance.h"
 
-#include "grasp/finger_contacts.h"
+#include "contact/invariants.h"
+#include "grasp/tick/finger_contacts.h"
 
 namespace pincer::grasp {
 
 std::vector<FingerDistance> fingerDistances(const GraspModel& model, const GraspState& state) {
+  PINCER_DEMAND(state.fingers.size() == model.fingers.size(), "fingerDistances: the state is one of this model (makeState)");
   GraspState fresh = state;  // its trackers are searched from, not followed
   fresh.trackers.assign(fresh.trackers.size(), {});
   fresh.tips.assign(fresh.tips.size(), {});
@@ -13,6 +15,7 @@ std::vector<FingerDistance> fingerDistances(const GraspModel& model, const Grasp
   for (int finger = 0; finger < static_cast<int>(model.fingers.size()); ++finger) {
     const auto f = static_cast<std::size_t>(finger);
     const Pose X_WF{state.fingers[f].q_WF, state.world.points[f].p_W};
+    PINCER_ASSERT(X_WF.p.allFinite() && isUnit(X_WF.q));
     for (int body = 0; body < static_cast<int>(model.world.bodies.size()); ++body) {
       const Pose X_WB = engine::bodyPose(model.world, state.world, body);
       const contact::FingerContacts found = fingerOnBody(model, fresh, patches, finger, body, X_WB, X_WF, 0);

@@ -8,31 +8,9 @@
 // Sources: B. Mishra, J. T. Schwartz, M. Sharir, Algorithmica 2 (1987) 541-558 (grasp matrix); R. D. Howe, M. R. Cutkosky, Int. J. Robotics
 // Res. 15 (1996) 554-572 (the soft finger's ellipsoid).
 #pragma once
-#include <vector>
-
-#include "grasp/step.h"
+#include "grasp/grasp_quality.h"
 
 namespace pincer::grasp {
-
-using Vec6 = Eigen::Matrix<double, 6, 1>;
-
-struct GraspContact {
-  int finger = 0;
-  Vec3 p_W = Vec3::Zero();       // [m]
-  Mat3 R_WC = Mat3::Identity();  // columns (t1, t2, n)
-  double mu = 0;                 // [-], >= 0
-  double torsion_radius = 0;     // e [m]; 0 for a point contact
-  double f_n = 0;                // pressed on the body, >= 0 [N]
-  Vec2 f_T_C = Vec2::Zero();     // on the body, along t1 and t2 [N]
-  double tau_n = 0;              // on the body, about -n [N m]
-};
-
-// The fingers' contacts on `body` that pressed in the last tick, in the engine's order. `scratch` as that tick left it.
-std::vector<GraspContact> graspContacts(const GraspModel& model, const GraspScratch& scratch, int body);
-
-// How far from slipping: 1 - sqrt(f_T^2 + (tau_n/e)^2) / (mu f_n). 1: no tangential load; 0: slips. 0 for a contact that doesn't press or has
-// no friction.
-double slipMargin(const GraspContact& contact);
 
 // The columns of the grasp matrix that belong to one contact: wrenches [N] of unit f_n, f_1, f_2 [N] and unit tau_n / e [N].
 // The last is zero for a point contact.

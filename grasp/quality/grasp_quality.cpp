@@ -1,8 +1,11 @@
-#include "grasp/quality/grasp_quality.h"
+#include "grasp/grasp_quality.h"
 
 #include <Eigen/QR>
 #include <algorithm>
 #include <limits>
+
+#include "contact/invariants.h"
+#include "grasp/quality/wrench_set.h"
 
 namespace pincer::grasp {
 namespace {
@@ -64,6 +67,7 @@ GraspQuality graspQuality(std::vector<GraspContact> contacts, const Vec3& p_WC, 
 }
 
 GraspQuality graspQuality(const GraspModel& model, const GraspState& state, const GraspScratch& scratch, int body) {
+  PINCER_DEMAND(isIndex(body, model.world.bodies.size()), "graspQuality: there is no such body");
   const auto i = static_cast<std::size_t>(body);
   return graspQuality(graspContacts(model, scratch, body), state.world.bodies[i].X_WI.p,
                       model.world.bodies[i].mass * model.world.options.gravity_W);

@@ -9,6 +9,8 @@
 #include <limits>
 #include <numbers>
 
+#include "contact/invariants.h"
+
 namespace pincer::grasp {
 namespace {
 
@@ -28,9 +30,9 @@ class Directions {
     ++k_;
     Vec6 d;
     for (int i = 0; i < 6; i += 2) {
-      const double r = std::sqrt(-2 * std::log(1 - fraction(i))), a = 2 * std::numbers::pi * fraction(i + 1);
-      d[i] = r * std::cos(a);
-      d[i + 1] = r * std::sin(a);
+      const double r = std::sqrt(-2 * math::log(1 - fraction(i))), a = 2 * std::numbers::pi * fraction(i + 1);
+      d[i] = r * math::cos(a);
+      d[i + 1] = r * math::sin(a);
     }
     return d.normalized();
   }
@@ -38,7 +40,7 @@ class Directions {
  private:
   // phi_6, the positive root of x^7 = x + 1
   double fraction(int i) const {
-    const double x = 0.5 + k_ * std::pow(1.1127756842787055, -(i + 1));
+    const double x = 0.5 + k_ * math::pow(1.1127756842787055, -(i + 1));
     return x - std::floor(x);
   }
   int k_ = 0;
@@ -124,6 +126,7 @@ WrenchSet::WrenchSet(const std::vector<GraspContact>& contacts, const Vec3& p_WC
     size_ = std::max(size_, columns_.back().col(0).norm() + c.mu * columns_.back().rightCols<3>().norm());
   }
   basis_ = spanOf(columns_, mu_);
+  PINCER_ASSERT((basis_.transpose() * basis_).isIdentity(1e-12));
 }
 
 double WrenchSet::support(const Vec6& d) const {
@@ -149,6 +152,7 @@ Eigen::VectorXd WrenchSet::extreme(const Vec6& d, double& h) const {
 }
 
 WrenchSet::Exit WrenchSet::shoot(const Vec6& w) const {
+  PINCER_ASSERT(w.allFinite() && !w.isZero(0));  // a direction
   const Eigen::VectorXd d = basis_.transpose() * w.normalized();
   if (rank() == 0 || (basis_ * d - w.normalized()).norm() > kFlat) return {};
   RayProgramme programme(d, size_);
@@ -209,9 +213,9 @@ double WrenchSet::volume() const {
   for (int k = 0; k < kVolumeDirections; ++k) {
     const double t = shoot(directions.next()).t;
     if (t == 0) return 0;
-    sum += std::pow(t, 6);
+    sum += math::cube(t * t);
   }
-  return std::pow(std::numbers::pi, 3) / 6 * sum / kVolumeDirections;
+  return math::cube(std::numbers::pi) / 6 * sum / kVolumeDirections;
 }
 
 }  // namespace pincer::grasp

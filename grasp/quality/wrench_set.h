@@ -38,9 +38,6 @@ class WrenchSet {
   };
   Exit shoot(const Vec6& w) const;
 
-  // Whether squeezing hard enough resists the wrench `w` on the body: -w lies in the cone that W spans.
-  bool resists(const Vec6& w) const { return shoot(-w).t > 0; }
-
   // 6-dimensional volume (pi^3 / 6 times the mean of t^6 over directions), of 2000 directions: good to some per cent. 0 without closure.
   double volume() const;
 

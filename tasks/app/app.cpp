@@ -5,11 +5,13 @@
 #include <CLI/CLI.hpp>
 #include <array>
 #include <cstdio>
-#include <system_error>
+#include <exception>
+#include <new>
 
-#include "contact/error.h"
 #include "devices/window/surface.h"
 #include "tasks/app/commands.h"
+#include "tasks/app/process.h"
+#include "tasks/measure/interrupted.h"
 #include "tasks/servo/hand_devices.h"
 
 namespace pincer::tasks {
@@ -31,22 +33,20 @@ Examples:
 
 Exit codes: 0 ok, 1 a check failed, 2 usage, 3 bad input, 4 device, 5 interrupted.)";
 
-int reportUsage(const CLI::App& app, const CLI::ParseError& error) {
-  if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-  fmt::print(stderr, "pincer: {}. See `pincer --help`.\n", error.what());
-  return kExitUsage;
-}
-
 // What was printed may have gone to a full disk or a closed pipe.
 int flushed(int exit_code) {
   if (std::fflush(stdout) == 0 && !std::ferror(stdout)) return exit_code;
-  fmt::print(stderr, "pincer: standard output can't be written. The disk may be full.\n");
-  return kExitBadInput;
+  complain("standard output can't be written: what was printed there isn't whole. Is the disk full, or has its reader ended?");
+  return exit_code == kExitOk ? kExitBadInput : exit_code;
 }
 
-}  // namespace
+int reportUsage(const CLI::App& app, const CLI::ParseError& error) {
+  if (error.get_exit_code() == 0) return flushed(app.exit(error));  // --help, --version
+  complain(fmt::format("{}. See `pincer --help`.", error.what()));
+  return kExitUsage;
+}
 
-int runApp(int argc, char** argv) {
+int run(int argc, char** argv) {
   CLI::App app("pincer: multi-finger manipulation physics", "pincer");
   app.set_version_flag("--version", "pincer " PINCER_VERSION);
   app.footer(kExamples);
@@ -57,20 +57,31 @@ int runApp(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return reportUsage(app, error);
-  } catch (const InputError& error) {
-    fmt::print(stderr, "pincer: {}\n", error.what());
-    return kExitBadInput;
-  } catch (const devices::DisplayError& error) {
-    fmt::print(stderr, "pincer: {}\n", error.what());
-    return kExitDevice;
-  } catch (const DeviceError& error) {
-    fmt::print(stderr, "pincer: {}\n", error.what());
-    return kExitDevice;
-  } catch (const std::system_error& error) {  // fmt::print, when standard output can't be written
-    fmt::print(stderr, "pincer: {}\n", error.what());
-    return kExitBadInput;
   }
   return flushed(exit_code);
+}
+
+}  // namespace
+
+int runApp(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const std::bad_alloc&) {
+    complain(kNotEnoughMemory);
+    return kExitBadInput;
+  } catch (const Interrupted&) {
+    complain("interrupted. What was whole by then is kept, the rest is removed.");
+    return kExitInterrupted;
+  } catch (const devices::DisplayError& error) {
+    complain(error.what());
+    return kExitDevice;
+  } catch (const DeviceError& error) {
+    complain(error.what());
+    return kExitDevice;
+  } catch (const std::exception& error) {  // InputError; and what the system refuses, such as a thread
+    complain(error.what());
+    return kExitBadInput;
+  }
 }
 
 }  // namespace pincer::tasks

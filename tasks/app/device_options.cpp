@@ -1,11 +1,14 @@
 #include "tasks/app/device_options.h"
 
 #include <fmt/format.h>
+#include <poll.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <csignal>
-#include <iostream>
 
+#include "tasks/app/interrupt.h"
+#include "tasks/app/print.h"
 #include "tasks/app/servo_text.h"
 
 namespace pincer::tasks {
@@ -13,6 +16,18 @@ namespace pincer::tasks {
 namespace {
 
 extern "C" void pincerOnReportRequest(int) { requestServoReport(); }
+
+// Waits for a line on standard input. False where the input ends, or the user interrupts.
+bool lineComes() {
+  constexpr int kLook = 100;  // for an interrupt [ms]
+  for (char c = 0; c != '\n';) {
+    pollfd input{STDIN_FILENO, POLLIN, 0};
+    const int ready = ::poll(&input, 1, kLook);
+    if (interruptFlag()) return false;
+    if (ready > 0 && ::read(STDIN_FILENO, &c, 1) != 1) return false;
+  }
+  return true;
+}
 
 }  // namespace
 
@@ -27,10 +42,10 @@ void addDeviceOptions(CLI::App& command, DeviceRunOptions& options) {
   command.add_option("--displays", options.which.displays, "Serial numbers of their displays")->delimiter(',');
   command
       .add_option("--watchdog", options.watchdog_ms,
-                  "So long may the program stall before forces are cut; samples count for 0.6 of it, arms go limp after 0.8 [ms]; a mouse "
-                  "has no motors: 100")
+                  "Of usb and falcon: so long may the program stall before forces are cut; samples count for 0.6 of it, arms go limp after "
+                  "0.8 [ms]")
       ->check(CLI::Range(2.0, 100.0))
-      ->capture_default_str();
+      ->default_str("5");
   command.add_option("--calibration", options.which.calibrations, "Files of the arms' bases (pincer devices calibrate --save)")
       ->delimiter(',');
   command.add_option("--recording", options.which.recording,
@@ -40,25 +55,30 @@ void addDeviceOptions(CLI::App& command, DeviceRunOptions& options) {
 }
 
 std::unique_ptr<HandDevices> openDevices(const DeviceRunOptions& options, ServoOptions& servo) {
-  servo.watchdog = 1e-3 * options.watchdog_ms;
-  servo.show = [period = 1 / servo.rate](const ServoReport& report) { fmt::print(stderr, "{}\n", servoText(report, period)); };
+  const DeviceChoice choice = deviceChoiceOf(options.devices);
+  if (options.watchdog_ms && !hasMotors(choice)) {
+    throw CLI::ValidationError(
+        fmt::format("--watchdog {:g} guards motors, and --devices {} has none. Leave it out, or give --devices usb or --devices falcon",
+                    *options.watchdog_ms, options.devices));
+  }
+  if (options.watchdog_ms) servo.watchdog = 1e-3 * *options.watchdog_ms;
+  servo.show = [period = 1 / servo.rate](const ServoReport& report) { print(stderr, "{}\n", servoText(report, period)); };
   std::signal(SIGUSR1, pincerOnReportRequest);
   DeviceOptions which = options.which;
   which.watchdog = servo.watchdog;
-  which.choice = deviceChoiceOf(options.devices);
-  if (which.choice == DeviceChoice::kSim) return nullptr;
+  which.choice = choice;
+  if (choice == DeviceChoice::kSim || choice == DeviceChoice::kMouse) return nullptr;
   auto devices = openHandDevices(which);
-  for (const std::string& line : devices->describe()) fmt::print(stderr, "{}\n", line);
-  servo.real_time = true;
+  for (const std::string& line : devices->describe()) print(stderr, "{}\n", line);
+  servo.clock = hasMotors(choice) ? ServoClock::kReal : ServoClock::kPaced;
   return devices;
 }
 
 bool operatorArms(const DeviceRunOptions& options, const std::string& why) {
-  fmt::print(stderr, "{}\n", why);
+  print(stderr, "{}\n", why);
   if (options.yes) return true;
-  fmt::print(stderr, "Forces are off. Fingers in place, emergency stop at hand? Enter switches forces on, Ctrl-D ends the session. ");
-  std::string line;
-  return static_cast<bool>(std::getline(std::cin, line));
+  print(stderr, "Forces are off. Fingers in place, emergency stop at hand? Enter switches forces on, Ctrl-D ends the session. ");
+  return lineComes();
 }
 
 }  // namespace pincer::tasks

@@ -1,6 +1,7 @@
 // device_options: which devices a session runs on, as its user asks for them, and the operator who switches the forces on.
 #pragma once
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "tasks/servo/hand_devices.h"
@@ -15,14 +16,15 @@ namespace pincer::tasks {
 struct DeviceRunOptions {
   std::string devices = "sim";
   DeviceOptions which;
-  double watchdog_ms = 5;
+  std::optional<double> watchdog_ms;  // 5
   bool yes = false;
 };
 
 // Adds --devices, --arms, --displays, --watchdog, --recording, --firmware and --yes.
 void addDeviceOptions(CLI::App& command, DeviceRunOptions& options);
 
-// Null for simulated ones. Says what was found; makes `servo` one of real time. Throws DeviceError.
+// Null for those that aren't opened here: simulated ones and the mouse. Says what was found; makes `servo` one by the wall clock, watched where there
+// are motors. Throws DeviceError, and CLI::ValidationError for a watchdog that would guard no motor.
 std::unique_ptr<HandDevices> openDevices(const DeviceRunOptions& options, ServoOptions& servo);
 
 // Asks on the terminal whether forces may come on, because `why`; yes if the user said --yes. False when there is nobody to ask.

@@ -9,6 +9,7 @@
 #include "devices/usb/usb_host.h"
 #include "tasks/app/app.h"
 #include "tasks/app/devices_commands.h"
+#include "tasks/app/print.h"
 #include "tasks/servo/device_calibration.h"
 #include "tasks/servo/hand_devices_parts.h"
 
@@ -89,7 +90,7 @@ int calibrate(const CalibrateArguments& arguments) {
       throw DeviceError(fmt::format("{} didn't take {}. Unplug it, plug it in again.", arguments.serial, name));
   }
   kept = keptCalibration(device);
-  for (const auto& [name, value] : kept.values) fmt::print("{:<20} {}\n", name, value);
+  for (const auto& [name, value] : kept.values) print("{:<20} {}\n", name, value);
   if (!arguments.save.empty()) writeCalibration(kept, arguments.save);
   return kExitOk;
 }

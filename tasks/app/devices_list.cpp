@@ -9,6 +9,9 @@
 #include "devices/usb/usb_host.h"
 #include "tasks/app/app.h"
 #include "tasks/app/devices_commands.h"
+#include "tasks/app/interrupt.h"
+#include "tasks/app/print.h"
+#include "tasks/measure/interrupted.h"
 #include "tasks/scene/json_writer.h"
 #include "tasks/servo/hand_devices_parts.h"
 
@@ -31,22 +34,22 @@ std::string tipOf(const devices::ArmCapabilities& can) {
 
 void listArm(const devices::usb::UsbArm& arm) {
   const auto& can = arm.capabilities();
-  fmt::print("arm      {:<12} {:<16} {:<10} {:.3g} N peak, {:.3g} N continuous, {:.3g} um, {:.3g} N/mm{}\n", arm.deviceIdentity().serial,
-             arm.deviceIdentity().model, devices::nameOf(arm.linkState()), can.peak_force, can.continuous_force, 1e6 * can.resolution,
-             1e-3 * can.stiffness_limit, tipOf(can));
+  print("arm      {:<12} {:<16} {:<10} {:.3g} N peak, {:.3g} N continuous, {:.3g} um, {:.3g} N/mm{}\n", arm.deviceIdentity().serial,
+        arm.deviceIdentity().model, devices::nameOf(arm.linkState()), can.peak_force, can.continuous_force, 1e6 * can.resolution,
+        1e-3 * can.stiffness_limit, tipOf(can));
 }
 
 void listDisplay(const devices::usb::UsbDisplay& display) {
   const auto& can = display.capabilities();
-  fmt::print("display  {:<12} {:<16} {:<10} +-{:.3g} x +-{:.3g} mm, {:.3g} um, {:.3g} mm/s\n", display.deviceIdentity().serial,
-             display.deviceIdentity().model, devices::nameOf(display.linkState()), 1e3 * can.reach.x(), 1e3 * can.reach.y(),
-             1e6 * can.resolution, 1e3 * can.speed);
+  print("display  {:<12} {:<16} {:<10} +-{:.3g} x +-{:.3g} mm, {:.3g} um, {:.3g} mm/s\n", display.deviceIdentity().serial,
+        display.deviceIdentity().model, devices::nameOf(display.linkState()), 1e3 * can.reach.x(), 1e3 * can.reach.y(),
+        1e6 * can.resolution, 1e3 * can.speed);
 }
 
 // Found, not opened: that would take its firmware, and homing.
 void listFalcon(const devices::falcon::FalconPlace& place) {
-  fmt::print("falcon   {:<12} {:<16} {:<10} pincer run ... --devices falcon --arms {}\n", place.port, "Novint Falcon",
-             place.serial.empty() ? "-" : place.serial, place.port);
+  print("falcon   {:<12} {:<16} {:<10} pincer run ... --devices falcon --arms {}\n", place.port, "Novint Falcon",
+        place.serial.empty() ? "-" : place.serial, place.port);
 }
 
 template <typename Device>
@@ -66,13 +69,19 @@ void printJson(UsbHost& host, const std::vector<devices::falcon::FalconPlace>& f
   }
   json.endArray().key("problems").beginArray();
   for (const std::string& problem : host.problems()) json.value(problem);
-  fmt::print("{}\n", json.endArray().endObject().text());
+  print("{}\n", json.endArray().endObject().text());
 }
 
 int listDevices(const DevicesListArguments& arguments) {
   const auto usb = startUsb();
   UsbHost& host = *usb;
-  if (host.waitFor(1, 0, arguments.timeout)) std::this_thread::sleep_for(std::chrono::milliseconds(200));  // the others, too
+  constexpr double kLook = 0.1;  // for an interrupt [s]
+  bool answered = false;
+  for (double waited = 0; !answered && waited < arguments.timeout; waited += kLook) {
+    throwIf(interruptFlag());
+    answered = host.waitFor(1, 0, kLook);
+  }
+  if (answered) std::this_thread::sleep_for(std::chrono::milliseconds(200));  // the others, too
   const auto falcons = devices::falcon::listFalcons();
   if (arguments.json) {
     printJson(host, falcons);
@@ -80,10 +89,9 @@ int listDevices(const DevicesListArguments& arguments) {
     for (const auto* arm : host.arms()) listArm(*arm);
     for (const auto* display : host.displays()) listDisplay(*display);
     for (const auto& falcon : falcons) listFalcon(falcon);
-    for (const std::string& problem : host.problems()) fmt::print("{}\n", problem);
+    for (const std::string& problem : host.problems()) print("{}\n", problem);
     if (host.arms().empty() && host.displays().empty() && falcons.empty() && host.problems().empty()) {
-      fmt::print(
-          "No device of pincer's USB protocol is plugged in. Check cable and power; `lsusb` must show 1209:0001 (docs/devices.md).\n");
+      print("No device of pincer's USB protocol is plugged in. Check cable and power; `lsusb` must show 1209:0001 (docs/devices.md).\n");
     }
   }
   return host.problems().empty() ? kExitOk : kExitDevice;

@@ -9,6 +9,7 @@
 #include "tasks/app/app.h"
 #include "tasks/app/devices_commands.h"
 #include "tasks/app/interrupt.h"
+#include "tasks/app/print.h"
 #include "tasks/app/servo_text.h"
 #include "tasks/servo/hand_devices_parts.h"
 #include "tasks/servo/servo.h"
@@ -50,7 +51,7 @@ class DeviceTest final : public ServoCycle {
     for (UsbDisplay* display : displays_) {
       const double angle = 2 * 3.14159265358979 * 0.5 * now;
       display->command(
-          {false, 0.6 * Vec2(display->capabilities().reach.x() * std::cos(angle), display->capabilities().reach.y() * std::sin(angle))});
+          {false, 0.6 * Vec2(display->capabilities().reach.x() * math::cos(angle), display->capabilities().reach.y() * math::sin(angle))});
     }
     ++ticks_;
     return now < arguments_.seconds;
@@ -64,7 +65,7 @@ class DeviceTest final : public ServoCycle {
     for (std::size_t i = 0; i < arms_.size(); ++i) {
       well &= line(*arms_[i], before_[i]);
       if (gates_[i].trip == devices::Trip::kNone) continue;
-      fmt::print("  {}\n", devices::describe(limits_[i], gates_[i]));
+      print("  {}\n", devices::describe(limits_[i], gates_[i]));
       well = false;
     }
     for (std::size_t i = 0; i < displays_.size(); ++i) well &= line(*displays_[i], before_[arms_.size() + i]);
@@ -84,11 +85,11 @@ class DeviceTest final : public ServoCycle {
     const LinkCounts now = device.counts();
     const std::int64_t bad = now.bad - before.bad, lost = now.lost - before.lost, answers = now.answers - before.answers;
     const bool well = device.linkState() == devices::DeviceState::kReady && bad == 0 && lost == 0 && answers > 0;
-    fmt::print("{:<10} {:<26} {} frames, {} lost, {} unsound, {} of {} commands answered, last round trip {:.2f} ms\n",
-               devices::nameOf(device.linkState()), device.identity(), now.accepted - before.accepted, lost, bad, answers, ticks_,
-               1e-6 * static_cast<double>(now.round_trip_ns));
+    print("{:<10} {:<26} {} frames, {} lost, {} unsound, {} of {} commands answered, last round trip {:.2f} ms\n",
+          devices::nameOf(device.linkState()), device.identity(), now.accepted - before.accepted, lost, bad, answers, ticks_,
+          1e-6 * static_cast<double>(now.round_trip_ns));
     const std::string faults = devices::usb::describeFaults(device.status().faults);
-    if (!faults.empty()) fmt::print("  it reports: {}\n", faults);
+    if (!faults.empty()) print("  it reports: {}\n", faults);
     return well;
   }
 
@@ -119,17 +120,17 @@ int testDevices(const DevicesTestArguments& arguments) {
   host.waitFor(16, 16, 1);  // whatever answers within a second
   const auto arms = withSerial(host.arms(), arguments.serial);
   const auto displays = withSerial(host.displays(), arguments.serial);
-  for (const std::string& problem : host.problems()) fmt::print("{}\n", problem);
+  for (const std::string& problem : host.problems()) print("{}\n", problem);
   if (arms.empty() && displays.empty()) {
     throw DeviceError(arguments.serial.empty()
                           ? "No device is ready on USB. See what is there: pincer devices list"
                           : fmt::format("No device {} is ready on USB. See what is there: pincer devices list", arguments.serial));
   }
   DeviceTest test(host, arms, displays, arguments);
-  const ServoOptions servo{.real_time = true, .watchdog = 1e-3 * arguments.watchdog_ms};
+  const ServoOptions servo{.clock = ServoClock::kReal, .watchdog = 1e-3 * arguments.watchdog_ms};
   const ServoReport report = runServo(servo, test, interrupted);
   test.cutForces();
-  fmt::print("{}\n", servoText(report, 1 / servo.rate));
+  print("{}\n", servoText(report, 1 / servo.rate));
   if (!test.report()) return kExitDevice;
   return report.interrupted ? kExitInterrupted : kExitOk;
 }

@@ -6,6 +6,8 @@
 
 #include "tasks/app/app.h"
 #include "tasks/app/commands.h"
+#include "tasks/app/interrupt.h"
+#include "tasks/app/print.h"
 #include "tasks/session/bids_export.h"
 #include "tasks/session/csv_export.h"
 
@@ -25,16 +27,17 @@ struct ExportArguments {
 };
 
 int exportSession(const ExportArguments& arguments) {
-  const SessionReader session(arguments.session);
+  SessionReader session(arguments.session);
+  session.heed(interruptFlag());
   if (!arguments.bids.empty()) {
-    for (const std::string& file : exportBids(session, arguments.bids)) fmt::print("{}\n", file);
+    for (const std::string& file : exportBids(session, arguments.bids)) print("{}\n", file);
     return kExitOk;
   }
   const std::string beside = (std::filesystem::path(arguments.session).parent_path() / "csv").string();
   for (const std::string& file : exportCsv(session, arguments.directory.empty() ? beside : arguments.directory, arguments.filter)) {
-    fmt::print("{}\n", file);
+    print("{}\n", file);
   }
-  if (!session.warning().empty()) fmt::print(stderr, "pincer: {}\n", session.warning());
+  if (!session.warning().empty()) print(stderr, "pincer: {}\n", session.warning());
   return kExitOk;
 }
 

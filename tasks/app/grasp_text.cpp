@@ -5,8 +5,8 @@
 #include <array>
 #include <cmath>
 
-#include "grasp/quality/finger_distance.h"
-#include "grasp/quality/grasp_quality.h"
+#include "grasp/finger_distance.h"
+#include "grasp/grasp_quality.h"
 
 namespace pincer::tasks {
 namespace {

@@ -9,21 +9,31 @@ namespace {
 std::atomic<bool> g_interrupted{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may take no lock");
 
-extern "C" void pincerOnInterrupt(int signal) {
+constexpr int kEnding[] = {SIGINT, SIGTERM, SIGHUP};
+
+extern "C" void pincerOnInterrupt(int) {
   g_interrupted.store(true);
-  std::signal(signal, SIG_DFL);
+  for (const int signal : kEnding) std::signal(signal, SIG_DFL);
+}
+
+bool isIgnored(int signal) {
+  struct sigaction now {};
+  return sigaction(signal, nullptr, &now) == 0 && now.sa_handler == SIG_IGN;
 }
 
 }  // namespace
 
-const std::atomic<bool>& interruptFlag() {
-  static const bool installed = [] {
-    std::signal(SIGINT, pincerOnInterrupt);
-    std::signal(SIGTERM, pincerOnInterrupt);
-    return true;
-  }();
-  static_cast<void>(installed);
-  return g_interrupted;
+void handleSignals() {
+  struct sigaction action {};
+  action.sa_handler = pincerOnInterrupt;
+  action.sa_flags = SA_RESTART;  // half a write to a pipe would be lost; who waits for a person polls
+  for (const int signal : kEnding) {
+    if (signal != SIGHUP || !isIgnored(signal)) sigaction(signal, &action, nullptr);
+  }
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
 }
+
+const std::atomic<bool>& interruptFlag() { return g_interrupted; }
 
 }  // namespace pincer::tasks

@@ -1,10 +1,17 @@
-// interrupt: Ctrl-C (SIGINT) and a polite kill (SIGTERM) let the program finish cleanly; a second one ends it at once.
+// interrupt: one policy for signals, for all commands.
+//
+//   INT, TERM, HUP   the first sets a flag: what works for long looks at it, keeps what is whole, removes what isn't, and ends with exit code 5.
+//                    The second ends the program at once. HUP stays ignored where it was (nohup)
+//   PIPE, XFSZ       ignored: the write fails, and is reported like any other (a closed pipe, a file over the limit of its size)
 #pragma once
 #include <atomic>
 
 namespace pincer::tasks {
 
-// From the first call on the two signals only set this flag; long runs look at it.
+// Once, at the start of the program. Before, a signal does what the system does by itself.
+void handleSignals();
+
+// True once the user wants the program to end.
 const std::atomic<bool>& interruptFlag();
 
 }  // namespace pincer::tasks

@@ -4,6 +4,7 @@
 
 #include "tasks/app/app.h"
 #include "tasks/app/commands.h"
+#include "tasks/app/print.h"
 #include "tasks/view/keys.h"
 
 namespace pincer::tasks {
@@ -12,7 +13,7 @@ void addKeysCommand(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("keys", "What keys and mouse do in the window that --view opens (Markdown)");
   command->footer("\nExample:\n  pincer keys");
   command->callback([&exit_code] {
-    fmt::print("{}", keysMarkdown());
+    print("{}", keysMarkdown());
     exit_code = kExitOk;
   });
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <new>
 
 #include "contact/error.h"
 #include "tasks/experiments/manipulation_file.h"
@@ -41,7 +42,7 @@ std::string devicesJson(const ManipulationSessionOptions& o) {
       .value(o.devices == "mouse" ? "simulated" : o.devices)
       .key("rate")
       .value(o.servo.rate);
-  return json.key("sample_rate").value(o.sample_rate).key("real_time").value(o.servo.real_time).endObject().text();
+  return json.key("sample_rate").value(o.sample_rate).key("real_time").value(o.servo.clock != ServoClock::kVirtual).endObject().text();
 }
 
 ManipulationSessionResult runInto(SessionWriter& writer, const ManipulationSessionOptions& options, StudyHooks hooks,
@@ -51,15 +52,27 @@ ManipulationSessionResult runInto(SessionWriter& writer, const ManipulationSessi
   ManipulationSessionResult result;
   hooks.host = options.host;
   hooks.served = [&](const ServoReport& trial) { result.servo.add(trial); };
-  result.trials = runManipulationStudy(options.study, options.servo, sink, interrupted, hooks);
-  result.interrupted = result.servo.interrupted;
+  bool refused = false;  // the operator didn't switch the forces on
+  if (hooks.host.arm) {
+    hooks.host.arm = [&refused, ask = hooks.host.arm](const std::string& why) {
+      refused = !ask(why);
+      return !refused;
+    };
+  }
+  try {
+    result.trials = runManipulationStudy(options.study, options.servo, sink, interrupted, hooks);
+  } catch (const std::bad_alloc&) {
+    writer.abort("not enough memory");
+    throw;
+  }
+  result.interrupted = result.servo.interrupted || refused;
   result.interrupted ? writer.abort("interrupted by the user") : writer.close();
   return result;
 }
 
 SessionOptions storeOptions(const ServoOptions& servo) {
   SessionOptions store;
-  store.block_when_full = !servo.real_time;
+  store.block_when_full = servo.clock != ServoClock::kReal;
   return store;
 }
 

@@ -10,6 +10,8 @@
 #include "contact/error.h"
 #include "tasks/app/app.h"
 #include "tasks/app/interrupt.h"
+#include "tasks/app/print.h"
+#include "tasks/app/process.h"
 #include "tasks/app/progress.h"
 #include "tasks/app/record_text.h"
 #include "tasks/scene/json_writer.h"
@@ -27,13 +29,13 @@ std::vector<Measurement> selected(const std::vector<Measurement>& all, const std
 
 void printNames(const std::vector<Measurement>& measurements, bool as_json) {
   if (!as_json) {
-    for (const Measurement& m : measurements) fmt::print("{}\n", m.name);
+    for (const Measurement& m : measurements) print("{}\n", m.name);
     return;
   }
   JsonWriter json;
   json.beginArray();
   for (const Measurement& m : measurements) json.value(m.name);
-  fmt::print("{}", json.endArray().text());
+  print("{}", json.endArray().text());
 }
 
 void runOne(const Measurement& measurement, MeasureContext& context, std::vector<Record>& records) {
@@ -71,6 +73,7 @@ int runMeasurements(const std::vector<Measurement>& measurements, const MeasureO
   std::vector<Record> records;
   std::size_t done = 0;
   {
+    const StandardOutputAside aside;  // other engines say what they like; the records come after
     Progress progress(title, kSteps * static_cast<std::int64_t>(chosen.size()));
     MeasureContext context;
     context.thorough = options.thorough;
@@ -85,8 +88,11 @@ int runMeasurements(const std::vector<Measurement>& measurements, const MeasureO
       records.insert(records.end(), measured.begin(), measured.end());
     }
   }
-  fmt::print("{}", options.json ? recordJson(records) : recordTable(records));
-  if (done < chosen.size()) return kExitInterrupted;
+  print("{}", options.json ? recordJson(records) : recordTable(records));
+  if (done < chosen.size()) {
+    print(stderr, "pincer: interrupted; these are the figures that were whole.\n");
+    return kExitInterrupted;
+  }
   return allOk(records) ? kExitOk : kExitCheckFailed;
 }
 

@@ -1,8 +1,8 @@
 // What `pincer mesh info` and `pincer mesh check` find out, and how findings are shown.
 #include <fmt/format.h>
 
+#include "contact/smooth_mesh.h"
 #include "contact/surface/self_crossings.h"
-#include "contact/surface/smooth_mesh.h"
 #include "tasks/app/mesh_commands.h"
 #include "tasks/app/terminal.h"
 

@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "contact/mesh/mesh_reader.h"
-#include "contact/mesh/mesh_report.h"
-#include "contact/mesh/triangle_mesh.h"
+#include "contact/mesh_reader.h"
+#include "contact/mesh_report.h"
+#include "contact/triangle_mesh.h"
 #include "tasks/scene/json_writer.h"
 
 namespace CLI {

@@ -4,9 +4,10 @@
 #include <algorithm>
 #include <memory>
 
-#include "contact/mesh/mesh_repair.h"
+#include "contact/mesh_repair.h"
 #include "tasks/app/app.h"
 #include "tasks/app/mesh_commands.h"
+#include "tasks/app/print.h"
 
 namespace pincer::tasks {
 namespace {
@@ -39,13 +40,13 @@ void scaleToSize(double size, contact::TriangleMesh& mesh) {
 contact::TriangleMesh repaired(contact::TriangleMesh mesh, const ConvertArguments& arguments) {
   contact::RepairedMesh result =
       contact::repair(std::move(mesh), {.weld = kMetresPerMillimetre * arguments.weld, .fill_holes = arguments.fill_holes});
-  for (const contact::MeshChange& change : result.changes) fmt::print("  * {}: {}\n", change.name, change.text);
-  if (result.changes.empty()) fmt::print("  nothing to repair\n");
+  for (const contact::MeshChange& change : result.changes) print("  * {}: {}\n", change.name, change.text);
+  if (result.changes.empty()) print("  nothing to repair\n");
   return std::move(result.mesh);
 }
 
 void convert(const ConvertArguments& arguments) {
-  fmt::print("{}\n", arguments.input.file);
+  print("{}\n", arguments.input.file);
   contact::TriangleMesh mesh =
       readWithProgress(arguments.input, arguments.repair ? contact::Degenerate::keep : contact::Degenerate::reject);
   if (arguments.size > 0) scaleToSize(arguments.size, mesh);
@@ -53,7 +54,7 @@ void convert(const ConvertArguments& arguments) {
   const std::string units = arguments.to_units.empty() ? arguments.input.units : arguments.to_units;
   writeAndSay(arguments.input, arguments.out, mesh, units);
   const contact::MeshReport report = contact::inspect(mesh, {.metres_per_unit = contact::metresPerUnit(arguments.input.units)});
-  fmt::print("{}", findingsText(report.findings));
+  print("{}", findingsText(report.findings));
 }
 
 }  // namespace

@@ -5,8 +5,11 @@
 #include <filesystem>
 
 #include "contact/mesh/mesh_writer.h"
+#include "tasks/app/interrupt.h"
 #include "tasks/app/mesh_commands.h"
+#include "tasks/app/print.h"
 #include "tasks/app/progress.h"
+#include "tasks/measure/interrupted.h"
 
 namespace pincer::tasks {
 
@@ -25,7 +28,10 @@ contact::TriangleMesh readWithProgress(const MeshInput& input, contact::Degenera
   contact::ReadOptions options;
   options.metres_per_unit = contact::metresPerUnit(input.units);
   options.degenerate = degenerate;
-  options.progress = [&](double fraction) { progress.update(static_cast<std::int64_t>(fraction * kSteps)); };
+  options.progress = [&](double fraction) {
+    throwIf(interruptFlag());
+    progress.update(static_cast<std::int64_t>(fraction * kSteps));
+  };
   return contact::readMesh(input.file, options);
 }
 
@@ -34,10 +40,11 @@ void writeAndSay(const MeshInput& input, const std::string& out, const contact::
   if (std::filesystem::equivalent(input.file, out, no_such_file)) {
     throw InputError(fmt::format("{}: this is the file that was read; it isn't overwritten. Give the result another name.", out));
   }
+  throwIf(interruptFlag());
   const contact::WriteOptions options = {.metres_per_unit = contact::metresPerUnit(units)};
   contact::writeMesh(out, mesh, options);
-  fmt::print("{}: {} vertices, {} triangles, in {}\n", out, mesh.vertices.size(), mesh.triangles.size(), units);
-  for (const std::string& loss : contact::lossesOf(mesh, *contact::formatOfName(out), options)) fmt::print("  - lost: {}\n", loss);
+  print("{}: {} vertices, {} triangles, in {}\n", out, mesh.vertices.size(), mesh.triangles.size(), units);
+  for (const std::string& loss : contact::lossesOf(mesh, *contact::formatOfName(out), options)) print("  - lost: {}\n", loss);
 }
 
 }  // namespace pincer::tasks

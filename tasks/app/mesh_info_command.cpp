@@ -7,6 +7,7 @@
 #include "engine/motion/mass.h"
 #include "tasks/app/app.h"
 #include "tasks/app/mesh_commands.h"
+#include "tasks/app/print.h"
 #include "tasks/app/terminal.h"
 
 namespace pincer::tasks {
@@ -142,7 +143,7 @@ void addMeshInfo(CLI::App& mesh, int& exit_code) {
   info->footer(kInfoExample);
   info->callback([arguments, &exit_code] {
     const MeshFacts facts = examine(*arguments);
-    fmt::print("{}", arguments->json ? meshJson(*arguments, facts) : infoText(*arguments, facts));
+    print("{}", arguments->json ? meshJson(*arguments, facts) : infoText(*arguments, facts));
     exit_code = kExitOk;
   });
 }
@@ -154,7 +155,7 @@ void addMeshCheck(CLI::App& mesh, int& exit_code) {
   check->footer(kCheckExample);
   check->callback([arguments, &exit_code] {
     const MeshFacts facts = examine(*arguments);
-    fmt::print("{}", arguments->json ? meshJson(*arguments, facts) : checkText(*arguments, facts));
+    print("{}", arguments->json ? meshJson(*arguments, facts) : checkText(*arguments, facts));
     exit_code = facts.check.report.isFit() ? kExitOk : kExitCheckFailed;
   });
 }

@@ -7,6 +7,7 @@
 #include "contact/mesh/round_edges.h"
 #include "tasks/app/app.h"
 #include "tasks/app/mesh_commands.h"
+#include "tasks/app/print.h"
 
 namespace pincer::tasks {
 namespace {
@@ -36,10 +37,10 @@ void roundFile(const RoundArguments& arguments) {
                                                                   .use_file_normals = !arguments.ignore_normals,
                                                                   .segments = arguments.segments});
   if (rounded.creases + rounded.tips == 0) {
-    fmt::print("{}: no edge is sharp; the result is a copy\n", arguments.input.file);
+    print("{}: no edge is sharp; the result is a copy\n", arguments.input.file);
   } else {
-    fmt::print("{}: rounded {}, {} and {} to {} mm\n", arguments.input.file, counted(rounded.creases, "edge", "edges"),
-               counted(rounded.corners, "corner", "corners"), counted(rounded.tips, "tip", "tips"), arguments.radius);
+    print("{}: rounded {}, {} and {} to {} mm\n", arguments.input.file, counted(rounded.creases, "edge", "edges"),
+          counted(rounded.corners, "corner", "corners"), counted(rounded.tips, "tip", "tips"), arguments.radius);
   }
   writeAndSay(arguments.input, arguments.out, rounded.mesh, arguments.input.units);
 }

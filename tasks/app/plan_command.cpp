@@ -6,10 +6,12 @@
 #include <memory>
 #include <optional>
 
+#include "engine/world/stage_clock.h"
 #include "tasks/app/app.h"
 #include "tasks/app/commands.h"
 #include "tasks/app/interrupt.h"
 #include "tasks/app/plan_text.h"
+#include "tasks/app/print.h"
 #include "tasks/app/progress.h"
 #include "tasks/app/tick_times.h"
 #include "tasks/scene/builtin_scenes.h"
@@ -72,7 +74,7 @@ PlanTimes measureStages(const Scene& scene, std::int64_t ticks) {
   engine::StageClock clock;
   repeatScene(scene, ticks, times, progress, ticks, [&](Simulation& s) {
     clock.seconds = {};
-    s.scratch().world.clock = &clock;
+    engine::timeStages(&clock, grasp::worldOf(s.scratch()));
     s.tick();
     for (std::size_t i = 0; i < times.stages.size(); ++i) times.stages[i].add(clock.seconds[i]);
   });
@@ -114,12 +116,13 @@ std::string planJson(const Scene& scene, const std::vector<PlanLine>& plan, cons
 }
 
 int runPlan(const PlanArguments& arguments) {
-  interruptFlag();
   const Scene scene = readSceneOrBuiltin(arguments.scene);
-  const std::vector<PlanLine> plan = describePlan(buildWorld(scene));
+  const std::vector<PlanLine> plan = describePlan(buildWorld(scene), methodsOf(scene));
   const PlanTimes times = measureStages(scene, arguments.ticks);
-  fmt::print("{}", arguments.json ? planJson(scene, plan, times) : planText(scene, plan, times));
-  return times.interrupted ? kExitInterrupted : kExitOk;
+  print("{}", arguments.json ? planJson(scene, plan, times) : planText(scene, plan, times));
+  if (!times.interrupted) return kExitOk;
+  print(stderr, "pincer: interrupted; the times are those of the ticks that were done.\n");
+  return kExitInterrupted;
 }
 
 }  // namespace

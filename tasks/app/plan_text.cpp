@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "contact/shape/polytope.h"
-#include "contact/surface/smooth_mesh.h"
+#include "contact/polytope.h"
+#include "contact/smooth_mesh.h"
 
 namespace pincer::tasks {
 namespace {
@@ -107,20 +107,20 @@ std::string armForm(const grasp::FingerModel& f, double tick) {
       need, f.arm->damping, passive, stable);
 }
 
-std::string tipForm(const grasp::FingerModel& f) {
+std::string tipForm(const grasp::FingerModel& f, grasp::FingerMethod method) {
   constexpr std::array<const char*, 4> names = {"sphere", "capsule", "ellipsoid", "pad"};
   std::string text = fmt::format("r {:g} mm", 1e3 * f.radius);
   if (f.shape) text = fmt::format("{} within {:g} mm", names[f.shape->index()], 1e3 * f.radius);
   if (f.pad.isSoft()) text += f.pad.modulus > 0 ? ", soft pad by Hertz" : fmt::format(", soft pad of {:g} mm", 1e3 * f.pad.patch_radius);
   if (f.along_normal) text += ", coupling along the contact's axes";
-  if (f.method != grasp::FingerMethod::kProxy)
-    text += fmt::format(", rendered by {}", grasp::kFingerMethodNames[static_cast<std::size_t>(f.method)]);
+  if (method != grasp::FingerMethod::kProxy)
+    text += fmt::format(", rendered by {}", grasp::kFingerMethodNames[static_cast<std::size_t>(method)]);
   return text;
 }
 
-void describeFinger(const grasp::GraspModel& model, std::size_t finger, std::vector<PlanLine>& lines) {
+void describeFinger(const grasp::GraspModel& model, std::size_t finger, grasp::FingerMethod method, std::vector<PlanLine>& lines) {
   const grasp::FingerModel& f = model.fingers[finger];
-  lines.push_back({"finger", f.name, fmt::format("{}, {}", tipForm(f), couplingForm(f.coupling, model.world.point_forms[finger]))});
+  lines.push_back({"finger", f.name, fmt::format("{}, {}", tipForm(f, method), couplingForm(f.coupling, model.world.point_forms[finger]))});
   lines.push_back({"arm", f.name, armForm(f, model.world.options.h)});
   for (const engine::BodyModel& body : model.world.bodies) {
     lines.push_back({"touch", fmt::format("{} - {}", f.name, body.name), touchForm(body)});
@@ -149,7 +149,7 @@ void describeSkipped(const grasp::GraspModel& model, std::vector<PlanLine>& line
 
 std::string nameOf(const contact::Shape& shape) { return std::visit(ShapeName{}, shape); }
 
-std::vector<PlanLine> describePlan(const grasp::GraspModel& model) {
+std::vector<PlanLine> describePlan(const grasp::GraspModel& model, const std::vector<grasp::FingerMethod>& methods) {
   std::vector<PlanLine> lines;
   const Bodies& bodies = model.world.bodies;
   for (const engine::BodyModel& body : bodies) lines.push_back({"body", body.name, bodyForm(body)});
@@ -158,7 +158,7 @@ std::vector<PlanLine> describePlan(const grasp::GraspModel& model) {
         fmt::format("{} - {}", bodies[static_cast<std::size_t>(pair.a)].name, bodies[static_cast<std::size_t>(pair.b)].name);
     lines.push_back({"pair", name, pairForm(bodies, pair)});
   }
-  for (std::size_t i = 0; i < model.fingers.size(); ++i) describeFinger(model, i, lines);
+  for (std::size_t i = 0; i < model.fingers.size(); ++i) describeFinger(model, i, methods[i], lines);
   describeMany(model, lines);
   describeSkipped(model, lines);
   return lines;

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "grasp/model.h"
+#include "grasp/baseline.h"
 
 namespace pincer::tasks {
 
@@ -14,7 +14,8 @@ struct PlanLine {
   std::string form;  // "free rotation: spherical, exact", ...
 };
 
-std::vector<PlanLine> describePlan(const grasp::GraspModel& model);
+// `methods`: by which its fingers are rendered.
+std::vector<PlanLine> describePlan(const grasp::GraspModel& model, const std::vector<grasp::FingerMethod>& methods);
 
 std::string nameOf(const contact::Shape& shape);  // "sphere r 20 mm"
 

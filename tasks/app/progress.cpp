@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "tasks/app/print.h"
 #include "tasks/app/terminal.h"
 
 namespace pincer::tasks {
@@ -31,7 +32,7 @@ Progress::Progress(std::string what, std::int64_t total)
     : what_(std::move(what)), total_(std::max<std::int64_t>(total, 1)), shown_(isTerminal(Stream::kError)) {}
 
 Progress::~Progress() {
-  if (shown_ && drawn_ != start_) fmt::print(stderr, "\r\x1b[K");
+  if (shown_ && drawn_ != start_) print(stderr, "\r\x1b[K");
 }
 
 void Progress::update(std::int64_t done) {
@@ -39,7 +40,7 @@ void Progress::update(std::int64_t done) {
   const Clock::time_point now = Clock::now();
   if (now - drawn_ < std::chrono::milliseconds(100)) return;
   drawn_ = now;
-  fmt::print(stderr, "\r\x1b[K{}", progressLine(what_, done, total_, std::chrono::duration<double>(now - start_).count()));
+  print(stderr, "\r\x1b[K{}", progressLine(what_, done, total_, std::chrono::duration<double>(now - start_).count()));
   std::fflush(stderr);
 }
 

@@ -6,6 +6,7 @@
 #include "tasks/app/app.h"
 #include "tasks/app/commands.h"
 #include "tasks/app/interrupt.h"
+#include "tasks/app/print.h"
 #include "tasks/app/progress.h"
 #include "tasks/app/replay.h"
 #include "tasks/app/trial_recording.h"
@@ -55,19 +56,22 @@ ReplayResult replayAll(const ReplayArguments& arguments, const SessionReader& se
 }
 
 int replay(const ReplayArguments& arguments) {
-  const SessionReader session(arguments.session);
+  SessionReader session(arguments.session);
+  session.heed(interruptFlag());
   const ReplayResult result = arguments.looks() ? replayAndLook(arguments, session) : replayAll(arguments, session);
   if (result.first) {
     const ReplayDifference& d = *result.first;
-    fmt::print("Differs first in trial {}, {}: {}\n", d.trial,
-               d.tick < 0 ? fmt::format("after {:.3f} s", d.time) : fmt::format("tick {} ({:.3f} s)", d.tick, d.time), d.what);
+    print("Differs first in trial {}, {}: {}\n", d.trial,
+          d.tick < 0 ? fmt::format("after {:.3f} s", d.time) : fmt::format("tick {} ({:.3f} s)", d.tick, d.time), d.what);
     return kExitCheckFailed;
   }
-  for (const std::string& note : result.notes) fmt::print(stderr, "pincer: {}\n", note);
-  fmt::print("The same to the bit: {} trials{}, {} samples{}\n", result.trials,
-             result.cut_short > 0 ? fmt::format(" and {} that was cut short", result.cut_short) : "", result.samples,
-             result.inputs > 0 ? fmt::format(", {} ticks of a person's hands", result.inputs) : "");
-  return interruptFlag() ? kExitInterrupted : kExitOk;
+  for (const std::string& note : result.notes) print(stderr, "pincer: {}\n", note);
+  print("The same to the bit: {} trials{}, {} samples{}\n", result.trials,
+        result.cut_short > 0 ? fmt::format(" and {} that was cut short", result.cut_short) : "", result.samples,
+        result.inputs > 0 ? fmt::format(", {} ticks of a person's hands", result.inputs) : "");
+  if (!interruptFlag()) return kExitOk;
+  print(stderr, "pincer: interrupted; these are the trials that were whole.\n");
+  return kExitInterrupted;
 }
 
 }  // namespace

@@ -6,6 +6,8 @@
 
 #include "tasks/app/app.h"
 #include "tasks/app/commands.h"
+#include "tasks/app/interrupt.h"
+#include "tasks/app/print.h"
 #include "tasks/report/report.h"
 #include "tasks/report/study_report.h"
 
@@ -25,20 +27,21 @@ struct ReportArguments {
 
 int reportStudy(const SessionReader& session, const std::string& html, bool as_json) {
   const StudySummary summary = summariseStudy(session, session.responses());
-  fmt::print("{}\n", as_json ? studySummaryJson(summary) : formatStudyTable(summary));
-  fmt::print(as_json ? stderr : stdout, "Report: {}\n", writeStudyReport(session, html).html);
+  print("{}\n", as_json ? studySummaryJson(summary) : formatStudyTable(summary));
+  print(as_json ? stderr : stdout, "Report: {}\n", writeStudyReport(session, html, {.interrupted = &interruptFlag()}).html);
   return kExitOk;
 }
 
 int report(const ReportArguments& arguments) {
-  const SessionReader session(arguments.session);
+  SessionReader session(arguments.session);
+  session.heed(interruptFlag());
   const std::string beside = (std::filesystem::path(arguments.session).parent_path() / "report.html").string();
   const std::string html = arguments.html.empty() ? beside : arguments.html;
   if (isStudy(session.info().task)) return reportStudy(session, html, arguments.json);
   const SessionSummary summary = summariseSession(session);
-  fmt::print("{}\n", arguments.json ? summaryJson(summary) : formatTable(summary));
-  const ReportFiles files = writeReport(session, html);
-  fmt::print(arguments.json ? stderr : stdout, "Report: {}\n", files.html);
+  print("{}\n", arguments.json ? summaryJson(summary) : formatTable(summary));
+  const ReportFiles files = writeReport(session, html, {.interrupted = &interruptFlag()});
+  print(arguments.json ? stderr : stdout, "Report: {}\n", files.html);
   return kExitOk;
 }
 

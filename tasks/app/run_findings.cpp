@@ -6,6 +6,7 @@
 #include "contact/error.h"
 #include "tasks/app/app.h"
 #include "tasks/app/interrupt.h"
+#include "tasks/app/print.h"
 #include "tasks/app/progress.h"
 #include "tasks/app/run_options.h"
 #include "tasks/app/run_tasks.h"
@@ -65,18 +66,17 @@ int runFindingsCommand(const FindingsArguments& arguments) {
   const bool interrupted = interruptFlag();
   if (result.variants.empty() && studies.figures.empty()) {
     if (!interrupted) throw InputError(fmt::format("findings: no variant's or study's name holds one of \"{}\".", arguments.options.only));
-    fmt::print(stderr, "pincer: interrupted before an experiment was whole. The same command with --out {} goes on.\n", directory);
+    print(stderr, "pincer: interrupted before an experiment was whole. The same command with --out {} goes on.\n", directory);
     return kExitInterrupted;
   }
   if (interrupted)
-    fmt::print(stderr, "pincer: interrupted; these are the experiments that were whole. The same command with --out {} goes on.\n",
-               directory);
-  if (!result.variants.empty()) fmt::print("{}", findingsText(result));
-  if (!studies.figures.empty()) fmt::print("{}", publishedText(studies));
+    print(stderr, "pincer: interrupted; these are the experiments that were whole. The same command with --out {} goes on.\n", directory);
+  if (!result.variants.empty()) print("{}", findingsText(result));
+  if (!studies.figures.empty()) print("{}", publishedText(studies));
   if (arguments.run.report) {
     makeDirectory(directory);
     writeFindingsPage(result, studies, directory + "/report.html");
-    fmt::print("Report: {}/report.html\n", directory);
+    print("Report: {}/report.html\n", directory);
   }
   return interrupted ? kExitInterrupted : kExitOk;
 }

@@ -9,6 +9,7 @@
 #include "tasks/app/device_options.h"
 #include "tasks/app/interrupt.h"
 #include "tasks/app/manipulation_session.h"
+#include "tasks/app/print.h"
 #include "tasks/app/progress.h"
 #include "tasks/app/run_options.h"
 #include "tasks/app/run_tasks.h"
@@ -98,10 +99,10 @@ std::int64_t faultsOfStudy(const SessionSummary& summary) {
 int showStudy(const ManipulationArguments& arguments, const std::string& directory, const ManipulationSessionResult& result) {
   const SessionReader session(directory + "/session.db");
   const SessionSummary summary = summariseSession(session);
-  fmt::print("{}\n", arguments.run.json ? summaryJson(summary) : formatTable(summary));
-  const auto say = [&](const std::string& line) { fmt::print(arguments.run.json ? stderr : stdout, "{}\n", line); };
+  print("{}\n", arguments.run.json ? summaryJson(summary) : formatTable(summary));
+  const auto say = [&](const std::string& line) { print(arguments.run.json ? stderr : stdout, "{}\n", line); };
   const ServoOptions& servo = arguments.run.servo;
-  const bool by_the_clock = servo.real_time || arguments.view.view || arguments.devices.devices != "sim";
+  const bool by_the_clock = servo.clock != ServoClock::kVirtual || arguments.view.view || arguments.devices.devices != "sim";
   if (by_the_clock) say(servoText(result.servo, 1 / servo.rate));
   say(fmt::format("Session: {}", session.path()));
   if (!by_the_clock) say(throughputText(static_cast<double>(result.servo.ticks) / servo.rate));
@@ -110,7 +111,8 @@ int showStudy(const ManipulationArguments& arguments, const std::string& directo
                     directory));
     return kExitInterrupted;
   }
-  if (arguments.run.report) say(fmt::format("Report: {}", writeReport(session, directory + "/report.html").html));
+  if (arguments.run.report)
+    say(fmt::format("Report: {}", writeReport(session, directory + "/report.html", {.interrupted = &interruptFlag()}).html));
   const std::int64_t faults = faultsOfStudy(summary);
   if (faults > 0) say(fmt::format("Trials that ended in a fault: {}; their events say why: pincer export {}", faults, session.path()));
   return faults > 0 ? kExitCheckFailed : kExitOk;
@@ -125,10 +127,8 @@ struct Stage {
 Stage setStage(const ManipulationArguments& arguments, ManipulationSessionOptions& options, const std::atomic<bool>& interrupted) {
   Stage stage;
   const std::string& choice = arguments.devices.devices;
-  options.servo.real_time = options.servo.real_time || arguments.view.view;
-  constexpr double kMouseStall = 0.1;  // that ends no trial [s]: a mouse has no motors
-  if (choice == "mouse") options.servo.watchdog = kMouseStall;
-  if (choice != "mouse") stage.devices = openDevices(arguments.devices, options.servo);
+  if (arguments.view.view) options.servo.clock = ServoClock::kPaced;
+  stage.devices = openDevices(arguments.devices, options.servo);
   ViewOptions view = arguments.view;
   view.title = taskName(options.study);
   stage.window = hostOf(choice, view, options.servo, interrupted);
@@ -164,7 +164,7 @@ int runManipulation(const ManipulationArguments& arguments) {
   validate(options);
   if (!arguments.write_study.empty()) {
     writeAtomically(arguments.write_study, studyFile(options.study));
-    fmt::print("Study: {}\n", arguments.write_study);
+    print("Study: {}\n", arguments.write_study);
     return kExitOk;
   }
   makePickupObject(options.study.pickup);  // bad options and objects are named before anything is written

@@ -11,7 +11,8 @@ namespace pincer::tasks {
 
 void addRunOptions(CLI::App& command, RunOptions& options) {
   command.add_option("--out", options.out, "New directory for session and report (default: out/TASK-DATE-TIME)");
-  command.add_flag("--real-time", options.servo.real_time, "At 1 kHz of the wall clock in place of as fast as it goes");
+  command.add_flag_callback(
+      "--real-time", [&options] { options.servo.clock = ServoClock::kPaced; }, "At 1 kHz of the wall clock in place of as fast as it goes");
   command.add_option("--sample-rate", options.sample_rate, "Of the 1000 ticks of a second, so many are kept [Hz]")->capture_default_str();
   command.add_flag("!--no-report", options.report, "Only the session and the table");
   command.add_flag("--json", options.json, "Print the table as JSON");

@@ -8,6 +8,7 @@
 #include "contact/error.h"
 #include "tasks/app/app.h"
 #include "tasks/app/interrupt.h"
+#include "tasks/app/print.h"
 #include "tasks/app/progress.h"
 #include "tasks/app/run_options.h"
 #include "tasks/app/run_tasks.h"
@@ -69,9 +70,9 @@ int strideOf(const RunOptions& options) {
 int showStudy(const StudyArguments& arguments, const std::string& directory, const StudyOutcome& outcome) {
   const SessionReader session(directory + "/session.db");
   const StudySummary summary = summariseStudy(session, session.responses());
-  fmt::print("{}\n", arguments.run.json ? studySummaryJson(summary) : formatStudyTable(summary));
-  const auto say = [&](const std::string& line) { fmt::print(arguments.run.json ? stderr : stdout, "{}\n", line); };
-  if (arguments.run.servo.real_time) say(servoText(outcome.servo, 1 / arguments.run.servo.rate));
+  print("{}\n", arguments.run.json ? studySummaryJson(summary) : formatStudyTable(summary));
+  const auto say = [&](const std::string& line) { print(arguments.run.json ? stderr : stdout, "{}\n", line); };
+  if (arguments.run.servo.clock != ServoClock::kVirtual) say(servoText(outcome.servo, 1 / arguments.run.servo.rate));
   const double simulated = static_cast<double>(outcome.servo.ticks) / arguments.run.servo.rate;
   say(throughputText(simulated));
   say(fmt::format("Session: {}", session.path()));
@@ -79,7 +80,8 @@ int showStudy(const StudyArguments& arguments, const std::string& directory, con
     say(fmt::format("Interrupted after {} trials; they are safe. Go on: the same task with --resume --out {}", outcome.trials, directory));
     return kExitInterrupted;
   }
-  if (arguments.run.report) say(fmt::format("Report: {}", writeStudyReport(session, directory + "/report.html").html));
+  if (arguments.run.report)
+    say(fmt::format("Report: {}", writeStudyReport(session, directory + "/report.html", {.interrupted = &interruptFlag()}).html));
   std::int64_t unanswered = 0;
   for (const StudyCondition& c : summary.conditions) unanswered += c.unanswered;
   return unanswered > 0 ? kExitCheckFailed : kExitOk;
@@ -90,7 +92,7 @@ int runStudyTask(const std::string& task, const Study& published, const StudyArg
   const std::atomic<bool>& interrupted = interruptFlag();
   const Study study = arguments.resume ? resumedStudy(task, published, arguments) : studyOf(published, arguments);
   if (arguments.print_study) {
-    fmt::print("{}\n", studyJson(study));
+    print("{}\n", studyJson(study));
     return kExitOk;
   }
   auto experiment = make(study, arguments.run.servo, strideOf(arguments.run));
@@ -101,7 +103,6 @@ int runStudyTask(const std::string& task, const Study& published, const StudyArg
   session.info =
       studySessionInfo(task, study.seed, studyJson(study), participantsJson(study), arguments.run.servo, arguments.run.sample_rate);
   session.path = directory + "/session.db";
-  session.real_time = arguments.run.servo.real_time;
   Progress line("study", 1000);
   const StudyOutcome outcome =
       runStudySession(experiment, session, interrupted, [&](const StudyProgress& p) { line.update(std::lround(1000 * p.share)); });

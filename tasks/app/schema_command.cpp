@@ -5,6 +5,7 @@
 
 #include "tasks/app/app.h"
 #include "tasks/app/commands.h"
+#include "tasks/app/print.h"
 #include "tasks/app/schema_reference.h"
 #include "tasks/experiments/study_schema.h"
 #include "tasks/scene/builtin_scenes.h"
@@ -42,8 +43,8 @@ void printSchema(const std::string& name, bool markdown) {
   for (const FileKind& kind : kFileKinds) {
     if (kind.name != name) continue;
     const std::string schema = kind.schema();
-    if (!markdown) return fmt::print("{}", schema);
-    fmt::print("{}Made by `pincer schema {} --markdown`.\n", schemaMarkdown(parseJson(schema, name + ".schema.json")), name);
+    if (!markdown) return print("{}", schema);
+    print("{}Made by `pincer schema {} --markdown`.\n", schemaMarkdown(parseJson(schema, name + ".schema.json")), name);
   }
 }
 

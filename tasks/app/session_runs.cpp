@@ -4,9 +4,9 @@
 #include <exception>
 #include <filesystem>
 #include <mutex>
-#include <thread>
 
 #include "contact/error.h"
+#include "tasks/measure/threads.h"
 
 namespace pincer::tasks {
 namespace {
@@ -33,9 +33,7 @@ class SessionWorkshop {
   }
 
   void run(int threads) {
-    std::vector<std::thread> workers;
-    for (int t = 0; t < threads; ++t) workers.emplace_back([this] { work(); });
-    for (std::thread& worker : workers) worker.join();
+    onThreads(threads, [this] { work(); });
     if (failure_) std::rethrow_exception(failure_);
   }
 

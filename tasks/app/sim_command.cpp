@@ -6,6 +6,7 @@
 #include "tasks/app/app.h"
 #include "tasks/app/commands.h"
 #include "tasks/app/interrupt.h"
+#include "tasks/app/print.h"
 #include "tasks/app/progress.h"
 #include "tasks/app/servo_text.h"
 #include "tasks/app/sim_run.h"
@@ -35,7 +36,7 @@ int watch(Simulation& simulation, const SimArguments& arguments, const std::atom
   ViewOptions view = arguments.view;
   view.title = arguments.scene;
   const WatchResult result = watchScene(simulation, view, arguments.devices == "mouse", interrupted);
-  fmt::print("{}\nLifted by up to {:.1f} mm.\n", servoText(result.servo, simulation.scene().options.h), 1e3 * result.lift);
+  print("{}\nLifted by up to {:.1f} mm.\n", servoText(result.servo, simulation.scene().options.h), 1e3 * result.lift);
   return interrupted ? kExitInterrupted : kExitOk;
 }
 
@@ -50,7 +51,7 @@ int runSim(const SimArguments& arguments) {
     return runScene(simulation, arguments.options, interrupted, [&](std::int64_t done) { progress.update(done); });
   }();
   if (!arguments.view.screenshot.empty()) writePng(pictureOf(simulation), arguments.view.screenshot);
-  fmt::print("{}", arguments.json ? simJson(simulation, arguments.options, result) : simText(simulation, arguments.options, result));
+  print("{}", arguments.json ? simJson(simulation, arguments.options, result) : simText(simulation, arguments.options, result));
   if (result.interrupted) return kExitInterrupted;
   return result.broke || result.log.anyFailed() ? kExitCheckFailed : kExitOk;
 }

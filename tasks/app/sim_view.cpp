@@ -45,7 +45,7 @@ engine::StepReport SceneCycle::handTick() {
   }
   const engine::StepReport report = simulation_.tick(inputs_);
   for (int i = 0; i < hand_->fingers(); ++i) {
-    hand_->commandForce_H(i, simulation_.scratch().fingers[static_cast<std::size_t>(i)].f_user_W);
+    hand_->commandForce_H(i, simulation_.fingers()[static_cast<std::size_t>(i)].f_user_W);
   }
   return report;
 }

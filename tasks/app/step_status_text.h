@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/world/step.h"
+#include "engine/step.h"
 
 namespace pincer::tasks {
 

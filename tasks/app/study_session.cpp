@@ -1,5 +1,7 @@
 #include "tasks/app/study_session.h"
 
+#include <new>
+
 #include "tasks/app/study_file.h"
 #include "tasks/scene/json_writer.h"
 
@@ -32,25 +34,27 @@ SessionInfo studySessionInfo(const std::string& task, std::uint64_t seed, const 
   const char* display = task == "shape-identification" ? "simulated 2-DOF" : "simulated 1-DOF";
   JsonWriter json;
   json.beginObject().key("arms").value("simulated").key("tactile_display").value(display).key("rate").value(servo.rate);
-  info.devices_json = json.key("sample_rate").value(sample_rate).key("real_time").value(servo.real_time).endObject().text();
+  info.devices_json =
+      json.key("sample_rate").value(sample_rate).key("real_time").value(servo.clock != ServoClock::kVirtual).endObject().text();
   return info;
 }
 
 StudyOutcome runStudySession(Experiment& experiment, const StudySession& session, const std::atomic<bool>& interrupted,
                              const std::function<void(const StudyProgress&)>& progress) {
   SessionOptions store;
-  store.block_when_full = !session.real_time;
+  store.block_when_full = true;  // simulated participants wait for the disk
   const std::vector<ResponseRecord> earlier = session.resume ? SessionReader(session.path).responses() : std::vector<ResponseRecord>();
   SessionWriter writer =
       session.resume ? SessionWriter::resume(session.path, store) : SessionWriter::create(session.path, session.info, store);
   StudyFileSink sink(writer);
-  const StudyOutcome outcome = runStudy(experiment, session.info.seed, earlier, sink, interrupted, progress);
-  if (outcome.interrupted) {
-    writer.abort("interrupted by the user");
-  } else {
-    writer.close();
+  try {
+    StudyOutcome outcome = runStudy(experiment, session.info.seed, earlier, sink, interrupted, progress);
+    outcome.interrupted ? writer.abort("interrupted by the user") : writer.close();
+    return outcome;
+  } catch (const std::bad_alloc&) {
+    writer.abort("not enough memory");
+    throw;
   }
-  return outcome;
 }
 
 }  // namespace pincer::tasks

@@ -11,8 +11,7 @@ namespace pincer::tasks {
 
 struct StudySession {
   SessionInfo info;
-  std::string path;  // of the file
-  bool real_time = false;
+  std::string path;     // of the file
   bool resume = false;  // go on with the session in the file; else the file is new
 };
 

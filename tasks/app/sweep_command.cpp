@@ -8,6 +8,7 @@
 #include "tasks/app/app.h"
 #include "tasks/app/commands.h"
 #include "tasks/app/interrupt.h"
+#include "tasks/app/print.h"
 #include "tasks/app/progress.h"
 #include "tasks/report/study_summary.h"
 #include "tasks/sweep/one_finger_sweep.h"
@@ -63,14 +64,14 @@ int sweep(const SweepArguments& arguments) {
   const SweepTable table = sweepAny(arguments);
   const bool nothing = std::all_of(table.results.begin(), table.results.end(), [](const auto& r) { return r.empty(); });
   if (nothing) {
-    fmt::print(stderr, "pincer: interrupted before a run was whole; nothing was written.\n");
+    print(stderr, "pincer: interrupted before a run was whole; nothing was written.\n");
     return kExitInterrupted;
   }
-  fmt::print("{}", sweepText(table));
+  print("{}", sweepText(table));
   if (!arguments.out.empty()) {
-    for (const std::string& path : writeSweep(table, arguments.out)) fmt::print("{}\n", path);
+    for (const std::string& path : writeSweep(table, arguments.out)) print("{}\n", path);
   }
-  if (table.interrupted) fmt::print(stderr, "pincer: interrupted; these are the runs that were whole.\n");
+  if (table.interrupted) print(stderr, "pincer: interrupted; these are the runs that were whole.\n");
   return table.interrupted ? kExitInterrupted : kExitOk;
 }
 

@@ -53,7 +53,7 @@ void TrialCapture::hear() {
 
 void TrialCapture::fill(Snapshot& snapshot) {
   const HandTrial& trial = cycle_.trial();
-  captureGrasp(trial.scene().model.grasp, trial.state().grasp, trial.scratch().grasp, {}, snapshot);
+  captureGrasp(trial.scene().model.grasp, trial.state().grasp, *trial.scratch().grasp, {}, snapshot);
   const auto& samples = cycle_.hands().sample();
   for (std::size_t i = 0; i < snapshot.fingers.size(); ++i) captureMount(cycle_, i, samples[i], snapshot.fingers[i]);
   snapshot.trial = told_;

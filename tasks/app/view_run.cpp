@@ -59,10 +59,10 @@ ServoReport runWatched(const WatchedCycle& watched, const ServoOptions& servo, c
                        const std::atomic<bool>& interrupted, devices::Surface& surface) {
   PaceControl pace;
   Viewer viewer(surface, watched.model, watched.start, watched.channel, pace, watched.hand, {options.title, options.keys});
-  ServoOptions real_time = servo;
-  real_time.real_time = true;
+  ServoOptions by_the_clock = servo;
+  if (servo.clock == ServoClock::kVirtual) by_the_clock.clock = ServoClock::kPaced;
   pace.linger = watched.linger;
-  ServoThread thread(watched, real_time, pace, interrupted);
+  ServoThread thread(watched, by_the_clock, pace, interrupted);
   bool open = true;
   while (open && !interrupted && !thread.done()) open = viewer.update();
   if (!options.screenshot.empty()) writePng(viewer.picture(), options.screenshot);

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "contact/mesh/generated_meshes.h"
+#include "contact/generated_meshes.h"
 #include "contact/surface/surface_net.h"
 #include "tasks/bench/contact_bench.h"
 #include "tasks/bench/objects.h"

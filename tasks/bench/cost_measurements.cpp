@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <memory>
 
-#include "contact/mesh/generated_meshes.h"
-#include "contact/mesh/mesh_reader.h"
+#include "contact/generated_meshes.h"
 #include "contact/mesh/mesh_writer.h"
+#include "contact/mesh_reader.h"
 #include "tasks/bench/contact_bench.h"
 #include "tasks/bench/flat_distance.h"
 #include "tasks/bench/objects.h"
@@ -150,7 +150,7 @@ std::vector<Record> growth(MeasureContext& context) {
     records.push_back(atMost(fmt::format("{:.0f} triangles, memory per untouched one", triangles), bytes, "B", 160));
     if (context.interrupted()) return records;
   }
-  const double allowed = std::log(triangles) / std::log(20.0 * kGrowth[0].n * kGrowth[0].n);
+  const double allowed = math::log(triangles) / math::log(20.0 * kGrowth[0].n * kGrowth[0].n);
   records.push_back(atMost("largest over smallest mesh, by turns", costRatio(*mesh, path, *first, over_first), "-", allowed));
   return records;
 }
@@ -197,7 +197,7 @@ struct PeerFigures {
   int missed = 0;          // of the checked places where triangles and finger overlap: without an answer
 };
 
-double turnBetween(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
+double turnBetween(const Vec3& a, const Vec3& b) { return math::atan2(a.cross(b).norm(), a.dot(b)); }
 
 PeerFigures figuresOf(MeshPeer& peer, const TriangleMesh& mesh, const FingerPath& path) {
   constexpr std::size_t kChecked = 100;  // every so many ticks, for trying all triangles takes long

@@ -25,7 +25,7 @@ struct CurveFigures {
   double turn = 0;                                                                             // and of the force's direction [rad]
 };
 
-double angleOf(const Vec2& p) { return std::atan2(-p.x(), p.y()); }  // counter-clockwise from +y
+double angleOf(const Vec2& p) { return math::atan2(-p.x(), p.y()); }  // counter-clockwise from +y
 
 // Half a segment short of the ends, whose outer halves are straight, in steps of half a milliradian.
 CurveFigures alongArc(SurfaceVariant variant) {
@@ -38,7 +38,7 @@ CurveFigures alongArc(SurfaceVariant variant) {
   for (int i = 0; i <= kSteps; ++i) {
     const double a = reach * (2.0 * i / kSteps - 1);
     const contact::CurveContact c =
-        curve.queryCircle((kArcRadius + kArcFinger - kArcDepth) * Vec2(-std::sin(a), std::cos(a)), kArcFinger, tracker);
+        curve.queryCircle((kArcRadius + kArcFinger - kArcDepth) * Vec2(-math::sin(a), math::cos(a)), kArcFinger, tracker);
     const double radius = c.p_BS.norm() / kArcRadius - 1;
     f.least_radius = std::min(f.least_radius, radius);
     f.most_radius = std::max(f.most_radius, radius);

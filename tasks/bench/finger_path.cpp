@@ -15,14 +15,14 @@ Vec3 comeDown(const contact::SmoothMesh& mesh, BenchFinger& finger, Random& rand
 }
 
 double sway(double low, double high, std::int64_t tick, double period) {
-  return low + (high - low) * (0.5 - 0.5 * std::cos(2 * M_PI * static_cast<double>(tick) / period));
+  return low + (high - low) * (0.5 - 0.5 * math::cos(2 * M_PI * static_cast<double>(tick) / period));
 }
 
 }  // namespace
 
 Vec3 randomDirection(Random& random) {
   const double z = random.uniform(-1, 1), a = random.uniform(0, 2 * M_PI);
-  return {std::sqrt(1 - z * z) * std::cos(a), std::sqrt(1 - z * z) * std::sin(a), z};
+  return {std::sqrt(1 - z * z) * math::cos(a), std::sqrt(1 - z * z) * math::sin(a), z};
 }
 
 FingerPath strokeOver(const contact::SmoothMesh& mesh, const Stroke& stroke, MeasureContext& context) {

@@ -3,8 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "contact/surface/patch_cache.h"
-#include "contact/surface/smooth_mesh.h"
+#include "contact/smooth_mesh.h"
 #include "tasks/measure/measurement.h"
 #include "tasks/participants/random.h"
 
@@ -17,10 +16,10 @@ constexpr double kBenchMargin = 1e-3;  // further contacts nearer than this are 
 // What one finger remembers, and the memory that its queries use.
 struct BenchFinger {
   contact::SurfaceTracker tracker;
-  contact::PatchCache cache;
+  contact::PatchCacheHandle cache = contact::makePatchCache();
 
   contact::SurfaceContacts on(const contact::SmoothMesh& mesh, const Vec3& p_BC, double margin = kBenchMargin) {
-    return mesh.querySphere(p_BC, kBenchFinger, margin, tracker, cache);
+    return mesh.querySphere(p_BC, kBenchFinger, margin, tracker, *cache);
   }
 };
 

@@ -22,7 +22,7 @@ grasp::GraspModel buildModel(contact::Shape shape, const engine::Material& mater
 FingerScene::FingerScene(contact::Shape shape, const engine::Material& material, const Vec3& p_WF)
     : model_(buildModel(std::move(shape), material)),
       state_(grasp::makeState(model_, {engine::BodyStart{}}, {p_WF})),
-      scratch_(model_),
+      scratch_(grasp::makeScratch(model_)),
       device_(p_WF) {}
 
 const grasp::FingerReport& FingerScene::tick(const Vec3& p_WF) {
@@ -30,17 +30,19 @@ const grasp::FingerReport& FingerScene::tick(const Vec3& p_WF) {
   input.p_WF = p_WF;
   input.v_WF = (p_WF - device_) / model_.world.options.h;
   device_ = p_WF;
-  flagged_ += grasp::step(model_, state_, scratch_, std::array{input}).status != engine::kStepOk;
-  return scratch_.fingers.front();
+  const grasp::GraspReport report = grasp::step(model_, state_, *scratch_, std::array{input});
+  flagged_ += report.status != engine::kStepOk;
+  return report.fingers.front();
 }
 
 bool FingerScene::isLocked() const {
-  const std::vector<engine::Contact>& contacts = scratch_.world.contacts;
-  for (auto x = contacts.begin(); x != contacts.end(); ++x) {
-    for (auto y = x + 1; y != contacts.end(); ++y) {
-      if (!x->active() || !y->active()) continue;
-      const double tan_alpha = (x->n_W() + y->n_W()).norm() / (x->n_W() - y->n_W()).norm();
-      if (std::min(x->material.mu_s, y->material.mu_s) > tan_alpha) return true;
+  const engine::WorldScratch& world = grasp::worldOf(*scratch_);
+  const double mu_s = model_.world.bodies.front().material.mu_s;
+  for (int i = 0; i < engine::contactCount(world); ++i) {
+    const engine::ContactReport x = engine::contactAt(world, i);
+    for (int j = 0; j < i; ++j) {
+      const engine::ContactReport y = engine::contactAt(world, j);
+      if (x.pushes && y.pushes && mu_s > (x.n_W + y.n_W).norm() / (x.n_W - y.n_W).norm()) return true;
     }
   }
   return false;

@@ -28,7 +28,7 @@ class FingerScene {
  private:
   grasp::GraspModel model_;
   grasp::GraspState state_;
-  grasp::GraspScratch scratch_;
+  grasp::ScratchHandle scratch_;
   Vec3 device_;
   int flagged_ = 0;
 };

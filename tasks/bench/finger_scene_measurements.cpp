@@ -6,7 +6,7 @@
 #include <limits>
 #include <memory>
 
-#include "contact/mesh/generated_meshes.h"
+#include "contact/generated_meshes.h"
 #include "tasks/bench/contact_bench.h"
 #include "tasks/bench/finger_scene.h"
 #include "tasks/bench/objects.h"
@@ -47,7 +47,7 @@ Round runAround(int n) {
   double turned = 0, last_angle = 0;
   for (std::size_t i = 0; i < path.centres.size(); ++i) {
     const Vec3 n_W = scene.tick(path.centres[i]).n_W;
-    const double angle = std::atan2(n_W.dot(frame.col(1)), n_W.dot(frame.col(0)));
+    const double angle = math::atan2(n_W.dot(frame.col(1)), n_W.dot(frame.col(0)));
     if (i > 0 && i <= kStarting) round.setting_out = std::max(round.setting_out, angleBetween(last, n_W));
     if (i > kStarting) {
       round.largest_turn = std::max(round.largest_turn, angleBetween(last, n_W));
@@ -78,7 +78,7 @@ std::vector<Record> facetedCylinder(MeasureContext&) {
   for (std::size_t i = 0; i < path.centres.size(); ++i) {
     const Vec3 f = scene.tick(path.centres[i]).f_user_W;
     if (i <= kStarting) continue;
-    const double off = std::atan2(path.centres[i].cross(f).z(), path.centres[i].head<2>().dot(f.head<2>()));  // about the axis
+    const double off = math::atan2(path.centres[i].cross(f).z(), path.centres[i].head<2>().dot(f.head<2>()));  // about the axis
     sum += off;
     sum2 += off * off;
     n += 1;
@@ -99,7 +99,7 @@ std::vector<Record> edgeWithSharedVertices(MeasureContext&) {
   double direction = 0, depth = 0;
   for (double s = -0.01; s < 0.01 + h * M_PI / 2; s += kStep) {  // along the top, around the edge, down the side
     const double a = std::clamp(s / h, 0.0, M_PI / 2);
-    const Vec3 n(std::sin(a), 0, std::cos(a));
+    const Vec3 n(math::sin(a), 0, math::cos(a));
     const Vec3 S(half.x() + std::min(s, 0.0), 0.004, half.z() - std::max(s - h * M_PI / 2, 0.0));
     const contact::SurfaceContact c = finger.on(*mesh, S + h * n).main();
     direction = std::max(direction, angleBetween(c.n_B, n));

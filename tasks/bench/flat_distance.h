@@ -1,7 +1,7 @@
 // flat_distance: from a point to flat triangles, by trying them all: what peers' answers are checked against.
 #pragma once
 #include "contact/math.h"
-#include "contact/mesh/triangle_mesh.h"
+#include "contact/triangle_mesh.h"
 
 namespace pincer::tasks {
 

@@ -6,9 +6,9 @@
 #include <filesystem>
 
 #include "contact/error.h"
-#include "contact/mesh/generated_meshes.h"
-#include "contact/mesh/mesh_reader.h"
-#include "contact/mesh/mesh_report.h"
+#include "contact/generated_meshes.h"
+#include "contact/mesh_reader.h"
+#include "contact/mesh_report.h"
 
 namespace pincer::tasks {
 namespace {

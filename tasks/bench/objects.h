@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "contact/mesh/triangle_mesh.h"
+#include "contact/triangle_mesh.h"
 #include "tasks/measure/record.h"
 
 namespace pincer::tasks {

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <random>
 
-#include "contact/mesh/generated_meshes.h"
-#include "contact/shape/pair_query.h"
-#include "contact/surface/smooth_mesh.h"
+#include "contact/generated_meshes.h"
+#include "contact/pair_query.h"
+#include "contact/smooth_mesh.h"
 #include "tasks/bench/contact_bench.h"
 #include "tasks/exact/convex_gap.h"
 #include "tasks/measure/timing.h"
@@ -30,14 +30,14 @@ struct PairBody {
 constexpr double kPairSize = 0.03;  // of the bodies [m]
 
 std::vector<PairBody> pairBodies() {
-  const Quat lying(Eigen::AngleAxisd(M_PI / 2, Vec3::UnitX()));
+  const Quat lying = quatFromRotationVector({M_PI / 2, 0, 0});
   const contact::Box box{{0.031, 0.017, 0.023}};
   const contact::Capsule capsule{0.013, 0.029};
   const contact::Cylinder cylinder{0.024, 0.019};
   std::vector<Vec3> points;  // a frustum of six sides
   for (int i = 0; i < 12; ++i) {
     const double r = i < 6 ? 0.027 : 0.019, t = i * M_PI / 3;
-    points.emplace_back(r * std::cos(t), r * std::sin(t), i < 6 ? -0.016 : 0.02);
+    points.emplace_back(r * math::cos(t), r * math::sin(t), i < 6 ? -0.016 : 0.02);
   }
   const contact::Convex hull{contact::Polytope::hullOf(points, "frustum")};
   const contact::Mesh mesh{contact::SmoothMesh::build(contact::box(box.half))};
@@ -56,20 +56,23 @@ class Draws {
   double uniform(double from, double to) { return from + (to - from) * 0x1p-64 * static_cast<double>(bits_()); }
   Vec3 direction() {
     const double z = uniform(-1, 1), t = uniform(0, 2 * M_PI), s = std::sqrt(1 - z * z);
-    return {s * std::cos(t), s * std::sin(t), z};
+    return {s * math::cos(t), s * math::sin(t), z};
   }
-  Quat rotation() { return Quat(Eigen::AngleAxisd(uniform(0, M_PI), direction())); }
+  Quat rotation() {
+    const double angle = uniform(0, M_PI);
+    return quatFromRotationVector(angle * direction());
+  }
 
  private:
   std::mt19937_64 bits_{1998};
 };
 
 struct PairQuery {
-  contact::PatchCache cache;
+  const contact::PatchCacheHandle cache = contact::makePatchCache();
   PairPoints found;
 
   const PairPoints& of(const Shape& a, const Pose& X_WA, const Shape& b, const Vec3& last_n_W, double margin) {
-    contact::collideShapes(a, X_WA, b, Pose{}, margin, cache, found, last_n_W);
+    contact::collideShapes(a, X_WA, b, Pose{}, margin, *cache, found, last_n_W);
     return found;
   }
 };
@@ -136,7 +139,7 @@ PlacedErrors errorsOver(const PairBody& a, const PairBody& b, double from, doubl
 Pose sliding(const PairBody& a, const PairBody& b, std::int64_t i) {
   const double t = 1e-3 * static_cast<double>(i % 1000);
   const double top = b.name == std::string_view("hull") ? 0.02 : b.height;
-  return {Quat(Eigen::AngleAxisd(0.2 * t, Vec3::UnitZ())) * a.resting, {0.02 * (t < 0.5 ? t : 1 - t), 0.001, top + a.height + 1e-6}};
+  return {quatFromRotationVector({0, 0, 0.2 * t}) * a.resting, {0.02 * (t < 0.5 ? t : 1 - t), 0.001, top + a.height + 1e-6}};
 }
 
 struct SlideFigures {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "contact/invariants.h"
+
 namespace pincer::tasks {
 namespace {
 
@@ -43,7 +45,7 @@ void countTurn(const Felt& before, const Felt& now, double step, double turn_lim
   constexpr double kRoundOff = 1e-8;  // [m] two contacts solved to 1e-9 m may differ by this on the finger
   f.largest_push = std::max(f.largest_push, ((now.push - before.push).norm() - kRoundOff) / step);
   if (before.phi >= 0 || now.phi >= 0) return;
-  const double angle = std::atan2(before.n.cross(now.n).norm(), before.n.dot(now.n));
+  const double angle = math::atan2(before.n.cross(now.n).norm(), before.n.dot(now.n));
   const double place = std::max(0.0, kBenchFinger * angle - kRoundOff) / step;
   const double h = kBenchFinger + std::min(before.phi, now.phi);
   const double turn = place * std::max(h, 0.0) / kBenchFinger;
@@ -62,6 +64,7 @@ double PathFigures::meanIterations() const {
 }
 
 int PathFigures::iterationsQuantile(double q) const {
+  PINCER_ASSERT(0 <= q && q <= 1);
   const double rank = std::max(1.0, std::ceil(q * static_cast<double>(queries)));
   double seen = 0;
   for (std::size_t i = 0; i < by_iterations.size(); ++i) {

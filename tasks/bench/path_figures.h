@@ -32,7 +32,6 @@ struct PathFigures {
 
   double meanIterations() const;  // NaN where none was counted: that would be a mistake of the measurement
   int iterationsQuantile(double q) const;
-  int mostIterations() const { return iterationsQuantile(1); }
 };
 
 // Queries of two ticks of which one has no contact don't count for the turn: in the air the nearest place may change as it likes.

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "contact/math.h"
-#include "contact/mesh/triangle_mesh.h"
+#include "contact/triangle_mesh.h"
 
 namespace pincer::tasks {
 

@@ -8,7 +8,7 @@
 #include <functional>
 #include <memory>
 
-#include "contact/mesh/generated_meshes.h"
+#include "contact/generated_meshes.h"
 #include "tasks/bench/contact_bench.h"
 #include "tasks/bench/objects.h"
 #include "tasks/bench/sweep.h"
@@ -60,7 +60,7 @@ double costOf(const SmoothMesh& mesh, const FingerPath& path) {
 
 double largestTurn(const std::vector<Vec3>& n) {
   double largest = 0;
-  for (std::size_t i = 1; i < n.size(); ++i) largest = std::max(largest, std::atan2(n[i - 1].cross(n[i]).norm(), n[i - 1].dot(n[i])));
+  for (std::size_t i = 1; i < n.size(); ++i) largest = std::max(largest, math::atan2(n[i - 1].cross(n[i]).norm(), n[i - 1].dot(n[i])));
   return largest;
 }
 

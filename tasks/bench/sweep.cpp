@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact/invariants.h"
 #include "tasks/bench/path_figures.h"
 
 namespace pincer::tasks {
@@ -30,11 +31,12 @@ FingerPath sweepAround(const contact::SmoothMesh& mesh, const SweepPlane& plane,
 }
 
 FingerPath circleAround(const SweepPlane& plane, double R) {
+  PINCER_ASSERT(isUnit(plane.axis) && R > 0);
   const Mat3 frame = frameFromNormal(plane.axis);
   FingerPath path{{}, static_cast<int>(2 * M_PI * R / kSweepStep)};
   for (int i = 0; i < path.restart_every; ++i) {
     const double a = i * kSweepStep / R;
-    path.centres.push_back(plane.offset * plane.axis + R * (std::cos(a) * frame.col(0) + std::sin(a) * frame.col(1)));
+    path.centres.push_back(plane.offset * plane.axis + R * (math::cos(a) * frame.col(0) + math::sin(a) * frame.col(1)));
   }
   return path;
 }
@@ -47,7 +49,7 @@ SweepTrace traceAlong(const contact::SmoothMesh& mesh, const FingerPath& path, c
   for (std::size_t i = 0; i < path.centres.size(); ++i) {
     const contact::SurfaceContacts contacts = finger.on(mesh, path.centres[i]);
     const Vec3 n = feltDirection(contacts);
-    const double angle = std::atan2(n.dot(frame.col(1)), n.dot(frame.col(0)));
+    const double angle = math::atan2(n.dot(frame.col(1)), n.dot(frame.col(0)));
     if (i > 0) turned += std::remainder(angle - last, 2 * M_PI);
     last = angle;
     trace.n.push_back(n);

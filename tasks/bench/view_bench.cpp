@@ -4,8 +4,8 @@
 #include <atomic>
 #include <thread>
 
-#include "contact/mesh/generated_meshes.h"
-#include "contact/surface/smooth_mesh.h"
+#include "contact/generated_meshes.h"
+#include "contact/smooth_mesh.h"
 #include "tasks/measure/timing.h"
 #include "tasks/scene/builtin_scenes.h"
 #include "tasks/scene/simulation.h"
@@ -93,7 +93,7 @@ ServoReport servedFor(double seconds, bool watched) {
   ServoReport report;
   std::thread servo([&] {
     ServoOptions options;
-    options.real_time = true;
+    options.clock = ServoClock::kPaced;
     report = runServo(options, cycle, interrupted);
     done = true;
   });

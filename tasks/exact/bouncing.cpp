@@ -3,11 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact/invariants.h"
+
 namespace pincer::exact {
 
-double DroppedBall::peak(int bounces) const { return std::pow(restitution, 2 * bounces) * height; }
+double DroppedBall::peak(int bounces) const { return math::pow(restitution, 2 * bounces) * height; }
 
-double DroppedBall::restTime() const { return std::sqrt(2 * height / g) * (1 + restitution) / (1 - restitution); }
+double DroppedBall::restTime() const {
+  PINCER_ASSERT(restitution < 1);
+  return std::sqrt(2 * height / g) * (1 + restitution) / (1 - restitution);
+}
 
 void SpinningBall::hit(Motion& m) const {
   const Vec3 u(m.v.x() - radius * m.w.y(), m.v.y() + radius * m.w.x(), 0);

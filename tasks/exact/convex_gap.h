@@ -13,9 +13,10 @@
 #include <array>
 #include <vector>
 
+#include "contact/invariants.h"
 #include "contact/math.h"
-#include "contact/shape/polytope.h"
-#include "contact/shape/shape.h"
+#include "contact/polytope.h"
+#include "contact/shape.h"
 
 namespace pincer::tasks {
 
@@ -133,7 +134,7 @@ class Search {
   void tryCircle(const Vec3& e) {
     constexpr int kSamples = 96;
     const Mat3 F = frameFromNormal(e);
-    const auto at = [&](double t) -> Vec3 { return std::cos(t) * F.col(0) + std::sin(t) * F.col(1); };
+    const auto at = [&](double t) -> Vec3 { return math::cos(t) * F.col(0) + math::sin(t) * F.col(1); };
     const double step = 2 * M_PI / kSamples;
     std::array<double, kSamples> gaps;
     for (int i = 0; i < kSamples; ++i) gaps[static_cast<std::size_t>(i)] = gapAlong(at(i * step));
@@ -157,7 +158,7 @@ class Search {
     std::vector<Best> samples;
     for (int i = 0; i < kSamples; ++i) {  // Fibonacci's spiral: 0.11 rad between neighbours
       const double z = 1 - (2 * i + 1.0) / kSamples, t = 2.399963229728653 * i, s = std::sqrt(1 - z * z);
-      const Vec3 n(s * std::cos(t), s * std::sin(t), z);
+      const Vec3 n(s * math::cos(t), s * math::sin(t), z);
       samples.push_back({n, gapAlong(n)});
     }
     std::sort(samples.begin(), samples.end(), [](const Best& x, const Best& y) { return x.gap > y.gap; });
@@ -179,7 +180,7 @@ class Search {
       bool better = false;
       for (int k = 0; k < 12; ++k) {
         const double t = k * M_PI / 6;
-        const Vec3 next = (n + reach * (std::cos(t) * F.col(0) + std::sin(t) * F.col(1))).normalized();
+        const Vec3 next = (n + reach * (math::cos(t) * F.col(0) + math::sin(t) * F.col(1))).normalized();
         const double next_gap = gapAlong(next);
         if (next_gap > gap) gap = next_gap, n = next, better = true;
       }
@@ -231,6 +232,7 @@ inline ConvexGap convexGap(const contact::Shape& a, const Pose& X_WA, const cont
 
 // Along the unit vector `n`.
 inline double convexGapAlong(const contact::Shape& a, const Pose& X_WA, const contact::Shape& b, const Pose& X_WB, const Vec3& n) {
+  PINCER_ASSERT(isUnit(n));
   const PlainSolid sa = plainSolid(a, X_WA), sb = plainSolid(b, X_WB);
   return convex_gap::Search(sa, sb).gapAlong(n);
 }

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <vector>
 
+#include "contact/functions/elementary.h"
+#include "contact/invariants.h"
+
 namespace pincer::exact {
 namespace {
 
@@ -13,14 +16,16 @@ struct HalfPlane {
 };
 
 std::vector<HalfPlane> thrustLimits(int voussoirs, double thickness) {
+  PINCER_ASSERT(voussoirs >= 1);
+  PINCER_ASSERT(0 < thickness && thickness < 2);  // of the mean radius
   const double inner = 1 - thickness / 2, outer = 1 + thickness / 2, angle = M_PI / voussoirs;
-  const double weight = 0.5 * (outer * outer - inner * inner) * std::sin(angle);
-  const double centroid = 2.0 / 3 * std::cos(angle / 2) * (std::pow(outer, 3) - std::pow(inner, 3)) / (outer * outer - inner * inner);
+  const double weight = 0.5 * (outer * outer - inner * inner) * math::sin(angle);
+  const double centroid = 2.0 / 3 * math::cos(angle / 2) * (math::cube(outer) - math::cube(inner)) / (outer * outer - inner * inner);
   std::vector<HalfPlane> limits;
   double V = 0, M = 0;
   const auto addJoint = [&](double f) {
-    limits.push_back({-inner * std::cos(f), 1, inner * V * std::sin(f) - M});  // P + M >= r_i (V sin f + H cos f)
-    limits.push_back({outer * std::cos(f), -1, M - outer * V * std::sin(f)});  // P + M <= r_e (V sin f + H cos f)
+    limits.push_back({-inner * math::cos(f), 1, inner * V * math::sin(f) - M});  // P + M >= r_i (V sin f + H cos f)
+    limits.push_back({outer * math::cos(f), -1, M - outer * V * math::sin(f)});  // P + M <= r_e (V sin f + H cos f)
   };
   const bool crown_joint = voussoirs % 2 == 0;
   if (crown_joint) addJoint(0);
@@ -29,9 +34,9 @@ std::vector<HalfPlane> thrustLimits(int voussoirs, double thickness) {
     const double begin = crown_joint ? i * angle : (i - 0.5) * angle;
     const double share = keystone ? 0.5 : 1;
     // Of half the keystone: its own half's moment. The two halves of a trapezoid have their centroids at x = its first moment over half its area.
-    const double x = keystone ? (std::pow(outer, 3) - std::pow(inner, 3)) / 6 * std::sin(angle / 2) * std::sin(angle / 2) *
-                                    std::cos(angle / 2) / (0.5 * weight)
-                              : centroid * std::sin(begin + angle / 2);
+    const double x = keystone ? (math::cube(outer) - math::cube(inner)) / 6 * math::sin(angle / 2) * math::sin(angle / 2) *
+                                    math::cos(angle / 2) / (0.5 * weight)
+                              : centroid * math::sin(begin + angle / 2);
     V += share * weight;
     M += share * weight * x;
     addJoint(begin + angle);

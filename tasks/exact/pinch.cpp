@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "contact/invariants.h"
 #include "tasks/exact/runge_kutta.h"
 
 namespace pincer::exact {
@@ -22,6 +23,7 @@ Target minimumJerk(double height, double reach_time, double t) {
 
 double SlidingPinch::acceleration(double d, double v) const {
   const double L = sphere_radius + finger_radius;
+  PINCER_ASSERT(std::abs(d) < L);  // else the fingers have met
   const double x = std::sqrt(L * L - d * d);
   const double s = d / L, c = x / L;
   // [sphere_mass, -2 (s - mu c); finger_mass d/x, c + mu s] [d''; N] = [sphere_mass g; F - finger_mass (v^2/x + d^2 v^2/x^3)]
@@ -53,13 +55,13 @@ std::vector<double> StuckLift::rises(int ticks, double h) const {
 }
 
 double leastFrictionOfOffsetPlate(double mass, double offset, double torsion_radius, double force, double g) {
-  return 0.5 * mass * g * std::hypot(1.0, offset / torsion_radius) / force;
+  return 0.5 * mass * g * math::hypot(1.0, offset / torsion_radius) / force;
 }
 
 PlateRest slidingSpinningPlate(double mass, double inertia, double torsion_radius, double friction_force, const Vec2& v0, double w0) {
   using State = Eigen::Matrix<double, 6, 1>;                                                       // (p, angle, v, w)
   const auto slip = [&](const State& y) { return Vec2(y[3] + y[5] * y[1], y[4] - y[5] * y[0]); };  // v + w x (-p)
-  const auto speed = [&](const State& y) { return std::hypot(slip(y).norm(), torsion_radius * y[5]); };
+  const auto speed = [&](const State& y) { return math::hypot(slip(y).norm(), torsion_radius * y[5]); };
   const auto slope = [&](double, const State& y) {
     const Vec2 f = -friction_force / speed(y) * slip(y);
     const double moment = -friction_force * torsion_radius * torsion_radius * y[5] / speed(y) - y[0] * f[1] + y[1] * f[0];

@@ -4,7 +4,7 @@
 
 namespace pincer::exact {
 
-double Slope::acceleration() const { return g * (std::sin(theta) - mu * std::cos(theta)); }
+double Slope::acceleration() const { return g * (math::sin(theta) - mu * math::cos(theta)); }
 
 double SlideToRoll::position(double t) const {
   const double t_roll = transitionTime();
@@ -14,13 +14,13 @@ double SlideToRoll::position(double t) const {
 
 double SlideToRoll::velocity(double t) const { return t < transitionTime() ? v0 - mu * g * t : 5.0 / 7 * v0; }
 
-bool RollingIncline::rolls() const { return mu >= 2.0 / 7 * std::tan(theta); }
+bool RollingIncline::rolls() const { return mu >= 2.0 / 7 * math::tan(theta); }
 
 double RollingIncline::acceleration() const {
-  return rolls() ? 5.0 / 7 * g * std::sin(theta) : g * (std::sin(theta) - mu * std::cos(theta));
+  return rolls() ? 5.0 / 7 * g * math::sin(theta) : g * (math::sin(theta) - mu * math::cos(theta));
 }
 
-double RollingIncline::surfaceAcceleration() const { return rolls() ? acceleration() : 2.5 * mu * g * std::cos(theta); }
+double RollingIncline::surfaceAcceleration() const { return rolls() ? acceleration() : 2.5 * mu * g * math::cos(theta); }
 
 RolledBall rolledBetweenPlates(double radius, const Vec3& way1, const Vec3& way2) {
   return {0.5 * (way1 + way2), Vec3::UnitZ().cross(way2 - way1) / (2 * radius)};
@@ -31,6 +31,6 @@ double RollingResistance::creep() const {
   return 2 * c / (b + std::sqrt(b * b + 4 * radius * c));
 }
 
-double RollingResistance::deceleration() const { return mu * g * creep() / std::hypot(creep(), rolling_radius); }
+double RollingResistance::deceleration() const { return mu * g * creep() / math::hypot(creep(), rolling_radius); }
 
 }  // namespace pincer::exact

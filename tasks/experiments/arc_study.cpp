@@ -223,8 +223,8 @@ contact::Polyline ArcExperiment::blade() const {
   const double lean = 0.5 * (std::numbers::pi - study_.edge_angle);  // of a flank's normal from +z
   contact::Polyline polyline;
   const int segments = static_cast<int>(std::ceil(2 * lean / kBladeTurn));
-  const auto onTip = [&](double a) { return Vec2(study_.edge_radius * Vec2(-std::sin(a), std::cos(a))); };
-  const auto along = [&](double a) { return Vec2(-std::cos(a), -std::sin(a)); };  // counter-clockwise
+  const auto onTip = [&](double a) { return Vec2(study_.edge_radius * Vec2(-math::sin(a), math::cos(a))); };
+  const auto along = [&](double a) { return Vec2(-math::cos(a), -math::sin(a)); };  // counter-clockwise
   polyline.vertices.push_back(onTip(-lean) - kBladeFlank * along(-lean));
   for (int k = 0; k <= segments; ++k) polyline.vertices.push_back(onTip(lean * (2.0 * k / segments - 1)));
   polyline.vertices.push_back(onTip(lean) + kBladeFlank * along(lean));

@@ -15,7 +15,7 @@ constexpr std::int64_t kTactorTicks = 20;  // over which its speed is taken: one
 devices::SimArmSettings arcArm(const ArcTrialSetup& setup) {
   devices::SimArmSettings settings;
   settings.serial = "index";
-  const Vec3 start_W = (setup.path_radius + 0.01) * Vec3(std::sin(setup.start_angle), 0, std::cos(setup.start_angle));
+  const Vec3 start_W = (setup.path_radius + 0.01) * Vec3(math::sin(setup.start_angle), 0, math::cos(setup.start_angle));
   settings.start_D = arcArmBase(setup.path_radius).inverse() * start_W;
   return settings;
 }

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/world/state.h"
+#include "engine/state.h"
 #include "tasks/experiments/study_parameters.h"
 #include "tasks/participants/random.h"
 
@@ -29,7 +29,7 @@ engine::WorldBuilder cylinderWorld(const CylinderAlignmentOptions& o, int& objec
 
 }  // namespace
 
-double flatDistance(const CylinderAlignmentOptions& options) { return options.radius * std::cos(options.flat_half_angle); }
+double flatDistance(const CylinderAlignmentOptions& options) { return options.radius * math::cos(options.flat_half_angle); }
 
 void validate(const CylinderAlignmentOptions& o) {
   const RangeCheck check("cylinder-alignment");
@@ -47,7 +47,7 @@ double wrapAngle(double angle) {
 
 double flatAngle(const Pose& X_WB) {
   const Vec3 n_W = X_WB.q * Vec3::UnitX();
-  return std::atan2(n_W.y(), n_W.x());
+  return math::atan2(n_W.y(), n_W.x());
 }
 
 std::vector<double> startAngles(const CylinderAlignmentOptions& options, int count, std::uint64_t seed) {
@@ -63,7 +63,7 @@ HandScene makeCylinderScene(const CylinderAlignmentOptions& options, const Cylin
   const engine::WorldBuilder world = cylinderWorld(options, object);
   const Vec3 middle_W(0, 0, 0.5 * options.length);
   engine::BodyStart start;
-  start.X_WB = {Quat(Eigen::AngleAxisd(kTargetAngle + spec.start_angle, Vec3::UnitZ())), middle_W};
+  start.X_WB = {quatFromRotationVector({0, 0, kTargetAngle + spec.start_angle}), middle_W};
   std::vector<engine::BodyStart> starts;
   if (!options.pivot) starts.emplace_back();
   starts.push_back(start);

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact/invariants.h"
 #include "tasks/experiments/cylinder_alignment.h"
 
 namespace pincer::tasks {
 
 TrialVerdict CylinderJudge::observe(const CylinderView& view) {
+  PINCER_ASSERT(!begun_ || view.time >= last_time_);
   const double dt = begun_ ? view.time - last_time_ : 0;
   begun_ = true;
   last_time_ = view.time;

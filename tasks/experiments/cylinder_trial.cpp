@@ -1,6 +1,6 @@
 #include "tasks/experiments/cylinder_trial.h"
 
-#include "engine/world/state.h"
+#include "engine/state.h"
 
 namespace pincer::tasks {
 namespace {
@@ -35,9 +35,9 @@ TrialVerdict CylinderTrial::judge(const HandIntent& intent, double time) {
   view.answers = intent.answers;
   const double theta = angle();
   view.error = wrapAngle(theta - kTargetAngle);
-  const Vec3 flat_W(std::cos(theta), std::sin(theta), 0);
+  const Vec3 flat_W(math::cos(theta), math::sin(theta), 0);
   for (std::size_t i = 0; i < view.normal_forces.size(); ++i) {
-    const grasp::FingerReport& finger = scratch().grasp.fingers[i];
+    const grasp::FingerReport& finger = scratch().fingers[i];
     const bool on_object = finger.touching && finger.body == scene().object;
     view.normal_forces[i] = on_object ? finger.normal_force : 0;
     view.on_flat = view.on_flat || (on_object && finger.n_W.dot(flat_W) > kOnFlat);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "engine/world/state.h"
+#include "engine/state.h"
 
 namespace pincer::tasks {
 namespace {
@@ -15,7 +15,7 @@ std::array<double, 2> toArray(const Vec2& v) { return {v.x(), v.y()}; }
 
 FingerRecord fingerRecord(const TickState& state, const TickScratch& scratch, const FingerInputs& inputs, std::size_t i) {
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-  const grasp::FingerReport& report = scratch.grasp.fingers[i];
+  const grasp::FingerReport& report = scratch.fingers[i];
   const FingerOutputs& output = scratch.outputs[i];
   FingerRecord record;
   record.p_WF = toArray(state.mounts[i].p_WF);

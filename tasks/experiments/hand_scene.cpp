@@ -53,7 +53,7 @@ FingerCue fingerCue(const grasp::FingerModel& finger, const Pose& X_WD, const Ve
 void requireFacing(const HandScene& scene, std::size_t i, const ArmBase& base) {
   const Pose &own = scene.model.mounts[i].X_WD, &other = scene.model.mounts[1 - i].X_WD;
   const Vec3 there_W = (other.p - own.p).normalized(), ahead_W = own.q * Vec3::UnitZ();
-  const double off = std::acos(std::clamp(ahead_W.dot(there_W), -1.0, 1.0));
+  const double off = math::acos(std::clamp(ahead_W.dot(there_W), -1.0, 1.0));
   if (off <= kFacing) return;
   throw InputError(
       fmt::format("calibration: the {} finger's arm doesn't face the other: with base_x, base_y, base_z = {:g}, {:g}, {:g} m and base_turn "
@@ -93,7 +93,7 @@ HandScene makeHandScene(const HandSetup& setup, engine::WorldBuilder world, std:
 void standArms(HandScene& scene, const std::array<ArmBase, kHandFingers>& bases) {
   for (std::size_t i = 0; i < bases.size(); ++i) {
     Pose& X_WD = scene.model.mounts[i].X_WD;
-    const Quat turned = Quat(Eigen::AngleAxisd(bases[i].turn, Vec3::UnitZ())) * X_WD.q;
+    const Quat turned = quatFromRotationVector({0, 0, bases[i].turn}) * X_WD.q;
     scene.q_DF[i] = turned.conjugate() * X_WD.q * scene.q_DF[i];
     X_WD = {turned, X_WD.p + bases[i].offset_W};
   }

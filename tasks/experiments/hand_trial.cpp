@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include "engine/world/state.h"
+#include "engine/state.h"
 #include "tasks/experiments/hand_records.h"
 
 namespace pincer::tasks {
@@ -131,9 +131,7 @@ Vec3 HandTrial::placeTruth() const {
   return {0, offset_W.y(), offset_W.z()};  // the pinch is along x
 }
 
-Vec3 HandTrial::gripTruth() const {
-  return {0.5 * (scratch_.grasp.fingers[0].normal_force + scratch_.grasp.fingers[1].normal_force), 0, 0};
-}
+Vec3 HandTrial::gripTruth() const { return {0.5 * (scratch_.fingers[0].normal_force + scratch_.fingers[1].normal_force), 0, 0}; }
 
 void HandTrial::record(const std::vector<FingerInputs>& samples, const HandIntent& intent, double now, std::uint32_t status) {
   if (sink_.wantsInputs()) {

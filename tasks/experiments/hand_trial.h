@@ -40,7 +40,6 @@ class HandTrial {
   virtual const char* instruction() const = 0;  // what the person is asked to do, a sentence
   const TickState& state() const { return state_; }
   const TickScratch& scratch() const { return scratch_; }
-  double simulatedTime() const { return last_; }  // [s]
   // Why the forces were cut, with the remedy; empty: they weren't. Once the trial is over.
   std::string fault() const;
 

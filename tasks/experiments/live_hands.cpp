@@ -53,7 +53,7 @@ void LiveHands::apply(const std::vector<FingerOutputs>& outputs, Cue cue, double
 }
 
 void LiveHands::readIntent() {
-  const auto& fingers = trial_.scratch().grasp.fingers;
+  const auto& fingers = trial_.scratch().fingers;
   const int object = trial_.scene().object;
   intent_.wants_lift =
       std::all_of(fingers.begin(), fingers.end(), [&](const grasp::FingerReport& f) { return f.touching && f.body == object; });

@@ -140,7 +140,7 @@ DoneTrial runTrial(const ManipulationStudy& study, HandTrial& trial, const Manip
   const std::unique_ptr<Hands> hands =
       hooks.host.hands ? hooks.host.hands(trial) : std::make_unique<SimulatedHands>(trial.scene(), *participant);
   trial.begin();
-  HandsCycle cycle(trial, *hands, servo.real_time);
+  HandsCycle cycle(trial, *hands, servo.clock != ServoClock::kVirtual);
   DoneTrial done;
   done.servo = hooks.host.serve ? hooks.host.serve(cycle, at.done, at.total) : runServo(servo, cycle, interrupted);
   hands->stop();

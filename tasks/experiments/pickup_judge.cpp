@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact/invariants.h"
+
 namespace pincer::tasks {
 namespace {
 
@@ -20,6 +22,7 @@ double offsetFromLine(const PickupView& view) {
 }  // namespace
 
 TrialVerdict PickupJudge::observe(const PickupView& view) {
+  PINCER_ASSERT(!begun_ || view.time >= last_time_);
   const double dt = begun_ ? view.time - last_time_ : 0;
   begun_ = true;
   last_time_ = view.time;

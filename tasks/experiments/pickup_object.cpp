@@ -6,12 +6,12 @@
 #include <cmath>
 #include <limits>
 
-#include "contact/mesh/mesh_reader.h"
-#include "contact/mesh/mesh_report.h"
-#include "contact/surface/smooth_mesh.h"
+#include "contact/mesh_reader.h"
+#include "contact/mesh_report.h"
+#include "contact/smooth_mesh.h"
 #include "engine/motion/mass.h"
-#include "engine/world/state.h"
-#include "engine/world/step.h"
+#include "engine/state.h"
+#include "engine/step.h"
 
 namespace pincer::tasks {
 namespace {
@@ -74,18 +74,18 @@ double heightAboveDish(const contact::TriangleMesh& mesh, double dish_radius) {
 }
 
 // How far a point at most `reach` from the centre may have moved from one pose to the other.
-double movement(const Pose& from, const Pose& to, double reach) { return (to.p - from.p).norm() + reach * from.q.angularDistance(to.q); }
+double movement(const Pose& from, const Pose& to, double reach) { return (to.p - from.p).norm() + reach * angleBetween(from.q, to.q); }
 
 Pose settle(const SpherePickupOptions& options, const contact::Shape& shape, double height) {
   const double mu = options.frictions.front();
   const engine::WorldModel model = pickupWorld(options, shape, mu, options.dynamic_ratio * mu).build();
   engine::WorldState state = engine::makeState(model, {{}, {{Quat::Identity(), Vec3(0, 0, height)}, Vec3::Zero(), Vec3::Zero()}}, {});
-  engine::WorldScratch scratch(model);
+  const engine::ScratchHandle scratch = engine::makeScratch(model);
   engine::BodyState& body = state.bodies[kObjectBody];
-  const double keep = std::exp(-model.options.h / kDampingTime);
+  const double keep = math::exp(-model.options.h / kDampingTime);
   Pose last = engine::bodyPose(model, state, kObjectBody);
   for (double next = kRestTime; state.time < kSettleTime;) {
-    engine::step(model, state, scratch);
+    engine::step(model, state, *scratch);
     body.v_W *= keep;
     body.L_W *= keep;
     if (state.time < next) continue;
@@ -133,7 +133,7 @@ void measurePinch(const contact::TriangleMesh& mesh, PickupObject& object) {
   }
   object.half_width = 0.5 * (right.x - left.x);
   object.asymmetry = std::abs(0.5 * (right.x + left.x) - object.place_W.x());
-  object.antipodal_angle = std::acos(std::clamp(std::min(right.n_W.x(), -left.n_W.x()), -1.0, 1.0));
+  object.antipodal_angle = math::acos(std::clamp(std::min(right.n_W.x(), -left.n_W.x()), -1.0, 1.0));
 }
 
 void requireGrip(const PickupObject& object, const std::string& source) {

@@ -6,8 +6,8 @@
 #pragma once
 #include <cstdint>
 
-#include "contact/shape/shape.h"
-#include "engine/world/model.h"
+#include "contact/shape.h"
+#include "engine/model.h"
 #include "tasks/experiments/sphere_pickup.h"
 
 namespace pincer::tasks {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "contact/shape/pair_query.h"
+#include "contact/pair_query.h"
 
 namespace pincer::tasks {
 namespace {

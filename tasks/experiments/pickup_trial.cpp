@@ -1,6 +1,6 @@
 #include "tasks/experiments/pickup_trial.h"
 
-#include "engine/world/state.h"
+#include "engine/state.h"
 
 namespace pincer::tasks {
 namespace {
@@ -55,14 +55,14 @@ PickupView PickupTrial::view(bool wants_lift, double time) {
   const engine::BodyState& object = world.bodies[kObjectBody];
   const Vec3 w_WB = engine::bodyAngularVelocity(model, world, kObjectBody);
   for (std::size_t i = 0; i < view.fingers.size(); ++i) {
-    const grasp::FingerReport& finger = scratch().grasp.fingers[i];
+    const grasp::FingerReport& finger = scratch().fingers[i];
     const bool on_object = finger.touching && finger.body == kObjectBody;
     const Vec3 v_W = world.points[i].v_W - object.v_W - w_WB.cross(finger.p_WC - object.X_WI.p);
     const double slide_speed = (v_W - v_W.dot(finger.n_W) * finger.n_W).norm();
     view.fingers[i] = {on_object, finger.sliding, on_object ? finger.normal_force : 0, slide_speed, finger.p_WC};
   }
   view.p_WBcm = object.X_WI.p;
-  view.clearance = clearanceOverDish(scene(), engine::bodyPose(model, world, kObjectBody), scratch().grasp.world.patches);
+  view.clearance = clearanceOverDish(scene(), engine::bodyPose(model, world, kObjectBody), *patches_);
   return view;
 }
 

@@ -23,6 +23,7 @@ class PickupTrial final : public HandTrial {
   PickupTrialSpec spec_;
   double smallest_grip_;  // m g / (2 mu_s) [N]
   PickupJudge judge_;
+  contact::PatchCacheHandle patches_ = contact::makePatchCache(64);
   double felt_grip_ = 0, true_grip_ = 0;  // at the last reading of the grip [N]
 };
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "contact/invariants.h"
 #include "tasks/experiments/hand_records.h"
 
 namespace pincer::tasks {
@@ -23,6 +24,7 @@ devices::ArmCapabilities capabilitiesOf(const HandsRecord::Finger& finger) {
 
 RecordedHands::RecordedHands(HandTrial& trial, const HandsRecord& hands, std::vector<InputRecord> inputs)
     : trial_(trial), inputs_(std::move(inputs)), samples_(kHandFingers) {
+  PINCER_ASSERT(!inputs_.empty());
   std::array<ArmBase, kHandFingers> bases;
   for (std::size_t i = 0; i < bases.size(); ++i) {
     bases[i] = {vectorOf(hands.fingers[i].base_offset_W), hands.fingers[i].base_turn};
@@ -34,6 +36,7 @@ RecordedHands::RecordedHands(HandTrial& trial, const HandsRecord& hands, std::ve
 }
 
 void RecordedHands::advanceTo(double) {
+  PINCER_ASSERT(next_ < inputs_.size());
   const InputRecord& input = inputs_[next_];
   if (input.cut != 0) trial_.cutForces(static_cast<devices::Trip>(input.cut));
   for (std::size_t i = 0; i < samples_.size(); ++i) samples_[i] = samplesOf(input.fingers[i]);

@@ -120,7 +120,7 @@ void ShapeTrial::advance(const ShapeAction& action, double now) {
 
 void ShapeTrial::count(double dt) {
   shown_time_ += dt;
-  if (!scratch_.grasp.fingers[0].touching) return;
+  if (!scratch_.fingers[0].touching) return;
   contact_time_ += dt;
   const double speed = state_.mounts[0].v_WF.norm();
   if (speed > kExploringMoves) {
@@ -140,7 +140,7 @@ void ShapeTrial::count(double dt) {
 
 void ShapeTrial::record(double now, double took, std::uint32_t status) {
   const auto array = [](const Vec3& v) { return std::array<double, 3>{v.x(), v.y(), v.z()}; };
-  const grasp::FingerReport& felt = scratch_.grasp.fingers[0];
+  const grasp::FingerReport& felt = scratch_.fingers[0];
   SampleRecord sample;
   sample.trial = setup_.trial;
   sample.tick = ticks_ - 1;

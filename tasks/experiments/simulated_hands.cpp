@@ -1,5 +1,7 @@
 #include "tasks/experiments/simulated_hands.h"
 
+#include "contact/invariants.h"
+
 namespace pincer::tasks {
 
 SimulatedHands::SimulatedHands(const HandScene& scene, Participant& participant) : participant_(participant), samples_(kHandFingers) {
@@ -32,6 +34,7 @@ const std::vector<FingerInputs>& SimulatedHands::sample() {
 }
 
 void SimulatedHands::apply(const std::vector<FingerOutputs>& outputs, Cue cue, double now) {
+  PINCER_ASSERT(outputs.size() == samples_.size());
   Percept percept;
   percept.time = now;
   percept.cue = cue;

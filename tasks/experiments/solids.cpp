@@ -20,7 +20,7 @@ std::vector<Vec2> ballProfile(double radius, int sides) {
   const int steps = sides / 2;
   for (int k = 0; k <= steps; ++k) {
     const double a = std::numbers::pi * k / steps;
-    profile.emplace_back(k == 0 || k == steps ? 0 : radius * std::sin(a), -radius * std::cos(a));
+    profile.emplace_back(k == 0 || k == steps ? 0 : radius * math::sin(a), -radius * math::cos(a));
   }
   return profile;
 }

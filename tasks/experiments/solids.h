@@ -6,7 +6,7 @@
 #include <memory>
 #include <string>
 
-#include "contact/surface/smooth_mesh.h"
+#include "contact/smooth_mesh.h"
 
 namespace pincer::tasks {
 

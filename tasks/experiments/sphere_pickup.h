@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "contact/error.h"
-#include "contact/surface/surface_contact.h"
+#include "contact/surface_contact.h"
 #include "tasks/experiments/hand_setup.h"
 
 namespace pincer::tasks {

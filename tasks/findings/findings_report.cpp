@@ -40,8 +40,9 @@ std::vector<std::string> rowOf(const FindingMeasure& m, const FindingResult& r) 
           verdictOn(m, r)};
 }
 
-const std::vector<std::string> kHeads = {"measure", "published",  "force only", "CLD + force", "difference",
-                                         "d_z",     "p_t < 0.05", "p_W < 0.05", "direction",   "verdict"};
+std::vector<std::string> heads() {
+  return {"measure", "published", "force only", "CLD + force", "difference", "d_z", "p_t < 0.05", "p_W < 0.05", "direction", "verdict"};
+}
 
 std::string runCost(const FindingsResult& r) {
   if (r.simulated == 0) return "Every experiment was there already.";
@@ -114,7 +115,7 @@ Figure forestFigure(const FindingsResult& r) {
 std::string variantTable(const VariantResult& variant) {
   std::string html = fmt::format("<h2>{}</h2>\n<p>{}; parameters of the participants: {}</p>\n<div class=\"wide\"><table>\n",
                                  escaped(variant.name), escaped(variant.what), variant.hash) +
-                     htmlRow(kHeads, "th");
+                     htmlRow(heads(), "th");
   for (std::size_t m = 0; m < variant.findings.size(); ++m) html += htmlRow(rowOf(findingMeasures()[m], variant.findings[m]), "td");
   return html + "</table></div>\n";
 }

@@ -32,8 +32,8 @@ std::vector<std::string> orderRow(const PublishedOrder& o) {
           fmt::format("{} of {}", o.significant, o.experiments), verdictOn(o)};
 }
 
-const std::vector<std::string> kFigureHeads = {"study", "figure", "published", "pincer", "published within", "verdict"};
-const std::vector<std::string> kOrderHeads = {"study", "published order", "the same order", "p_t < 0.05", "verdict"};
+std::vector<std::string> figureHeads() { return {"study", "figure", "published", "pincer", "published within", "verdict"}; }
+std::vector<std::string> orderHeads() { return {"study", "published order", "the same order", "p_t < 0.05", "verdict"}; }
 
 constexpr const char* kPublishedNote =
     "Means with their 95 % intervals (Student t) over the simulated experiments. \"Published within\": experiments in which the published "
@@ -76,9 +76,9 @@ std::string publishedOrdersCsv(const PublishedFindings& findings) {
 
 std::string publishedHtml(const PublishedFindings& findings) {
   std::string html =
-      "<h2>Published figures of the studies with one finger</h2>\n<div class=\"wide\"><table>\n" + htmlRow(kFigureHeads, "th");
+      "<h2>Published figures of the studies with one finger</h2>\n<div class=\"wide\"><table>\n" + htmlRow(figureHeads(), "th");
   for (const PublishedFigure& f : findings.figures) html += htmlRow(figureRow(f), "td");
-  html += "</table></div>\n<div class=\"wide\"><table>\n" + htmlRow(kOrderHeads, "th");
+  html += "</table></div>\n<div class=\"wide\"><table>\n" + htmlRow(orderHeads(), "th");
   for (const PublishedOrder& o : findings.orders) html += htmlRow(orderRow(o), "td");
   html += fmt::format("</table></div>\n<p class=\"note\">{}</p>\n<p>Parameters of the participants:", escaped(kPublishedNote));
   for (const std::string& line : findings.fingerprints) html += " " + escaped(line) + ";";

@@ -6,6 +6,8 @@
 #include <ctime>
 #include <limits>
 
+#include "contact/invariants.h"
+
 namespace pincer::tasks {
 namespace {
 
@@ -33,6 +35,7 @@ double cpuSecondsOf(const std::function<void()>& work) {
 }  // namespace
 
 double quantileOf(std::vector<double> values, double q) {
+  PINCER_ASSERT(0 <= q && q <= 1);
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
   const double rank = std::ceil(q * static_cast<double>(values.size())) - 1;
   const auto nth = values.begin() + static_cast<std::ptrdiff_t>(std::max(rank, 0.0));

@@ -8,7 +8,9 @@ Quat drawRotation(double sd, Random& random) {
   const Vec3 a = sd * random.normal3();
   const double angle = a.norm();
   if (angle == 0) return Quat::Identity();
-  return Quat(Eigen::AngleAxisd(angle, a / angle));
+  const auto [s, c] = math::sinCos(0.5 * angle);
+  const Vec3 v = s / angle * a;
+  return {c, v.x(), v.y(), v.z()};
 }
 
 Body drawBody(const HandRanges& ranges, std::uint64_t seed) {

@@ -12,21 +12,26 @@ namespace {
 constexpr double kCopyAngleSd = 0.03;  // noise on a copied hypothesis [rad]
 constexpr double kDrawnShare = 0.7;    // of the prior's variance: in the means drawn; the rest in each hypothesis's covariance
 
+Vec2 along(double angle) {
+  const auto [sin, cos] = math::sinCos(angle);
+  return {cos, sin};
+}
+
 double wrapped(double angle) { return std::remainder(angle, 2 * std::numbers::pi); }
 
 }  // namespace
 
 CutCircle cutCircle(const FlatModel& model, double theta, const Vec2& c) {
-  const double cs = std::cos(theta), sn = std::sin(theta);
+  const auto [sn, cs] = math::sinCos(theta);
   const double x = cs * c.x() + sn * c.y(), y = cs * c.y() - sn * c.x();  // x along the flat's normal
   const double d = model.flat_distance, half = std::sqrt(model.radius * model.radius - d * d);
   const double rho = c.norm();
   if (rho == 0 || x * model.radius < d * rho)
-    return {rho - model.radius, std::atan2(c.y(), c.x()), 1 / std::max(rho, 1e-6)};  // the round part
+    return {rho - model.radius, math::atan2(c.y(), c.x()), 1 / std::max(rho, 1e-6)};  // the round part
   if (std::abs(y) <= half) return {x - d, theta, 0};
   const Vec2 from_edge(x - d, y - std::copysign(half, y));
   const double distance = from_edge.norm();
-  return {distance, theta + std::atan2(from_edge.y(), from_edge.x()), 1 / std::max(distance, 1e-6)};
+  return {distance, theta + math::atan2(from_edge.y(), from_edge.x()), 1 / std::max(distance, 1e-6)};
 }
 
 void FlatBelief::begin(const FlatModel& model, Random& random) {
@@ -55,7 +60,7 @@ double kalmanUpdate(Mean& mean, Covariance& P, double e, const Mean& slope, doub
   const double variance = slope.dot(P_slope) + sd * sd;
   mean += P_slope * (e / variance);
   P.noalias() -= P_slope * (P_slope / variance).transpose();
-  return -0.5 * (e * e / variance + std::log(variance));
+  return -0.5 * (e * e / variance + math::log(variance));
 }
 
 }  // namespace
@@ -65,11 +70,12 @@ double FlatBelief::update(Hypothesis& h, const FlatPercept& p, double half) cons
   const auto centre = [&] { return Vec2(p.p_felt + h.x.head<2>() + half * h.x.tail<2>()); };
   const auto slope = [&](const Vec2& d) { return Vec4(d.x(), d.y(), half * d.x(), half * d.y()); };
   CutCircle at = cutCircle(model_, h.theta, centre());
-  const Vec2 n(std::cos(at.normal), std::sin(at.normal));
+  const Vec2 n = along(at.normal);
   double log = kalmanUpdate(h.x, h.P, model_.tip_radius - p.pressed - at.distance, slope(n), model_.span_sd);
   if (!p.push && !p.place) return log;
   at = cutCircle(model_, h.theta, centre());
-  const Vec4 turning = slope(at.bend * Vec2(-std::sin(at.normal), std::cos(at.normal)));
+  const Vec2 outward = along(at.normal);
+  const Vec4 turning = slope(at.bend * Vec2(-outward.y(), outward.x()));
   double turned = 0;  // of the normal, by what the push has just taught
   if (p.push) {
     const Vec4 before = h.x;
@@ -100,16 +106,16 @@ void FlatBelief::turned(double angle, double sd, Random& random) {
 
 Vec2 FlatBelief::resultant() const {
   Vec2 sum = Vec2::Zero();
-  for (const Hypothesis& h : hypotheses_) sum += h.weight * Vec2(std::cos(h.theta), std::sin(h.theta));
+  for (const Hypothesis& h : hypotheses_) sum += h.weight * along(h.theta);
   return sum;
 }
 
 double FlatBelief::direction() const {
   const Vec2 r = resultant();
-  return std::atan2(r.y(), r.x());
+  return math::atan2(r.y(), r.x());
 }
 
-double FlatBelief::spread() const { return std::sqrt(-2 * std::log(std::clamp(resultant().norm(), 1e-9, 1.0))); }
+double FlatBelief::spread() const { return std::sqrt(-2 * math::log(std::clamp(resultant().norm(), 1e-9, 1.0))); }
 
 Vec2 FlatBelief::axis() const {
   Vec2 mean = Vec2::Zero();

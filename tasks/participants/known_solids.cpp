@@ -17,11 +17,11 @@ constexpr int kRoundSides = 24;
 // Sides whose corners lie at `radius`, the first on +x; `taper`: sideways per unit of height, 0 for a prism.
 std::vector<KnownSolid::Plane> KnownSolid::around(int sides, double radius, double half_length, double taper) {
   std::vector<Plane> planes;
-  const double inner = radius * std::cos(std::numbers::pi / sides);
+  const double inner = radius * math::cos(std::numbers::pi / sides);
   for (int k = 0; k < sides; ++k) {
     const double a = 2 * std::numbers::pi * (k + 0.5) / sides;
-    const Vec3 n = Vec3(std::cos(a), std::sin(a), taper).normalized();
-    planes.push_back({n, n.dot(Vec3(inner * std::cos(a), inner * std::sin(a), -half_length))});
+    const Vec3 n = Vec3(math::cos(a), math::sin(a), taper).normalized();
+    planes.push_back({n, n.dot(Vec3(inner * math::cos(a), inner * math::sin(a), -half_length))});
   }
   planes.push_back({-Vec3::UnitZ(), half_length});
   return planes;
@@ -36,7 +36,7 @@ KnownSolid KnownSolid::prism(int sides, double radius, double half_length) {
 
 KnownSolid KnownSolid::pyramid(int sides, double radius, double half_length) {
   KnownSolid solid;
-  solid.planes_ = around(sides, radius, half_length, radius * std::cos(std::numbers::pi / sides) / (2 * half_length));
+  solid.planes_ = around(sides, radius, half_length, radius * math::cos(std::numbers::pi / sides) / (2 * half_length));
   return solid;
 }
 

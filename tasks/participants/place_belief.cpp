@@ -15,7 +15,7 @@ constexpr double kCopyOffsetSd = 0.5e-3;  // noise on a copied hypothesis [m]
 constexpr int kCandidates = 8;            // shifts that are weighed besides the mean
 constexpr double kLeastChance = 0.02;     // of the chance that a model of the world is simply wrong
 
-double gaussianShare(double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); }
+double gaussianShare(double z) { return 0.5 * math::erfc(-z / std::numbers::sqrt2); }
 
 }  // namespace
 
@@ -26,14 +26,14 @@ void PlaceBelief::begin(const PlaceModel& model, Random& random) {
   logs_.resize(kHypotheses);
   for (Hypothesis& h : hypotheses_) {
     h.o = model.placement_sd * random.normal2();
-    h.mu = model.mu_min * std::exp(random.uniform() * std::log(model.mu_max / model.mu_min));
+    h.mu = model.mu_min * math::exp(random.uniform() * math::log(model.mu_max / model.mu_min));
     h.weight = 1.0 / static_cast<double>(kHypotheses);
   }
 }
 
 double PlaceBelief::holds(const Hypothesis& h, const Vec2& shift, double grip) const {
-  const double tilt = std::asin(std::min((h.o - shift).norm() / model_.lever, 1.0));
-  const double opposed = gaussianShare((std::atan(h.mu) - tilt) / kAngleSoftness);
+  const double tilt = math::asin(std::min((h.o - shift).norm() / model_.lever, 1.0));
+  const double opposed = gaussianShare((math::atan(h.mu) - tilt) / kAngleSoftness);
   const double firm = gaussianShare((2 * h.mu * grip / model_.weight - 1) / kGripSoftness);
   return std::clamp(opposed * firm, kLeastChance, 1 - kLeastChance);
 }
@@ -79,14 +79,14 @@ void PlaceBelief::pushRead(const Vec2& tilt, Random& random) {
   const double precision = -0.5 / (model_.push_sd * model_.push_sd);
   const auto expected = [&](const Hypothesis& h) {
     const double length = h.o.norm();
-    const double beyond = std::asin(std::min(length / model_.lever, 1.0)) - std::atan(h.mu);
+    const double beyond = math::asin(std::min(length / model_.lever, 1.0)) - math::atan(h.mu);
     return Vec2(length > 0 && beyond > 0 ? Vec2(-beyond / length * h.o) : Vec2::Zero());
   };
   update([&](const Hypothesis& h) { return precision * (tilt - expected(h)).squaredNorm(); }, random);
 }
 
 void PlaceBelief::failed(double grip, Random& random) {
-  update([&](const Hypothesis& h) { return std::log(1 - holds(h, Vec2::Zero(), grip)); }, random);
+  update([&](const Hypothesis& h) { return math::log(1 - holds(h, Vec2::Zero(), grip)); }, random);
 }
 
 void PlaceBelief::moved(const Vec2& shift) {

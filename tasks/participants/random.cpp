@@ -47,7 +47,7 @@ double Random::uniform(double low, double high) { return low + (high - low) * un
 double Random::normal() {
   const double u1 = 1 - uniform();
   const double u2 = uniform();
-  return std::sqrt(-2 * std::log(u1)) * std::cos(2 * std::numbers::pi * u2);
+  return std::sqrt(-2 * math::log(u1)) * math::cos(2 * std::numbers::pi * u2);
 }
 
 // One statement per draw: the order in which a call's arguments are evaluated is the compiler's choice.

@@ -15,7 +15,7 @@ constexpr double kLongestReach = 2;  // a reach of the pinch ends there at the l
 constexpr double kNothingFelt = std::numeric_limits<double>::quiet_NaN();
 
 double wrapToPi(double angle) { return std::remainder(angle, 2 * std::numbers::pi); }
-double aboutZ(const Vec3& v_W) { return std::atan2(v_W.y(), v_W.x()); }
+double aboutZ(const Vec3& v_W) { return math::atan2(v_W.y(), v_W.x()); }
 
 FlatModel flatModelOf(const TrialCues& cues, const SensingLimits& limits) {
   FlatModel model;
@@ -26,8 +26,8 @@ FlatModel flatModelOf(const TrialCues& cues, const SensingLimits& limits) {
   model.placement_between_sd = std::max(limits.placement_between_sd, 1e-4);
   model.span_sd = std::max(limits.span_sd, 3e-4);
   const double cone = 0.31;  // SD of a direction anywhere within a friction cone of 31 degrees [rad]
-  model.push_sd = std::hypot(limits.direction_sd, cone);
-  model.place_sd = std::max(std::hypot(limits.tactor_sd / model.tip_radius, limits.orientation_sd), 0.02);
+  model.push_sd = math::hypot(limits.direction_sd, cone);
+  model.place_sd = std::max(math::hypot(limits.tactor_sd / model.tip_radius, limits.orientation_sd), 0.02);
   model.place_gain = limits.tactor_bias;
   return model;
 }
@@ -73,7 +73,7 @@ void ScriptedAlignment::close() {
   const double step = options_.close_speed * dt_;
   posture_.half = std::max(posture_.half - step, 0.5 * cues_.fingers[0].tip_radius);
   if (touch_.feels(0) != touch_.feels(1)) {
-    const Vec3 u_W(std::cos(posture_.angle), std::sin(posture_.angle), 0);
+    const Vec3 u_W(math::cos(posture_.angle), math::sin(posture_.angle), 0);
     posture_.centre_W += (touch_.feels(0) ? -step : step) * u_W;
   }
   contact_time_ = touch_.feelsBoth() ? contact_time_ + dt_ : 0;

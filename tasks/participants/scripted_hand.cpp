@@ -82,7 +82,8 @@ devices::HandPull ScriptedHand::pullOf(int finger) const {
   const auto k = static_cast<std::size_t>(finger);
   const double side = finger == 0 ? -1 : 1;
   const Vec3 misplacement_W = minimumJerk(now_, settle_time_) * sense_.misplacement_W[k];
-  const Vec3 u_W = Eigen::AngleAxisd(posture_.angle, Vec3::UnitZ()) * axis_W_;
+  const auto [s, c] = math::sinCos(posture_.angle);
+  const Vec3 u_W(c * axis_W_.x() - s * axis_W_.y(), s * axis_W_.x() + c * axis_W_.y(), axis_W_.z());
   const Vec3 felt_W = posture_.centre_W + side * posture_.half * u_W;
   devices::HandPull pull = body_.hands[k];
   pull.p_D = cues_.fingers[k].q_WD.conjugate() * (felt_W + misplacement_W - cues_.fingers[k].p_WD);

@@ -16,7 +16,7 @@ PlaceModel placeModelOf(const TrialCues& cues, const SensingLimits& limits, cons
   model.lever = radius + cues.half_width;
   model.weight = cues.mass * options.gravity;
   model.placement_sd = std::max(limits.placement_sd, 1e-3);
-  model.place_sd = std::max(kBothFingers * model.lever * std::hypot(limits.tactor_sd / radius, limits.orientation_sd), 5e-4);
+  model.place_sd = std::max(kBothFingers * model.lever * math::hypot(limits.tactor_sd / radius, limits.orientation_sd), 5e-4);
   model.place_gain = limits.tactor_bias;
   model.rolls_sd = options.object_rolls_sd;
   model.height_sd = std::max(limits.placement_between_sd, 1e-3);

@@ -16,7 +16,7 @@ constexpr double kLeastReach = 0.02;    // nearer the middle the angle goes no f
 constexpr double kLeastProgress = 0.1;  // of the finger's speed: however steep the surface, the pass goes on
 constexpr double kLeastInPlane = 0.1;   // a push further than this from the pass's plane (as a cosine) doesn't say where the surface goes
 
-double angleBetweenUnits(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
+double angleBetweenUnits(const Vec3& a, const Vec3& b) { return math::atan2(a.cross(b).norm(), a.dot(b)); }
 
 // Turned by a random small angle about both axes across.
 Vec3 blurred(const Vec3& direction, double sd, Random& random) {
@@ -55,14 +55,14 @@ Vec3 ShapeExplorer::ray() const {
   if (phase_ == Phase::kAnswer) return turn_from_;
   if (phase_ == Phase::kTurn) {
     const Vec3 across = (pass().from - pass().from.dot(turn_from_) * turn_from_).normalized();
-    return std::cos(angle_) * turn_from_ + std::sin(angle_) * across;
+    return math::cos(angle_) * turn_from_ + math::sin(angle_) * across;
   }
-  return std::cos(angle_) * pass().from + std::sin(angle_) * pass().towards;
+  return math::cos(angle_) * pass().from + math::sin(angle_) * pass().towards;
 }
 
 Vec3 ShapeExplorer::along() const {
   if (phase_ == Phase::kTurn || phase_ == Phase::kAnswer) return ray().cross(Vec3::UnitZ()).normalized();  // turns are level
-  return -std::sin(angle_) * pass().from + std::cos(angle_) * pass().towards;
+  return -math::sin(angle_) * pass().from + math::cos(angle_) * pass().towards;
 }
 
 // F: -z towards the middle, x along the pass.
@@ -156,7 +156,7 @@ void ShapeExplorer::read(const FingerPercept& finger, const Vec3& p_W) {
   double sd_n = sd_push;
   if (const auto shown = directionOfTactor(finger, held())) {
     const double sd_place = limits_.common.tactor_sd / limits_.common.tactor_bias;
-    const double sd_shown = std::hypot(sd_place / cues_.tip_radius, limits_.common.orientation_sd);
+    const double sd_shown = math::hypot(sd_place / cues_.tip_radius, limits_.common.orientation_sd);
     const double w_push = 1 / (sd_push * sd_push), w_shown = 1 / (sd_shown * sd_shown);
     n_W = (w_push * n_W + w_shown * *shown).normalized();
     sd_n = 1 / std::sqrt(w_push + w_shown);
@@ -170,8 +170,8 @@ void ShapeExplorer::believe(SolidBelief& b, const KnownSolid& solid, const Vec3&
   const double off = (q_W - solid.nearest(q_W)).norm() - cues_.tip_radius;
   const Vec3 spread_W = b.covariance * outward_W;
   const double S = outward_W.dot(spread_W) + limits_.place_sd * limits_.place_sd;
-  b.log_likelihood -= 0.5 * (off * off / S + std::log(S));
-  b.log_likelihood += std::log(likelihoodOf(n_W, sd_n, solid, q_W, outward_W, off, b.covariance));
+  b.log_likelihood -= 0.5 * (off * off / S + math::log(S));
+  b.log_likelihood += math::log(likelihoodOf(n_W, sd_n, solid, q_W, outward_W, off, b.covariance));
   b.misplacement_W += spread_W * (off / S);
   b.covariance -= spread_W * spread_W.transpose() / S;
 }
@@ -189,7 +189,7 @@ double ShapeExplorer::likelihoodOf(const Vec3& n_W, double sd_n, const KnownSoli
   for (int i = 0; i < 3; ++i) {
     for (const double sign : {-1.0, 1.0}) {
       const double angle = angleBetweenUnits(n_W, solid.outward(touching_W + sign * root.col(i))) / sd_n;
-      sum += std::exp(-0.5 * angle * angle);
+      sum += math::exp(-0.5 * angle * angle);
     }
   }
   return sum / 6 + kLeast;
@@ -206,7 +206,7 @@ std::optional<Vec3> ShapeExplorer::directionOfTactor(const FingerPercept& finger
   if (a > 0) {
     const Vec2 along = place.normalized();
     // L: first axis x of F; second axis pad normal x distal = -z x x = -y of F
-    to_contact_F = Vec3(std::sin(a) * along.x(), -std::sin(a) * along.y(), -std::cos(a));
+    to_contact_F = Vec3(math::sin(a) * along.x(), -math::sin(a) * along.y(), -math::cos(a));
   }
   return Vec3(-(q_felt_true_ * (q_WF * to_contact_F)));
 }
@@ -219,7 +219,7 @@ int ShapeExplorer::answer() const {
 double ShapeExplorer::sureness() const {
   const double best = beliefs_[static_cast<std::size_t>(answer())].log_likelihood;
   double sum = 0;
-  for (const SolidBelief& b : beliefs_) sum += std::exp(b.log_likelihood - best);
+  for (const SolidBelief& b : beliefs_) sum += math::exp(b.log_likelihood - best);
   return 1 / sum;
 }
 

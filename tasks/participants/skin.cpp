@@ -9,7 +9,7 @@ namespace {
 constexpr double kSkinStep = 1e-3;            // [s]
 constexpr double kDifferenceOfSigma = 0.954;  // 0.674 sqrt(2)
 
-double keptOf(double frequency) { return std::exp(-2 * std::numbers::pi * frequency * kSkinStep); }
+double keptOf(double frequency) { return math::exp(-2 * std::numbers::pi * frequency * kSkinStep); }
 
 }  // namespace
 
@@ -51,7 +51,7 @@ Vec2 PushedSkin::pushed(const Vec2& f) {
 }
 
 FeltMotion feltMotion(double rms, double threshold, double difference, Random& random) {
-  const double sigma = std::hypot(threshold, difference * rms) / kDifferenceOfSigma;
+  const double sigma = math::hypot(threshold, difference * rms) / kDifferenceOfSigma;
   return {rms + sigma * random.normal(), sigma};
 }
 

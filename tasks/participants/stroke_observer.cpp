@@ -17,7 +17,7 @@ constexpr double kMiddle = 0.1;                                   // a stroke's 
 StrokeObserver::StrokeObserver(std::uint64_t seed, const StrokeLimits& limits, const HandRanges& ranges)
     : limits_(limits),
       body_(drawBody(ranges, seed)),
-      noise_(std::exp(limits.sensitivity_spread * Random(seedFor(seed, 1)).normal())),
+      noise_(math::exp(limits.sensitivity_spread * Random(seedFor(seed, 1)).normal())),
       random_(seed),
       skin_(limits.skin),
       bands_{BandPower(kSlowLow, kSlowHigh), BandPower(kSlowHigh, kQuickHigh), BandPower(kSlowLow, kSlowHigh),
@@ -133,7 +133,7 @@ void StrokeObserver::readInterval() {
     if (bands_[i].rms() == 0) reading.motions[i].sigma = std::numeric_limits<double>::infinity();  // a parked tactor tells nothing
   }
   const double lag = turns_ > 0 ? lags_ / turns_ : 0;
-  reading.lag = lag + std::hypot(limits_.lag_sigma, limits_.lag_difference * lag) * random_.normal();
+  reading.lag = lag + math::hypot(limits_.lag_sigma, limits_.lag_difference * lag) * random_.normal();
 }
 
 int StrokeObserver::compared() const {
@@ -141,14 +141,14 @@ int StrokeObserver::compared() const {
   double most = 0;
   for (std::size_t i = 0; i < bands_.size(); ++i) {
     const FeltMotion &a = readings_[0].motions[i], &b = readings_[1].motions[i];
-    const double difference = (b.felt - a.felt) / std::hypot(a.sigma, b.sigma);
+    const double difference = (b.felt - a.felt) / math::hypot(a.sigma, b.sigma);
     if (std::abs(difference) > std::abs(most)) most = difference;
   }
   return most > 0 ? 2 : 1;
 }
 
 devices::HandPull StrokeObserver::pullAt(double angle, double height) const {
-  const Vec3 p_W = cues_.centre_W + (cues_.radius + height) * Vec3(std::sin(angle), 0, std::cos(angle));
+  const Vec3 p_W = cues_.centre_W + (cues_.radius + height) * Vec3(math::sin(angle), 0, math::cos(angle));
   devices::HandPull pull = body_.hands[0];
   pull.p_D = cues_.q_WD.conjugate() * (p_W - cues_.p_WD);
   return pull;

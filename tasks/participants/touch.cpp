@@ -95,7 +95,7 @@ std::optional<Vec3> Touch::readPlace(int finger, Random& random) const {
   const FingerCue& cue = cues_.fingers[static_cast<std::size_t>(finger)];
   const double length = felt_L->norm();
   if (length == 0) return Vec3::Zero().eval();
-  const double along = (cue.tip_radius + cues_.half_width) * std::sin(length / cue.tip_radius) / length;
+  const double along = (cue.tip_radius + cues_.half_width) * math::sin(length / cue.tip_radius) / length;
   return Vec3(along * (felt_L->x() * padAxis_W(finger, cue.distal_F) + felt_L->y() * padAxis_W(finger, cue.radial_F)));
 }
 
@@ -104,8 +104,8 @@ std::optional<Vec3> Touch::readContact(int finger, Random& random) const {
   if (!felt_L) return std::nullopt;
   const FingerCue& cue = cues_.fingers[static_cast<std::size_t>(finger)];
   const double length = felt_L->norm();
-  const double angle = length / cue.tip_radius, across = length > 0 ? std::sin(angle) / length : 0;
-  return Vec3(std::cos(angle) * padAxis_W(finger, cue.pad_normal_F) +
+  const double angle = length / cue.tip_radius, across = length > 0 ? math::sin(angle) / length : 0;
+  return Vec3(math::cos(angle) * padAxis_W(finger, cue.pad_normal_F) +
               across * (felt_L->x() * padAxis_W(finger, cue.distal_F) + felt_L->y() * padAxis_W(finger, cue.radial_F)));
 }
 

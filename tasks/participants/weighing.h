@@ -20,7 +20,7 @@ template <class Hypothesis>
 double weigh(std::vector<Hypothesis>& hypotheses, const std::vector<double>& logs) {
   const double best = *std::max_element(logs.begin(), logs.end());
   double sum = 0, squares = 0;
-  for (std::size_t k = 0; k < hypotheses.size(); ++k) sum += hypotheses[k].weight *= std::exp(logs[k] - best);
+  for (std::size_t k = 0; k < hypotheses.size(); ++k) sum += hypotheses[k].weight *= math::exp(logs[k] - best);
   for (Hypothesis& h : hypotheses) {
     h.weight /= sum;
     squares += h.weight * h.weight;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "contact/functions/elementary.h"
+#include "contact/invariants.h"
 #include "tasks/report/figures.h"
 #include "tasks/session/csv.h"
 
@@ -16,7 +18,7 @@ constexpr double kTarget = 0.5 * std::numbers::pi;  // of the flat: towards the 
 // From the flat's normal, B's x axis, to the target [deg].
 double flatErrorOf(const SampleRecord& s) {
   const double w = s.q_WB[0], x = s.q_WB[1], y = s.q_WB[2], z = s.q_WB[3];
-  const double angle = std::atan2(2 * (x * y + w * z), 1 - 2 * (y * y + z * z));
+  const double angle = math::atan2(2 * (x * y + w * z), 1 - 2 * (y * y + z * z));
   return kInDegrees * std::remainder(angle - kTarget, 2 * std::numbers::pi);
 }
 
@@ -65,6 +67,7 @@ Figure alignmentFigure(const SessionSummary& summary, const std::vector<TrialRec
 }
 
 Figure turnFigure(const TrialTrace& trace) {
+  PINCER_ASSERT(!trace.samples.empty());
   Figure figure;
   figure.name = "turn_" + fileNamePart(trace.trial.condition);
   figure.title = fmt::format("{}: a trial of alignment", conditionLabel(trace.trial.condition));

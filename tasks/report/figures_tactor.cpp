@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact/invariants.h"
 #include "tasks/report/figures.h"
 #include "tasks/session/csv.h"
 
@@ -84,6 +85,7 @@ std::string padPanel(std::size_t finger, double half, std::size_t last) {
 }  // namespace
 
 Figure tactorFigure(const TrialTrace& trace) {
+  PINCER_ASSERT(!trace.samples.empty());
   const double half = 1.1 * reachOf(trace);
   const std::size_t last = trace.samples.size() - 1;
   Figure figure;

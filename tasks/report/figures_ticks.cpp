@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "contact/functions/elementary.h"
 #include "tasks/report/figures.h"
 #include "tasks/session/csv.h"
 
@@ -23,9 +24,9 @@ std::vector<double> tickTimes(const SessionReader& session) {
 
 std::string histogramCsv(const std::vector<double>& times) {
   std::map<long, long> bins;
-  for (const double t : times) ++bins[std::lround(std::floor(kBinsPerDecade * std::log10(t)))];
+  for (const double t : times) ++bins[std::lround(std::floor(kBinsPerDecade * math::log10(t)))];
   CsvTable table{"from_us", "to_us", "ticks", "share_percent"};
-  const auto edge = [](long bin) { return std::pow(10, static_cast<double>(bin) / kBinsPerDecade); };
+  const auto edge = [](long bin) { return math::pow(10, static_cast<double>(bin) / kBinsPerDecade); };
   for (const auto& [bin, ticks] : bins) {
     table.row(edge(bin), edge(bin + 1), ticks, 100 * static_cast<double>(ticks) / static_cast<double>(times.size()));
   }

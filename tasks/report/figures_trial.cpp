@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "contact/invariants.h"
 #include "tasks/report/figures.h"
 #include "tasks/session/csv.h"
 
@@ -160,6 +161,7 @@ TrialTrace traceOf(const SessionReader& session, const TrialRecord& trial) {
 std::string trialWords(const TrialRecord& t) { return fmt::format("trial {} (participant {}, µₛ {:.2f})", t.trial, t.participant, t.mu_s); }
 
 Figure trialFigure(const TrialTrace& trace) {
+  PINCER_ASSERT(!trace.samples.empty());
   const std::vector<EventStyle> styles = stylesOf(trace);
   const Ranges r = rangesOf(trace);
   Figure figure;

@@ -1,9 +1,6 @@
 #include "tasks/report/gnuplot.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <spawn.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -11,8 +8,10 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <system_error>
 
 #include "contact/error.h"
+#include "tasks/measure/child_process.h"
 #include "tasks/session/atomic_file.h"
 
 namespace pincer::tasks {
@@ -31,24 +30,6 @@ std::string makeTemporaryDirectory() {
       fmt::format("{}: can't make a temporary directory: {}. Set TMPDIR to one that you may write.", path, std::strerror(errno)));
 }
 
-// The child starts in `directory`, reads nothing and says everything into `log`.
-class SpawnActions {
- public:
-  SpawnActions(const std::string& directory, const char* log) {
-    posix_spawn_file_actions_init(&actions_);
-    posix_spawn_file_actions_addchdir_np(&actions_, directory.c_str());
-    posix_spawn_file_actions_addopen(&actions_, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    posix_spawn_file_actions_addopen(&actions_, STDOUT_FILENO, log, O_WRONLY | O_CREAT | O_TRUNC, 0600);
-    posix_spawn_file_actions_adddup2(&actions_, STDOUT_FILENO, STDERR_FILENO);
-  }
-  SpawnActions(SpawnActions&&) = delete;
-  ~SpawnActions() { posix_spawn_file_actions_destroy(&actions_); }
-  const posix_spawn_file_actions_t* get() const { return &actions_; }
-
- private:
-  posix_spawn_file_actions_t actions_;
-};
-
 }  // namespace
 
 std::string gnuplotString(const std::string& text) {
@@ -61,13 +42,17 @@ std::string gnuplotString(const std::string& text) {
 }
 
 // The child runs elsewhere, so a relative path must be made absolute; a bare name is looked up in PATH.
-Gnuplot::Gnuplot(std::string program)
+Gnuplot::Gnuplot(std::string program, const std::atomic<bool>* interrupted)
     : program_(program.find('/') == std::string::npos ? std::move(program) : std::filesystem::absolute(program).string()),
-      directory_(makeTemporaryDirectory()) {}
+      directory_(makeTemporaryDirectory()),
+      interrupted_(interrupted) {}
 
 Gnuplot::~Gnuplot() {
-  std::error_code ignored;
-  std::filesystem::remove_all(directory_, ignored);
+  try {
+    std::error_code ignored;
+    std::filesystem::remove_all(directory_, ignored);
+  } catch (const std::bad_alloc&) {  // the system clears its temporary directory
+  }
 }
 
 std::string Gnuplot::plot(const Figure& figure) {
@@ -98,21 +83,16 @@ std::string Gnuplot::draw(const Figure& figure, const std::string& terminal, con
 }
 
 int Gnuplot::run(const std::string& script_name) {
-  const SpawnActions actions(directory_, "log");
-  std::string program = program_, defaults = "-d", script = script_name;  // -d: nobody's ~/.gnuplot
-  char* arguments[] = {program.data(), defaults.data(), script.data(), nullptr};
-  pid_t child = 0;
-  const int error = posix_spawnp(&child, program_.c_str(), actions.get(), nullptr, arguments, environ);
-  if (error != 0) {
+  static const std::atomic<bool> never{false};
+  try {
+    ChildProcess child({program_, "-d", script_name}, directory_, "log");  // -d: nobody's ~/.gnuplot
+    return child.wait(interrupted_ ? *interrupted_ : never);
+  } catch (const std::system_error& error) {
     throw InputError(
         fmt::format("{}: can't run the plotting program: {}. The report's pictures need gnuplot (Debian: apt-get install gnuplot-nox); "
                     "the session itself is unharmed.",
-                    program_, std::strerror(error)));
+                    program_, error.code().message()));
   }
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
-  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
 }  // namespace pincer::tasks

@@ -1,7 +1,8 @@
 // gnuplot: runs the plotting program (Debian package gnuplot-nox) on one script, without a shell, in a temporary directory of its own.
 //
-// Errors: InputError if the program is missing (with the remedy) or rejects the script (with what it said).
+// Errors: InputError if the program is missing (with the remedy) or rejects the script (with what it said); Interrupted, the program ended.
 #pragma once
+#include <atomic>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,7 +23,8 @@ std::string gnuplotString(const std::string& text);
 
 class Gnuplot {
  public:
-  explicit Gnuplot(std::string program = "gnuplot");  // a name to look up in PATH, or a path
+  // A name to look up in PATH, or a path. A picture that isn't finished when `interrupted` (null: never) comes true ends with Interrupted.
+  explicit Gnuplot(std::string program = "gnuplot", const std::atomic<bool>* interrupted = nullptr);
   Gnuplot(Gnuplot&&) = delete;
   ~Gnuplot();
   std::string plot(const Figure& figure);  // the PNG's bytes
@@ -32,6 +34,7 @@ class Gnuplot {
   std::string draw(const Figure& figure, const std::string& terminal, const char* ending);
   int run(const std::string& script_name);
   std::string program_, directory_;
+  const std::atomic<bool>* interrupted_;
 };
 
 }  // namespace pincer::tasks

@@ -5,6 +5,8 @@
 #include <limits>
 #include <numeric>
 
+#include "contact/invariants.h"
+
 namespace pincer::tasks {
 namespace {
 
@@ -68,6 +70,7 @@ PairedTest comparePairs(const std::vector<double>& a, const std::vector<double>&
 }
 
 std::pair<double, double> wilsonInterval(int k, int n) {
+  PINCER_ASSERT(0 <= k && k <= n);
   if (n == 0) return {0, 1};
   constexpr double z = 1.959963984540054;
   const double p = static_cast<double>(k) / n, zz = z * z / n;

@@ -52,7 +52,7 @@ std::string plotAndWrite(std::vector<Picture>& pictures, const std::string& html
   const std::filesystem::path path(html_path);
   const std::string figures_name = path.stem().string() + "_figures";
   files = {html_path, (path.parent_path() / figures_name).string(), {}};
-  Gnuplot gnuplot(options.gnuplot);
+  Gnuplot gnuplot(options.gnuplot, options.interrupted);
   for (Picture& picture : pictures) {
     picture.png = gnuplot.plot(picture.figure);
     picture.svg = gnuplot.svg(picture.figure);

@@ -15,7 +15,8 @@
 namespace pincer::tasks {
 
 struct ReportOptions {
-  std::string gnuplot = "gnuplot";  // the plotting program, a name in PATH or a path
+  std::string gnuplot = "gnuplot";                 // the plotting program, a name in PATH or a path
+  const std::atomic<bool>* interrupted = nullptr;  // ends the report with Interrupted; null: never
 };
 
 struct ReportFiles {

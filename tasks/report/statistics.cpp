@@ -5,6 +5,9 @@
 #include <limits>
 #include <numbers>
 
+#include "contact/functions/elementary.h"
+#include "contact/invariants.h"
+
 namespace pincer::tasks {
 
 namespace {
@@ -13,7 +16,7 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 // P(|T| < sqrt(dof) tan(theta)).
 double twoSidedOfAngle(double theta, int dof) {
-  const double c = std::cos(theta), s = std::sin(theta);
+  const double c = math::cos(theta), s = math::sin(theta);
   const bool odd = dof % 2 == 1;
   double term = odd ? c : 1, sum = dof > 1 ? term : 0;
   for (int k = odd ? 3 : 2; k < dof; k += 2) {
@@ -25,15 +28,19 @@ double twoSidedOfAngle(double theta, int dof) {
 
 }  // namespace
 
-double studentTwoSided(double t, int dof) { return twoSidedOfAngle(std::atan(t / std::sqrt(dof)), dof); }
+double studentTwoSided(double t, int dof) {
+  PINCER_ASSERT(!(t < 0) && dof >= 1);
+  return twoSidedOfAngle(math::atan(t / std::sqrt(dof)), dof);
+}
 
 double studentQuantile(double probability, int dof) {
+  PINCER_ASSERT(0 < probability && probability < 1 && dof >= 1);
   double low = 0, high = std::numbers::pi / 2;
   for (int k = 0; k < std::numeric_limits<double>::digits; ++k) {
     const double middle = 0.5 * (low + high);
     (twoSidedOfAngle(middle, dof) < probability ? low : high) = middle;
   }
-  return std::sqrt(dof) * std::tan(0.5 * (low + high));
+  return std::sqrt(dof) * math::tan(0.5 * (low + high));
 }
 
 Estimate estimateMean(const std::vector<double>& values) {
@@ -48,6 +55,7 @@ Estimate estimateMean(const std::vector<double>& values) {
 }
 
 double percentile(std::vector<double> values, double p) {
+  PINCER_ASSERT(0 <= p && p <= 1);
   if (values.empty()) return kNaN;
   const double last = static_cast<double>(values.size()) - 1;
   const auto rank = static_cast<std::ptrdiff_t>(std::clamp(std::ceil(p * static_cast<double>(values.size())) - 1, 0.0, last));

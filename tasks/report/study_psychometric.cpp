@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 
+#include "contact/functions/elementary.h"
 #include "tasks/report/figures.h"
 #include "tasks/report/study_report.h"
 #include "tasks/session/csv.h"
@@ -21,8 +22,8 @@ constexpr int kCurvePoints = 200;
 // Levels that staircases with ratios visit are spread evenly over their logarithm, and so is the sigmoid.
 struct LevelAxis {
   bool logarithmic = false;
-  double of(double level) const { return logarithmic ? std::log(level) : level; }
-  double level(double x) const { return logarithmic ? std::exp(x) : x; }
+  double of(double level) const { return logarithmic ? math::log(level) : level; }
+  double level(double x) const { return logarithmic ? math::exp(x) : x; }
 };
 
 std::vector<LevelCount> countsOf(const StudyCondition& condition, const std::vector<ResponseRecord>& responses, const LevelAxis& axis) {

@@ -1,7 +1,7 @@
 // Fingertips in scene files.
 #include <fmt/format.h>
 
-#include "contact/shape/polytope.h"
+#include "contact/polytope.h"
 #include "tasks/scene/scene_keys.h"
 #include "tasks/scene/scene_parts.h"
 

@@ -15,7 +15,7 @@ namespace pincer::tasks {
 struct Moment {
   const grasp::GraspModel& model;
   const grasp::GraspState& state;
-  const std::vector<grasp::FingerReport>& fingers;
+  std::span<const grasp::FingerReport> fingers;
   const std::vector<engine::BodyStart>& starts;
 };
 

@@ -99,6 +99,12 @@ grasp::GraspModel buildWorld(const Scene& scene) {
   }
 }
 
+std::vector<grasp::FingerMethod> methodsOf(const Scene& scene) {
+  std::vector<grasp::FingerMethod> methods;
+  for (const SceneFinger& finger : scene.fingers) methods.push_back(finger.method);
+  return methods;
+}
+
 grasp::GraspState startState(const Scene& scene, const grasp::GraspModel& model) {
   std::vector<Vec3> fingers;
   for (const SceneFinger& finger : scene.fingers) fingers.push_back(finger.trajectory.start());

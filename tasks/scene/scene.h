@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "grasp/baseline.h"
 #include "grasp/step.h"
 #include "tasks/scene/expectation.h"
 #include "tasks/scene/quantity.h"
@@ -17,6 +18,7 @@ class JsonValue;
 
 struct SceneFinger {
   grasp::FingerModel model;
+  grasp::FingerMethod method = grasp::FingerMethod::kProxy;
   Trajectory trajectory;    // of the device; a single point when the finger rests
   Trajectory turn;          // rotation vectors of the finger frame F [rad]
   Vec3 f_W = Vec3::Zero();  // constant force on the proxy, besides the coupling [N]
@@ -70,6 +72,7 @@ Scene sceneOf(const JsonValue& json, const std::string& name);
 Quantity quantityOf(const std::string& name, const Scene& scene);
 
 grasp::GraspModel buildWorld(const Scene& scene);
+std::vector<grasp::FingerMethod> methodsOf(const Scene& scene);  // of its fingers
 grasp::GraspState startState(const Scene& scene, const grasp::GraspModel& model);
 
 // Where every finger's device is at `time`, the end of a tick. One entry per finger.

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
-#include "contact/surface/smooth_mesh.h"
+#include "contact/smooth_mesh.h"
+#include "engine/motion/mass.h"
 #include "tasks/scene/scene_keys.h"
 #include "tasks/scene/scene_parts.h"
 

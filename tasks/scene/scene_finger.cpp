@@ -151,7 +151,7 @@ SceneFinger readFinger(const JsonValue& json, const Scene& scene) {
   finger.model.name = readName(json, scene, fmt::format("finger{}", scene.fingers.size()));
   readTipOf(json, scene, finger.model);
   readCoupling(json, finger.model);
-  if (const JsonValue* v = json.find("method")) finger.model.method = static_cast<grasp::FingerMethod>(v->oneOf(grasp::kFingerMethodNames));
+  if (const JsonValue* v = json.find("method")) finger.method = static_cast<grasp::FingerMethod>(v->oneOf(grasp::kFingerMethodNames));
   if (const JsonValue* v = json.find("arm")) finger.model.arm = readArm(*v);
   const FingerPath path = readMotion(json, scene.file);
   finger.trajectory = path.place;

@@ -19,8 +19,8 @@ Vec3 vectorOr(const JsonValue& json, std::string_view key, const NumberRule& rul
 Vec3 angularVelocityOf(const Vec3& a, const Vec3& rate) {
   const double tt = a.squaredNorm();
   const double t = std::sqrt(tt);
-  const double first = tt < 1e-4 ? 0.5 - tt / 24 : (1 - std::cos(t)) / tt;
-  const double second = tt < 1e-4 ? 1.0 / 6 - tt / 120 : (t - std::sin(t)) / (tt * t);
+  const double first = tt < 1e-4 ? 0.5 - tt / 24 : (1 - math::cos(t)) / tt;
+  const double second = tt < 1e-4 ? 1.0 / 6 - tt / 120 : (t - math::sin(t)) / (tt * t);
   const Vec3 across = a.cross(rate);
   return rate + first * across + second * a.cross(across);
 }

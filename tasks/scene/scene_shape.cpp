@@ -4,10 +4,10 @@
 #include <numbers>
 
 #include "contact/mesh/lathe.h"
-#include "contact/mesh/mesh_reader.h"
-#include "contact/mesh/mesh_report.h"
-#include "contact/shape/polytope.h"
-#include "contact/surface/smooth_mesh.h"
+#include "contact/mesh_reader.h"
+#include "contact/mesh_report.h"
+#include "contact/polytope.h"
+#include "contact/smooth_mesh.h"
 #include "tasks/scene/scene_keys.h"
 #include "tasks/scene/scene_parts.h"
 

@@ -1,6 +1,7 @@
 // simulation: a scene in motion, one tick at a time.
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -23,16 +24,18 @@ class Simulation {
   const Scene& scene() const { return scene_; }
   const grasp::GraspModel& model() const { return model_; }
   const grasp::GraspState& state() const { return state_; }
-  grasp::GraspScratch& scratch() { return scratch_; }
-  const grasp::GraspScratch& scratch() const { return scratch_; }  // as the last tick left it
-  Moment moment() const { return {model_, state_, scratch_.fingers, scene_.starts}; }
+  grasp::GraspScratch& scratch() { return *scratch_; }
+  const grasp::GraspScratch& scratch() const { return *scratch_; }                              // as the last tick left it
+  std::span<const grasp::FingerReport> fingers() const { return grasp::fingersOf(*scratch_); }  // of the last tick
+  Moment moment() const { return {model_, state_, fingers(), scene_.starts}; }
   Pose bodyPose(int body) const { return engine::bodyPose(model_.world, state_.world, body); }  // X_WB
 
  private:
   Scene scene_;
   grasp::GraspModel model_;
   grasp::GraspState state_;
-  grasp::GraspScratch scratch_;
+  grasp::ScratchHandle scratch_;
+  std::optional<grasp::BaselineFingers> baselines_;  // where some finger is rendered as published
   std::vector<grasp::FingerInput> inputs_;
   std::vector<engine::MotionInput> motions_;
   std::int64_t ticks_ = 0;

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <fstream>
 
+#include "contact/invariants.h"
+
 namespace pincer::tasks {
 namespace {
 
@@ -84,12 +86,16 @@ bool readLine(std::istream& in, std::string& line) {
 }  // namespace
 
 Trajectory Trajectory::throughKeyframes(std::vector<TimedPoint> keyframes) {
+  PINCER_DEMAND(!keyframes.empty(), "throughKeyframes: one point at least");
+  PINCER_ASSERT(isAscending(keyframes, &TimedPoint::time));
   Trajectory trajectory;
   trajectory.points_ = std::move(keyframes);
   return trajectory;
 }
 
 Trajectory Trajectory::throughSamples(std::vector<TimedPoint> samples) {
+  PINCER_DEMAND(!samples.empty(), "throughSamples: one point at least");
+  PINCER_ASSERT(isAscending(samples, &TimedPoint::time));
   Trajectory trajectory;
   trajectory.points_ = std::move(samples);
   trajectory.minimum_jerk_ = false;

@@ -17,6 +17,8 @@ DeviceChoice deviceChoiceOf(const std::string& name) {
   throw InputError(fmt::format("devices \"{}\" are unknown. They are one of sim, usb, falcon, mouse, replay.", name));
 }
 
+bool hasMotors(DeviceChoice choice) { return choice == DeviceChoice::kUsb || choice == DeviceChoice::kFalcon; }
+
 std::unique_ptr<HandDevices> openHandDevices(const DeviceOptions& options) {
   switch (options.choice) {
     case DeviceChoice::kUsb:

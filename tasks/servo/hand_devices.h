@@ -46,6 +46,8 @@ class HandDevices {
 
 enum class DeviceChoice { kSim, kUsb, kFalcon, kMouse, kReplay };
 DeviceChoice deviceChoiceOf(const std::string& name);  // throws InputError for any other name
+// True if somebody may feel forces of these devices: then the session's time is the wall clock's, and a watchdog guards the motors.
+bool hasMotors(DeviceChoice choice);
 
 struct DeviceOptions {
   DeviceChoice choice = DeviceChoice::kSim;

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <chrono>
 
+#include "contact/assert.h"
 #include "tasks/servo/servo.h"
 
 namespace pincer::tasks {
@@ -16,17 +17,19 @@ struct PaceControl {
   std::atomic<double> speed{1};      // of the inner time, 0 .. 1
   std::atomic<bool> stop{false};     // ends the cycle
   std::atomic<bool> linger{false};   // a cycle that is over goes on without ticks, to be looked at
-  std::atomic<double> late{-1};      // told by the servo: how late the last tick began, against the first [s]; negative: none yet
+  std::atomic<double> late{-1};      // told by the servo: how late the last tick began, against the one before [s]; negative: none yet
 };
 
 class PacedCycle final : public ServoCycle {
  public:
   // `rate` of the inner ticks [Hz]; both must outlive this.
-  PacedCycle(ServoCycle& inner, PaceControl& control, double rate) : inner_(inner), control_(control), rate_(rate) {}
+  PacedCycle(ServoCycle& inner, PaceControl& control, double rate) : inner_(inner), control_(control), rate_(rate) {
+    PINCER_ASSERT(rate > 0);
+  }
 
-  bool tick(double now) override {
+  bool tick(double) override {
     if (control_.stop) return false;
-    noteLateness(now);
+    noteLateness();
     if (!more_) return control_.linger;
     if (control_.paused) {
       owed_ = 0;
@@ -46,18 +49,18 @@ class PacedCycle final : public ServoCycle {
   void cutForces() noexcept override { inner_.cutForces(); }
 
  private:
-  void noteLateness(double now) {
+  void noteLateness() {
     const double clock = std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-    if (start_ == 0) start_ = clock - now;
-    control_.late = std::max(clock - start_ - now, 0.0);
+    if (before_ != 0) control_.late = std::max(clock - before_ - 1 / rate_, 0.0);
+    before_ = clock;
   }
   bool once() { return inner_.tick(static_cast<double>(ticks_++) / rate_); }
 
   ServoCycle& inner_;
   PaceControl& control_;
   double rate_;
-  double start_ = 0;  // on the clock [s]
-  double owed_ = 0;   // inner ticks
+  double before_ = 0;  // when the last tick began, on the clock [s]
+  double owed_ = 0;    // inner ticks
   long ticks_ = 0;
   bool more_ = true;
 };

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "contact/invariants.h"
+
 namespace pincer::tasks {
 namespace {
 
@@ -13,7 +15,7 @@ void locatePlanarFinger(const PlanarTickModel& model, PlanarTickState& state, co
   const Vec3 p_WF = model.X_WD * sample.p_DF;
   const double dt = sample.time - state.sample_time;
   if (state.seen && dt > 0) {
-    const double share = -std::expm1(-2 * std::numbers::pi * model.velocity_cutoff * dt);
+    const double share = -math::expm1(-2 * std::numbers::pi * model.velocity_cutoff * dt);
     state.v_WF += share * ((p_WF - state.p_WF) / dt - state.v_WF);
   }
   state.p_WF = p_WF;
@@ -44,6 +46,8 @@ Vec3 gatedPlanarForce(const PlanarTickModel& model, PlanarTickState& state, cons
 
 PlanarTickOutput planarTick(const PlanarTickModel& model, const PlanarStimulus& stimulus, PlanarTickState& state,
                             const devices::ArmSample& sample, double now, double dt) {
+  PINCER_DEMAND(stimulus.force, "planarTick: the stimulus has a curve to feel");
+  PINCER_DEMAND(dt > 0, "planarTick: the tick's length is positive");
   locatePlanarFinger(model, state, sample);
   const Vec2 p_BC(state.p_WF.x(), state.p_WF.z());
   PlanarTickOutput out;

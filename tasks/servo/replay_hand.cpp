@@ -21,6 +21,7 @@ using devices::ReplayPoint;
 std::vector<std::string> csvCells(const std::string& line) {
   std::vector<std::string> cells;
   std::stringstream stream(line);
+  stream.exceptions(std::ios::badbit);  // else it takes a lack of memory for the end
   for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
   if (!cells.empty() && cells.back().ends_with('\r')) cells.back().pop_back();  // as other systems end a line
   return cells;

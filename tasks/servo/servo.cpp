@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <exception>
 #include <functional>
 #include <stdexcept>
 #include <thread>
@@ -61,14 +62,15 @@ class RealTimePriority {
   bool fifo_ = false, locked_ = false;
 };
 
-// The second thread: cuts the forces when the loop is silent.
+// The second thread: shows how it goes, and with `guards` cuts the forces when the loop is silent.
 class WatchdogThread {
  public:
-  WatchdogThread(double limit, ServoCycle& cycle, const std::function<void(const ServoReport&)>& show)
-      : dog_(static_cast<std::int64_t>(1e9 * limit)), cycle_(cycle), show_(show) {
+  WatchdogThread(const ServoOptions& options, bool guards, ServoCycle& cycle)
+      : dog_(static_cast<std::int64_t>(1e9 * options.watchdog)), guards_(guards), cycle_(cycle), show_(options.show) {
     dog_.arm(nowNs());
     // Four times per limit, and often enough that the end of a session needn't wait.
-    thread_ = std::thread([this, period = static_cast<std::int64_t>(1e9 * std::min(0.25 * limit, 0.01))] { watch(period); });
+    const double period = guards ? std::min(0.25 * options.watchdog, kLook) : kLook;
+    thread_ = std::thread([this, period_ns = static_cast<std::int64_t>(1e9 * period)] { watch(period_ns); });
   }
   ~WatchdogThread() {
     dog_.rest();
@@ -92,17 +94,27 @@ class WatchdogThread {
   bool expired() const { return dog_.expired(); }
 
  private:
-  void watch(std::int64_t period_ns) {
+  static constexpr double kLook = 0.01;  // [s]
+
+  void watch(std::int64_t period_ns) noexcept {
     for (std::int64_t next = nowNs() + period_ns; !stop_; next += period_ns) {
       sleepUntil(next);
-      if (dog_.check(nowNs())) cycle_.cutForces();
+      if (guards_ && dog_.check(nowNs())) cycle_.cutForces();
       if (!copied_.load(std::memory_order_acquire)) continue;
       copy_.wall = 1e-9 * static_cast<double>(nowNs() - begun_ns_);
-      show_(copy_);
+      showCopy();
       copied_.store(false, std::memory_order_release);
     }
   }
+  // A figure that can't be shown (no memory) is no reason to let go of the motors.
+  void showCopy() noexcept {
+    try {
+      show_(copy_);
+    } catch (const std::exception&) {
+    }
+  }
   devices::Watchdog dog_;
+  const bool guards_;
   ServoCycle& cycle_;
   const std::function<void(const ServoReport&)>& show_;
   const std::int64_t begun_ns_ = nowNs();
@@ -128,20 +140,22 @@ bool runVirtual(const ServoOptions& options, ServoCycle& cycle, const std::atomi
   return more;
 }
 
-bool runReal(const ServoOptions& options, ServoCycle& cycle, const std::atomic<bool>& interrupted, ServoReport& report) {
+bool runByTheClock(const ServoOptions& options, ServoCycle& cycle, const std::atomic<bool>& interrupted, ServoReport& report) {
+  const bool real = options.clock == ServoClock::kReal;
   const RealTimePriority priority;
   report.note = priority.note();
-  WatchdogThread dog(options.watchdog, cycle, options.show);
+  WatchdogThread dog(options, real, cycle);
   const auto period = static_cast<std::int64_t>(1e9 / options.rate);
   const std::int64_t start = nowNs();
   bool more = true;
-  for (std::int64_t tick = 0; more && !interrupted; ++tick) {
-    sleepUntil(start + tick * period);
-    const std::int64_t late = nowNs() - (start + tick * period);
+  for (std::int64_t slot = 0; more && !interrupted; ++slot) {
+    sleepUntil(start + slot * period);
+    const std::int64_t late = nowNs() - (start + slot * period);
     report.lateness.add(1e-9 * static_cast<double>(late));
     report.missed += late / period;
-    tick += late / period;
-    more = timedTick(cycle, 1e-9 * static_cast<double>(tick * period), report);
+    slot += late / period;
+    const double now = real ? 1e-9 * static_cast<double>(slot * period) : static_cast<double>(report.ticks) / options.rate;
+    more = timedTick(cycle, now, report);
     dog.feed();
     dog.offer(report);
   }
@@ -174,7 +188,7 @@ ServoReport runServo(const ServoOptions& options, ServoCycle& cycle, const std::
   ServoReport report;
   const std::int64_t start = nowNs();
   try {
-    const auto run = options.real_time ? runReal : runVirtual;
+    const auto run = options.clock == ServoClock::kVirtual ? runVirtual : runByTheClock;
     report.interrupted = run(options, cycle, interrupted, report);
   } catch (...) {
     cycle.cutForces();

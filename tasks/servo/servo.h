@@ -1,9 +1,13 @@
-// servo: the clock of a session. In virtual time ticks follow each other as fast as they go; in real time they start every 1/rate, on the
-// system's monotonic clock. The cycle that it drives can't tell which.
+// servo: the clock of a session, which the cycle that it drives can't tell from another one.
 //
-// Real time: clock_nanosleep to absolute times, SCHED_FIFO and mlockall when permitted (a note says so when not). A tick whose time has passed
-// is skipped and counted, never caught up. A second thread watches: no finished tick for `watchdog` seconds cuts the forces, latched. On
-// SIGUSR1 (requestServoReport) it also shows how it has gone so far; the servo thread only copies its numbers.
+//   virtual   ticks follow each other as fast as they go
+//   paced     one every 1/rate of the system's monotonic clock at the most. The cycle's time is that of its ticks: where the machine is late,
+//             it stands still, and what comes out is the same to the bit. For what has no motors: simulated devices, a mouse, a recording
+//   real      the wall clock's time: a tick whose time has passed is skipped. For motors that somebody feels: a second thread watches, and no
+//             finished tick for `watchdog` seconds cuts the forces, latched
+//
+// Paced and real: clock_nanosleep to absolute times, SCHED_FIFO and mlockall when permitted (a note says so when not). Ticks that come too late
+// are counted, never caught up. On SIGUSR1 (requestServoReport) a second thread shows how it has gone so far; the servo's only copies its numbers.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -34,17 +38,19 @@ class ServoCycle {
 
 struct ServoReport;
 
+enum class ServoClock : std::uint8_t { kVirtual, kPaced, kReal };
+
 struct ServoOptions {
-  bool real_time = false;
+  ServoClock clock = ServoClock::kVirtual;
   double rate = 1000;                                 // [Hz], 100 .. 4000
-  double watchdog = 5e-3;                             // [s]; real time only
+  double watchdog = 5e-3;                             // [s]; kReal only
   std::function<void(const ServoReport&)> show = {};  // what to do with a report on request; called from another thread
 };
 
 struct ServoReport {
   std::int64_t ticks = 0;
-  std::int64_t missed = 0;  // skipped ticks; always 0 in virtual time
-  Histogram lateness;       // of a tick's start [s]; real time only
+  std::int64_t missed = 0;  // ticks for which the wall clock didn't wait; always 0 in virtual time
+  Histogram lateness;       // of a tick's start [s]; empty in virtual time
   Histogram duration;       // of a tick [s]
   std::vector<StageTimes> stages = {};
   double wall = 0;  // [s]
@@ -56,7 +62,7 @@ struct ServoReport {
   void add(const ServoReport& other);
 };
 
-// Asks every servo that runs in real time to show how it goes; safe in a signal handler.
+// Asks every servo that runs by the wall clock to show how it goes; safe in a signal handler.
 void requestServoReport() noexcept;
 
 // Runs `cycle` until it is done or `interrupted` becomes true. An exception from a tick cuts the forces and is passed on. Throws

@@ -1,14 +1,11 @@
 #include "tasks/servo/snapshot.h"
 
-#include "engine/world/state.h"
+#include "grasp/step.h"
 
 namespace pincer::tasks {
 namespace {
 
-ContactSnapshot seenContact(const engine::Contact& c, double h) {
-  const bool of_finger = c.a.kind == engine::SideKind::kPoint;
-  return {of_finger ? c.a.index : -1, c.b.index, c.p_W, c.n_W(), c.impulse_W / h, c.mu, c.sliding};
-}
+ContactSnapshot seenContact(const engine::ContactReport& c) { return {c.point, c.body, c.p_W, c.n_W, c.f_W, c.mu, c.sliding}; }
 
 }  // namespace
 
@@ -29,8 +26,9 @@ void captureGrasp(const grasp::GraspModel& model, const grasp::GraspState& state
   for (std::size_t i = 0; i < snapshot.X_WB.size(); ++i) {
     snapshot.X_WB[i] = engine::bodyPose(model.world, state.world, static_cast<int>(i));
   }
+  const std::span<const grasp::FingerReport> fingers = grasp::fingersOf(scratch);
   for (std::size_t i = 0; i < snapshot.fingers.size(); ++i) {
-    const grasp::FingerReport& finger = scratch.fingers[i];
+    const grasp::FingerReport& finger = fingers[i];
     FingerSnapshot& seen = snapshot.fingers[i];
     seen.p_WP = state.world.points[i].p_W;
     seen.p_WF = state.world.points[i].p_target_W;
@@ -41,10 +39,11 @@ void captureGrasp(const grasp::GraspModel& model, const grasp::GraspState& state
     seen.place_L = finger.touching ? std::optional(grasp::placeOnPad(model.fingers[i], finger.touch)) : std::nullopt;
   }
   snapshot.contact_count = 0;
-  engine::forEachContact(scratch.world, [&](const engine::Contact& c) {
-    if (!c.active() || snapshot.contact_count == static_cast<int>(snapshot.contacts.size())) return;
-    snapshot.contacts[static_cast<std::size_t>(snapshot.contact_count++)] = seenContact(c, scratch.world.h);
-  });
+  const engine::WorldScratch& world = grasp::worldOf(scratch);
+  for (int k = 0; k < engine::contactCount(world) && snapshot.contact_count < static_cast<int>(snapshot.contacts.size()); ++k) {
+    const engine::ContactReport contact = engine::contactAt(world, k);
+    if (contact.pushes) snapshot.contacts[static_cast<std::size_t>(snapshot.contact_count++)] = seenContact(contact);
+  }
 }
 
 }  // namespace pincer::tasks

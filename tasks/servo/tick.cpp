@@ -4,7 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "grasp/passivity/energy_ledger.h"
+#include "contact/invariants.h"
+#include "grasp/energy_ledger.h"
 
 namespace pincer::tasks {
 namespace {
@@ -15,7 +16,8 @@ Vec3 filteredVelocity(const TickModel& model, const MountState& mount, const dev
   const double dt = sample.time - mount.sample_time;
   if (!mount.seen || !(dt > 0)) return mount.v_WF;
   const Vec3 raw_W = sample.v_DF ? Vec3(R_WD * *sample.v_DF) : Vec3((p_WF - mount.p_WF) / dt);
-  const double share = -std::expm1(-2 * std::numbers::pi * model.velocity_cutoff * dt);
+  PINCER_ASSERT(model.velocity_cutoff > 0);
+  const double share = -math::expm1(-2 * std::numbers::pi * model.velocity_cutoff * dt);
   return mount.v_WF + share * (raw_W - mount.v_WF);
 }
 
@@ -24,6 +26,7 @@ void locateFinger(const TickModel& model, TickState& state, int i, const devices
                   grasp::FingerInput& input) {
   MountState& mount = state.mounts[i];
   const Pose& X_WD = model.mounts[i].X_WD;
+  PINCER_ASSERT(X_WD.p.allFinite() && isUnit(X_WD.q));
   const bool usable = sample.valid && devices::isFinite(sample);
   if (usable) {
     const Vec3 p_WF = X_WD * sample.p_DF;
@@ -90,21 +93,27 @@ devices::TactileCommand tactorTarget(const TickModel& model, MountState& mount, 
 }  // namespace
 
 TickScratch::TickScratch(const TickModel& model)
-    : grasp(model.grasp),
+    : grasp(grasp::makeScratch(model.grasp)),
       inputs(model.mounts.size()),
       p_WF(model.mounts.size()),
       f_user_W(model.mounts.size()),
-      outputs(model.mounts.size()) {}
+      outputs(model.mounts.size()),
+      fingers(grasp::fingersOf(*grasp)) {}
 
 engine::StepReport tick(const TickModel& model, TickState& state, TickScratch& scratch, const std::vector<FingerInputs>& inputs,
                         double now) {
+  PINCER_DEMAND(model.mounts.size() == model.grasp.fingers.size(), "tick: one mount per finger");
+  PINCER_DEMAND(inputs.size() == model.mounts.size(), "tick: one pair of samples per finger");
+  PINCER_DEMAND(state.mounts.size() == model.mounts.size() && scratch.outputs.size() == model.mounts.size(),
+                "tick: state and scratch are those of this model");
   const int n = static_cast<int>(model.mounts.size());
   for (int i = 0; i < n; ++i) locateFinger(model, state, i, inputs[i].arm, now, scratch.inputs[i]);
-  const engine::StepReport report = grasp::step(model.grasp, state.grasp, scratch.grasp, scratch.inputs);
-  for (int i = 0; i < n; ++i) scratch.f_user_W[i] = scratch.grasp.fingers[i].f_user_W;
+  const grasp::GraspReport report = grasp::step(model.grasp, state.grasp, *scratch.grasp, scratch.inputs);
+  scratch.fingers = report.fingers;
+  for (int i = 0; i < n; ++i) scratch.f_user_W[i] = scratch.fingers[i].f_user_W;
   keepPassive(model, state, scratch);
   for (int i = 0; i < n; ++i) {
-    const grasp::FingerReport& finger = scratch.grasp.fingers[i];
+    const grasp::FingerReport& finger = scratch.fingers[i];
     scratch.outputs[i].f_D = gatedForce(model, state.mounts[i], model.mounts[i], inputs[i].arm,
                                         scratch.f_user_W[i] + state.mounts[i].f_lead_W, now, report.status);
     scratch.outputs[i].tactile = tactorTarget(model, state.mounts[i], model.mounts[i], model.grasp.fingers[i], finger);

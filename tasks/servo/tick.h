@@ -13,7 +13,7 @@
 #include "devices/cld/pad_policy.h"
 #include "devices/cld/tactile_display.h"
 #include "devices/gate/force_gate.h"
-#include "grasp/passivity/passivity.h"
+#include "grasp/passivity.h"
 #include "grasp/step.h"
 
 namespace pincer::tasks {
@@ -68,13 +68,15 @@ struct FingerOutputs {
 
 struct TickScratch {
   explicit TickScratch(const TickModel& model);
-  grasp::GraspScratch grasp;
+  grasp::ScratchHandle grasp;
   std::vector<grasp::FingerInput> inputs;
-  std::vector<Vec3> p_WF, f_user_W;    // of the fingers, for passivity
-  std::vector<FingerOutputs> outputs;  // the tick's result, one per finger
+  std::vector<Vec3> p_WF, f_user_W;  // of the fingers, for passivity
+  // The tick's results, one per finger.
+  std::vector<FingerOutputs> outputs;
+  std::span<const grasp::FingerReport> fingers;  // what they felt, and still do where nothing changed
 };
 
-// One tick at time `now` [s, the clock of the samples]. Results in scratch.outputs and scratch.grasp.fingers. Allocates nothing, throws nothing.
+// One tick at time `now` [s, the clock of the samples]. Results in scratch.outputs and scratch.fingers. Allocates nothing, throws nothing.
 engine::StepReport tick(const TickModel& model, TickState& state, TickScratch& scratch, const std::vector<FingerInputs>& inputs,
                         double now);
 

@@ -1,11 +1,15 @@
 #include <fmt/format.h>
 #include <sqlite3.h>
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstring>
 #include <limits>
+#include <new>
 
 #include "contact/error.h"
+#include "tasks/measure/interrupted.h"
 #include "tasks/session/database.h"
 
 namespace pincer::tasks {
@@ -30,6 +34,61 @@ constexpr Remedy kRemedies[] = {
     {SQLITE_NOTADB, "The file is no SQLite database, so no session. Give the path of a session that `pincer run` wrote."},
 };
 
+// SQLite's own allocator, and where that has nothing left, a reserve for the last words (LastWords). The reserve is given out from its beginning and
+// never taken back: marking a session as aborted takes some tens of kilobytes, once.
+class Reserve {
+ public:
+  static void install() {
+    sqlite3_config(SQLITE_CONFIG_GETMALLOC, &usual_);
+    sqlite3_mem_methods methods = usual_;
+    methods.xMalloc = allocate;
+    methods.xFree = release;
+    methods.xRealloc = resize;
+    methods.xSize = sizeOf;
+    sqlite3_config(SQLITE_CONFIG_MALLOC, &methods);
+  }
+  static inline thread_local bool open_ = false;
+
+ private:
+  struct Header {
+    alignas(std::max_align_t) int size;
+  };
+  static void* allocate(int size) {
+    void* block = usual_.xMalloc(size);
+    return block || !open_ ? block : fromReserve(size);
+  }
+  static void* fromReserve(int size) {
+    const std::size_t rounded = (static_cast<std::size_t>(size) + alignof(Header) - 1) / alignof(Header) * alignof(Header);
+    const std::size_t at = used_.fetch_add(sizeof(Header) + rounded);
+    if (at + sizeof(Header) + rounded > bytes_.size()) return nullptr;
+    auto* header = new (bytes_.data() + at) Header{size};
+    return header + 1;
+  }
+  static bool isOurs(const void* block) {
+    const auto* byte = static_cast<const std::byte*>(block);
+    return byte >= bytes_.data() && byte < bytes_.data() + bytes_.size();
+  }
+  static void release(void* block) {
+    if (!isOurs(block)) usual_.xFree(block);
+  }
+  static int sizeOf(void* block) { return isOurs(block) ? (static_cast<const Header*>(block) - 1)->size : usual_.xSize(block); }
+  static void* resize(void* block, int size) {
+    if (!isOurs(block)) {
+      void* grown = usual_.xRealloc(block, size);
+      if (grown || !open_) return grown;
+    }
+    void* moved = allocate(size);
+    if (!moved) return nullptr;
+    std::memcpy(moved, block, static_cast<std::size_t>(std::min(size, sizeOf(block))));
+    release(block);
+    return moved;
+  }
+
+  static inline sqlite3_mem_methods usual_{};
+  alignas(Header) static inline std::array<std::byte, 4 << 20> bytes_{};
+  static inline std::atomic<std::size_t> used_{0};
+};
+
 const char* remedyFor(int code) {
   for (const Remedy& r : kRemedies) {
     if (r.code == (code & 0xff)) return r.text;
@@ -42,7 +101,11 @@ const char* remedyFor(int code) {
 void Database::Close::operator()(sqlite3* d) const noexcept { sqlite3_close_v2(d); }
 void Statement::Finalize::operator()(sqlite3_stmt* s) const noexcept { sqlite3_finalize(s); }
 
+LastWords::LastWords() noexcept { Reserve::open_ = true; }
+LastWords::~LastWords() { Reserve::open_ = false; }
+
 void Database::fail(int code, std::string_view doing) const {
+  if ((code & 0xff) == SQLITE_NOMEM || code == SQLITE_IOERR_NOMEM) throw std::bad_alloc();
   std::string cause = sqlite3_errstr(code);
   if (handle() && (sqlite3_errcode(handle()) & 0xff) == (code & 0xff)) cause = sqlite3_errmsg(handle());
   const int system = handle() ? sqlite3_system_errno(handle()) : 0;
@@ -52,6 +115,8 @@ void Database::fail(int code, std::string_view doing) const {
 }
 
 Database::Database(std::string path, Mode mode) : path_(std::move(path)) {
+  static const bool once = (Reserve::install(), true);  // before SQLite's first word
+  static_cast<void>(once);
   sqlite3* raw = nullptr;
   const int code = sqlite3_open_v2(path_.c_str(), &raw, mode == Mode::kRead ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE, nullptr);
   database_.reset(raw);
@@ -60,8 +125,8 @@ Database::Database(std::string path, Mode mode) : path_(std::move(path)) {
   sqlite3_busy_timeout(raw, kBusyTimeout);
 }
 
-void Database::run(const std::string& sql) {
-  const int code = sqlite3_exec(handle(), sql.c_str(), nullptr, nullptr, nullptr);
+void Database::run(const char* sql) {
+  const int code = sqlite3_exec(handle(), sql, nullptr, nullptr, nullptr);
   if (code != SQLITE_OK) fail(code, "writing the session");
 }
 
@@ -93,17 +158,23 @@ Statement::Statement(const Database& database, std::string_view sql) : database_
   if (code != SQLITE_OK) database.fail(code, "reading the session");
 }
 
-void Statement::bind(int parameter, double value) { sqlite3_bind_double(statement_.get(), parameter + 1, value); }
-void Statement::bind(int parameter, std::int64_t value) { sqlite3_bind_int64(statement_.get(), parameter + 1, value); }
+// A value that isn't bound would be stored as NULL.
+void Statement::must(int code) const {
+  if (code != SQLITE_OK) database_->fail(code, "writing the session");
+}
+
+void Statement::bind(int parameter, double value) { must(sqlite3_bind_double(statement_.get(), parameter + 1, value)); }
+void Statement::bind(int parameter, std::int64_t value) { must(sqlite3_bind_int64(statement_.get(), parameter + 1, value)); }
 void Statement::bind(int parameter, std::string_view value) {
-  sqlite3_bind_text64(statement_.get(), parameter + 1, value.data(), value.size(), SQLITE_TRANSIENT, SQLITE_UTF8);
+  must(sqlite3_bind_text64(statement_.get(), parameter + 1, value.data(), value.size(), SQLITE_TRANSIENT, SQLITE_UTF8));
 }
 
 void Statement::bindBytes(int parameter, std::string_view value) {
-  sqlite3_bind_blob64(statement_.get(), parameter + 1, value.data(), value.size(), SQLITE_TRANSIENT);
+  must(sqlite3_bind_blob64(statement_.get(), parameter + 1, value.data(), value.size(), SQLITE_TRANSIENT));
 }
 
 bool Statement::step() {
+  if (database_->isInterrupted()) throw Interrupted();
   const int code = sqlite3_step(statement_.get());
   if (code == SQLITE_ROW) return true;
   sqlite3_reset(statement_.get());
@@ -121,6 +192,7 @@ std::int64_t Statement::integer(int column) const { return sqlite3_column_int64(
 std::string Statement::text(int column) const {
   const void* bytes = sqlite3_column_blob(statement_.get(), column);
   const int size = sqlite3_column_bytes(statement_.get(), column);
+  if (!bytes && sqlite3_errcode(database_->handle()) == SQLITE_NOMEM) throw std::bad_alloc();  // else NULL, or empty
   return bytes ? std::string(static_cast<const char*>(bytes), static_cast<std::size_t>(size)) : std::string();
 }
 

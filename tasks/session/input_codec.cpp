@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "contact/error.h"
+#include "contact/invariants.h"
 
 namespace pincer::tasks {
 namespace {
@@ -13,6 +14,7 @@ namespace {
 constexpr std::size_t kMaskBytes = (kInputWords + 7) / 8;
 
 void packWord(std::uint64_t word, std::string& bytes) {
+  PINCER_ASSERT(word != 0);  // only what changed is written
   const int below = std::countr_zero(word) / 8;
   const int above = std::countl_zero(word) / 8;
   const int kept = 8 - below - above;
@@ -96,6 +98,7 @@ bool InputPacker::takes(const InputRecord& record) const {
 }
 
 void InputPacker::add(const InputRecord& record) {
+  PINCER_ASSERT(takes(record));
   if (empty()) {
     chunk_.trial = record.trial;
     chunk_.first_tick = record.tick;
@@ -115,6 +118,7 @@ void InputPacker::add(const InputRecord& record) {
 }
 
 InputChunk InputPacker::take() {
+  PINCER_ASSERT(!empty());
   chunk_.check = checkOf(chunk_);
   return std::exchange(chunk_, {});
 }

@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "contact/assert.h"
 #include "contact/error.h"
 #include "tasks/session/records.h"
 
@@ -41,6 +42,7 @@ class Ring {
   std::size_t drain(Take&& take) {
     const std::uint64_t end = head_.load(std::memory_order_acquire);
     const std::uint64_t begin = tail_.load(std::memory_order_relaxed);
+    PINCER_ASSERT(begin <= end && end - begin <= slots_.size());
     for (std::uint64_t k = begin; k != end; ++k) {
       take(static_cast<const Record&>(slots_[k & mask_]));
       tail_.store(k + 1, std::memory_order_release);

@@ -62,6 +62,8 @@ SessionReader::SessionReader(const std::string& path) : database_(openSession(pa
 SessionReader::SessionReader(SessionReader&&) noexcept = default;
 SessionReader::~SessionReader() = default;
 
+void SessionReader::heed(const std::atomic<bool>& interrupted) { database_->heed(interrupted); }
+
 const std::string& SessionReader::path() const { return database_->path(); }
 bool SessionReader::complete() const { return state_ == kStateComplete; }
 

@@ -7,13 +7,15 @@
 // "running" until close() writes "complete" or a failure "aborted: <why>"; a killed session therefore stays "running", and a reader says
 // so.
 //
-// Errors: InputError with path, cause and remedy. What fails in the writer thread is thrown by the next call and by close().
+// Errors: InputError with path, cause and remedy; std::bad_alloc. What fails in the writer thread is thrown by the next call and by close().
 #pragma once
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tasks/session/records.h"
@@ -51,7 +53,7 @@ class SessionWriter {
   void finishTrial(const TrialRecord& trial);           // returns once the trial and all that was pushed before are durable
   void finishResponse(const ResponseRecord& response);  // likewise
   void close();                                         // final flush, state "complete", one plain file without a log beside it
-  void abort(const std::string& why) noexcept;          // final flush, state "aborted: <why>"
+  void abort(std::string_view why) noexcept;            // final flush, state "aborted: <why>"; needs no memory
 
  private:
   class Impl;
@@ -71,6 +73,9 @@ class SessionReader {
   SessionReader(SessionReader&&) noexcept;
   SessionReader& operator=(SessionReader&&) = delete;
   ~SessionReader();
+
+  // From now on reading ends with Interrupted (tasks/measure/interrupted.h) once the flag is up, which must outlive this.
+  void heed(const std::atomic<bool>& interrupted);
 
   const std::string& path() const;
   const SessionInfo& info() const { return info_; }

@@ -2,13 +2,15 @@
 #include <fmt/chrono.h>
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <condition_variable>
 #include <cstring>
-#include <filesystem>
+#include <exception>
 #include <mutex>
+#include <new>
 #include <stdexcept>
 #include <thread>
 #include <utility>
@@ -56,10 +58,8 @@ void createEmptyFile(const std::string& path) {
   ::close(file);
 }
 
-void removeSession(const std::string& path) noexcept {
-  std::error_code ignored;
-  for (const char* suffix : {"", "-wal", "-shm", "-journal"}) std::filesystem::remove(path + suffix, ignored);
-}
+// All that a session may consist of.
+std::array<std::string, 4> filesOfSession(const std::string& path) { return {path, path + "-wal", path + "-shm", path + "-journal"}; }
 
 // Those that format 3 added, and their columns that format 4 added.
 void makeInputTables(Database& d) {
@@ -112,7 +112,7 @@ class SessionWriter::Impl {
     }
     database_.run(fmt::format("UPDATE session SET state = '{}'", kStateRunning));
     statements_.emplace(database_);
-    thread_ = std::thread([this] { work(); });
+    begin();
   }
   Impl(const std::string& path, const SessionInfo& info, const SessionOptions& options)
       : options_(options), ring_(options.ring_capacity), inputs_(options.ring_capacity), database_(path, Database::Mode::kWrite) {
@@ -121,7 +121,7 @@ class SessionWriter::Impl {
     insertRow(insert, info);
     database_.run(fmt::format("UPDATE session SET started_utc = '{}', state = '{}', samples_dropped = 0; COMMIT", nowUtc(), kStateRunning));
     statements_.emplace(database_);
-    thread_ = std::thread([this] { work(); });
+    begin();
   }
   ~Impl() { abort("the program left without closing the session"); }
 
@@ -158,23 +158,23 @@ class SessionWriter::Impl {
 
   void close() {
     join();
-    if (!failure_.empty()) throw InputError(failure_);
+    if (failure_) std::rethrow_exception(failure_);
     if (closed_) return;
     try {
-      endWith(std::string(kStateComplete));
+      endWith(kStateComplete, "");
       database_.text("PRAGMA journal_mode = DELETE");
       database_.close();
-    } catch (const InputError& e) {
-      giveUp(e.what());
-      throw InputError(failure_);
+    } catch (...) {
+      failed();
+      std::rethrow_exception(failure_);
     }
     closed_ = true;
   }
 
-  void abort(const std::string& why) noexcept {
+  void abort(std::string_view why) noexcept {
     join();
-    if (closed_ || !failure_.empty()) return;
-    giveUp(why);
+    if (closed_ || failure_) return;
+    giveUp(why, nullptr);
   }
 
  private:
@@ -199,16 +199,26 @@ class SessionWriter::Impl {
     bool last = false;
   };
 
-  void work() {
-    for (bool last = false; !last && !ended_;) {
-      const Batch batch = awaitBatch();
-      last = batch.last;
-      try {
+  // Starts the thread; without one the file would say "running" for ever.
+  void begin() {
+    try {
+      thread_ = std::thread([this] { work(); });
+    } catch (...) {
+      failed();
+      std::rethrow_exception(failure_);
+    }
+  }
+
+  void work() noexcept {
+    try {
+      for (bool last = false; !last && !ended_;) {
+        const Batch batch = awaitBatch();
+        last = batch.last;
         write(batch);
-      } catch (const std::exception& e) {
-        giveUp(e.what());
+        settle(batch);
       }
-      settle(batch);
+    } catch (...) {
+      failed();
     }
   }
 
@@ -264,27 +274,46 @@ class SessionWriter::Impl {
     done_.wait(lock, [this] { return (!ring_.full() && !inputs_.full()) || ended_; });
   }
 
-  // Marks the file; if even that fails, it stays "running", which a reader reports as well.
-  void giveUp(const std::string& why) noexcept {
-    std::string said = "The session is marked as aborted; trials finished before are kept.";
+  // In a handler: gives up because of what was caught.
+  void failed() noexcept {
+    try {
+      throw;
+    } catch (const std::bad_alloc&) {
+      giveUp("not enough memory", std::current_exception());
+    } catch (const std::exception& error) {
+      giveUp(error.what(), nullptr);
+    }
+  }
+
+  // Marks the file; if even that fails, it stays "running", which a reader reports as well. Needs no memory. `failure`: what the next call throws;
+  // null: InputError that says why.
+  void giveUp(std::string_view why, std::exception_ptr failure) noexcept {
+    const LastWords words;
+    const char* said = "The session is marked as aborted; trials finished before are kept.";
     try {
       database_.rollBack();
-      endWith(std::string(kStateAborted) + why);
+      endWith(kStateAborted, why);
     } catch (const std::exception&) {
       database_.rollBack();
       said = "The session could not even be marked as aborted and stays \"running\"; trials finished before are kept.";
     }
+    try {
+      if (!failure) throw InputError(fmt::format("{}{} {}", why, why.ends_with('.') ? "" : ".", said));
+    } catch (const std::exception&) {
+      failure = std::current_exception();
+    }
     const std::lock_guard lock(mutex_);
-    failure_ = fmt::format("{}{} {}", why, why.ends_with('.') ? "" : ".", said);
+    failure_ = failure;
     ended_ = true;
     done_.notify_all();
   }
 
-  void endWith(const std::string& state) {
+  void endWith(std::string_view state, std::string_view why) {
     database_.run("PRAGMA synchronous = FULL");
-    Statement update(database_, "UPDATE session SET state = ?, samples_dropped = ?");
-    update.bind(0, std::string_view(state));
-    update.bind(1, static_cast<std::int64_t>(dropped()));
+    Statement update(database_, "UPDATE session SET state = ? || ?, samples_dropped = ?");
+    update.bind(0, state);
+    update.bind(1, why);
+    update.bind(2, static_cast<std::int64_t>(dropped()));
     update.step();
     statements_.reset();
   }
@@ -300,7 +329,7 @@ class SessionWriter::Impl {
   }
 
   void throwIfEnded() const {
-    if (!failure_.empty()) throw InputError(failure_);
+    if (failure_) std::rethrow_exception(failure_);
     if (ended_) throw std::logic_error("SessionWriter: used after close() or abort()");
   }
 
@@ -317,18 +346,19 @@ class SessionWriter::Impl {
   std::vector<HandsRecord> hands_;
   std::optional<FinishedTrial> trial_;
   bool stopping_ = false, space_wanted_ = false;
-  std::string failure_;
+  std::exception_ptr failure_;
   std::atomic<bool> ended_{false};
   bool closed_ = false;
   std::thread thread_;
 };
 
 SessionWriter SessionWriter::create(const std::string& path, const SessionInfo& info, const SessionOptions& options) {
+  const std::array<std::string, 4> files = filesOfSession(path);
   createEmptyFile(path);
   try {
     return SessionWriter(std::make_unique<Impl>(path, info, options));
   } catch (...) {
-    removeSession(path);
+    for (const std::string& file : files) ::unlink(file.c_str());
     throw;
   }
 }
@@ -351,6 +381,6 @@ void SessionWriter::addReading(const ReadingRecord& reading) { impl_->addReading
 void SessionWriter::finishTrial(const TrialRecord& trial) { impl_->finish(trial); }
 void SessionWriter::finishResponse(const ResponseRecord& response) { impl_->finish(response); }
 void SessionWriter::close() { impl_->close(); }
-void SessionWriter::abort(const std::string& why) noexcept { impl_->abort(why); }
+void SessionWriter::abort(std::string_view why) noexcept { impl_->abort(why); }
 
 }  // namespace pincer::tasks

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/world/scratch.h"
+
 namespace pincer::tasks {
 namespace {
 

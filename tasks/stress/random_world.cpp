@@ -4,14 +4,14 @@
 
 #include <cmath>
 
-#include "contact/shape/pair_query.h"
+#include "contact/pair_query.h"
 
 namespace pincer::tasks {
 namespace {
 
 // Each draw is a statement of its own: the order in which arguments are evaluated is the compiler's, and a seed must mean the same world to all.
 // It is the order that g++ takes, last arguments first: tests hold on to seeds that once failed so.
-double logUniform(Random& random, double low, double high) { return low * std::pow(high / low, random.uniform()); }
+double logUniform(Random& random, double low, double high) { return low * math::pow(high / low, random.uniform()); }
 
 double friction(Random& random) { return random.below(8) == 0 ? 0 : random.uniform(0, 5); }
 
@@ -191,7 +191,7 @@ class Draft {
       finger.coupling.damping = Vec3::Constant(random_.uniform(0, 10));
       fingers.push_back(finger);
       const double angle = 2 * M_PI * i / count;
-      devices.push_back(Vec3(std::cos(angle), std::sin(angle), 0) * (size + 0.01) + Vec3(0, 0, size));
+      devices.push_back(Vec3(math::cos(angle), math::sin(angle), 0) * (size + 0.01) + Vec3(0, 0, size));
     }
   }
 

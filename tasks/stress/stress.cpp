@@ -21,9 +21,9 @@ std::string faultOfTick(const StressWorld& world, const grasp::GraspState& state
                         double energy) {
   const engine::WorldModel& model = world.model.world;
   if (std::string fault = faultOfState(model, state.world); !fault.empty()) return fault;
-  if (std::string fault = faultOfCones(scratch.world); !fault.empty()) return fault;
+  if (std::string fault = faultOfCones(grasp::worldOf(scratch)); !fault.empty()) return fault;
   if (!flagged) {
-    if (std::string fault = faultOfLaw(model, scratch.world); !fault.empty()) return fault;
+    if (std::string fault = faultOfLaw(model, grasp::worldOf(scratch)); !fault.empty()) return fault;
   }
   if (world.hasFingers()) return {};
   constexpr double kRoundOff = 1e-5;  // of the energy: of a body that turns by 0.5 rad in a tick it swings by 2e-6 of itself
@@ -39,17 +39,17 @@ WorldResult runWorld(StressClass kind, std::uint64_t seed, int threads, double b
   StressWorld world(kind, seed, threads);
   world.model.world.options.solver.budget = budget;
   grasp::GraspState state = grasp::makeState(world.model, world.starts, world.startDevices());
-  grasp::GraspScratch scratch(world.model);
+  const grasp::ScratchHandle scratch = grasp::makeScratch(world.model);
   const double energy = totalEnergy(world.model.world, state.world);
   WorldResult result;
   for (; result.ticks < world.ticks; ++result.ticks) {
     const auto inputs = world.nextInputs();
     const double begin = threadCpuSeconds();
-    const engine::StepReport report = grasp::step(world.model, state, scratch, inputs);
+    const engine::StepReport report = grasp::step(world.model, state, *scratch, inputs);
     tick_times.push_back(1e6 * (threadCpuSeconds() - begin));
     const bool flagged = report.status != engine::kStepOk;
     result.flagged += flagged;
-    result.fault = faultOfTick(world, state, scratch, flagged, energy);
+    result.fault = faultOfTick(world, state, *scratch, flagged, energy);
     if (result.fault.empty()) continue;
     result.fault = fmt::format("seed {}, tick {}: {}", seed, result.ticks, result.fault);
     break;

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 
+#include "contact/invariants.h"
+
 namespace pincer::tasks {
 
 std::vector<Order> carryOverSquare(int n) {
+  PINCER_ASSERT(n >= 1);
   Order first(static_cast<std::size_t>(n));
   for (int place = 0; place < n; ++place) first[static_cast<std::size_t>(place)] = place % 2 ? (place + 1) / 2 : (n - place / 2) % n;
   std::vector<Order> rows;

@@ -5,14 +5,17 @@
 #include <limits>
 #include <numbers>
 
+#include "contact/functions/elementary.h"
+#include "contact/invariants.h"
+
 namespace pincer::tasks {
 namespace {
 
 constexpr double kLapses[] = {0, 0.01, 0.02, 0.03, 0.04, 0.05, 0.06};
 constexpr int kSections = 30;  // of golden sections: 0.618^30 = 5e-7 of the range
 
-double sigmoidAt(Sigmoid shape, double z) { return shape == Sigmoid::kLogistic ? 1 / (1 + std::exp(-z)) : normalCdf(z); }
-double sigmoidQuantile(Sigmoid shape, double p) { return shape == Sigmoid::kLogistic ? std::log(p / (1 - p)) : normalQuantile(p); }
+double sigmoidAt(Sigmoid shape, double z) { return shape == Sigmoid::kLogistic ? 1 / (1 + math::exp(-z)) : normalCdf(z); }
+double sigmoidQuantile(Sigmoid shape, double p) { return shape == Sigmoid::kLogistic ? math::log(p / (1 - p)) : normalQuantile(p); }
 
 struct Peak {
   double at = 0, value = 0;
@@ -43,6 +46,7 @@ class ThresholdLikelihood {
       : counts_(counts), shape_(shape), gamma_(gamma), p_(p) {
     const auto [least, most] = std::minmax_element(counts.begin(), counts.end(), [](auto& a, auto& b) { return a.level < b.level; });
     low_ = least->level, range_ = most->level - least->level;
+    PINCER_ASSERT(range_ > 0);  // two levels at least
   }
   double low() const { return low_ - range_; }
   double high() const { return low_ + 2 * range_; }
@@ -55,9 +59,9 @@ class ThresholdLikelihood {
     fit.log_likelihood = -std::numeric_limits<double>::infinity();
     for (const double lambda : kLapses) {
       const double z = sigmoidQuantile(shape_, (p_ - gamma_) / (1 - gamma_ - lambda));
-      const Peak peak = goldenSection(std::log(1e-3 * range_), std::log(10 * range_),
-                                      [&](double ln_beta) { return logLikelihood(function(threshold, z, std::exp(ln_beta), lambda)); });
-      if (peak.value > fit.log_likelihood) fit = {function(threshold, z, std::exp(peak.at), lambda), threshold, {}, peak.value};
+      const Peak peak = goldenSection(math::log(1e-3 * range_), math::log(10 * range_),
+                                      [&](double ln_beta) { return logLikelihood(function(threshold, z, math::exp(ln_beta), lambda)); });
+      if (peak.value > fit.log_likelihood) fit = {function(threshold, z, math::exp(peak.at), lambda), threshold, {}, peak.value};
     }
     return fit;
   }
@@ -71,7 +75,7 @@ class ThresholdLikelihood {
     double sum = 0;
     for (const LevelCount& c : counts_) {
       const double p = std::clamp(f.at(c.level), kLeast, 1 - kLeast);
-      sum += c.right * std::log(p) + (c.trials - c.right) * std::log1p(-p);
+      sum += c.right * math::log(p) + (c.trials - c.right) * math::log1p(-p);
     }
     return sum;
   }
@@ -93,9 +97,10 @@ double crossing(const ThresholdLikelihood& profile, double inside, double outsid
 
 }  // namespace
 
-double normalCdf(double z) { return 0.5 * std::erfc(-z * std::numbers::sqrt2 / 2); }
+double normalCdf(double z) { return 0.5 * math::erfc(-z * std::numbers::sqrt2 / 2); }
 
 double normalQuantile(double p) {
+  PINCER_ASSERT(0 < p && p < 1);
   double low = -40, high = 40;
   for (int i = 0; i < 60; ++i) {  // 80 / 2^60 is below round-off
     const double middle = 0.5 * (low + high);
@@ -104,11 +109,17 @@ double normalQuantile(double p) {
   return 0.5 * (low + high);
 }
 
-double PsychometricFunction::at(double x) const { return gamma + (1 - gamma - lambda) * sigmoidAt(shape, (x - alpha) / beta); }
+double PsychometricFunction::at(double x) const {
+  PINCER_ASSERT(beta > 0);
+  return gamma + (1 - gamma - lambda) * sigmoidAt(shape, (x - alpha) / beta);
+}
 
 double PsychometricFunction::levelOf(double p) const { return alpha + beta * sigmoidQuantile(shape, (p - gamma) / (1 - gamma - lambda)); }
 
 PsychometricFit fitPsychometric(std::span<const LevelCount> counts, Sigmoid shape, double gamma, double p, double confidence) {
+  PINCER_ASSERT(!counts.empty());
+  PINCER_ASSERT(gamma < p && p < 0.94);  // with the most lapses
+  PINCER_ASSERT(0 < confidence && confidence < 1);
   const ThresholdLikelihood profile(counts, shape, gamma, p);
   const Peak peak = goldenSection(profile.low(), profile.high(), [&](double threshold) { return profile.at(threshold); });
   PsychometricFit fit = profile.best(peak.at);

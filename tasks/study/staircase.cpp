@@ -6,6 +6,9 @@
 #include <cmath>
 #include <numeric>
 
+#include "contact/functions/elementary.h"
+#include "contact/invariants.h"
+
 namespace pincer::tasks {
 
 std::string problemWith(const StaircaseRule& r) {
@@ -25,7 +28,7 @@ std::string problemWith(const StaircaseRule& r) {
   return {};
 }
 
-double convergencePoint(int down) { return std::pow(0.5, 1.0 / down); }
+double convergencePoint(int down) { return math::pow(0.5, 1.0 / down); }
 
 bool Staircase::over() const { return static_cast<int>(reversals_.size()) >= rule_.reversals || trials_ >= rule_.most_trials; }
 
@@ -39,12 +42,13 @@ bool Staircase::answer(bool correct) {
 }
 
 bool Staircase::move(int direction) {
+  PINCER_ASSERT(rule_.lowest <= level_ && level_ <= rule_.highest);
   right_ = wrong_ = 0;
   const bool reversed = direction_ != 0 && direction != direction_;
   direction_ = direction;
   if (reversed) reversals_.push_back(level_);
   const double step = static_cast<int>(reversals_.size()) < rule_.large_reversals ? rule_.large_step : rule_.small_step;
-  const double moved = rule_.steps_are_ratios ? level_ * std::pow(1 + step, direction) : level_ + direction * step;
+  const double moved = rule_.steps_are_ratios ? level_ * math::pow(1 + step, direction) : level_ + direction * step;
   level_ = std::clamp(moved, rule_.lowest, rule_.highest);
   return reversed;
 }

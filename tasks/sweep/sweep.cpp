@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <exception>
 #include <mutex>
-#include <thread>
+
+#include "tasks/measure/threads.h"
 
 namespace pincer::tasks {
 
@@ -29,9 +30,7 @@ void runSweep(SweepTable& table, const SweepOptions& options, const std::atomic<
       }
     }
   };
-  std::vector<std::thread> threads;
-  for (int t = 0; t < options.threads; ++t) threads.emplace_back(work);
-  for (std::thread& thread : threads) thread.join();
+  onThreads(options.threads, work);
   if (failure) std::rethrow_exception(failure);
   table.interrupted = interrupted;
 }

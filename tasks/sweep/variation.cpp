@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "contact/error.h"
+#include "contact/functions/elementary.h"
 
 namespace pincer::tasks {
 namespace {
@@ -21,6 +22,7 @@ namespace {
 std::vector<std::string> partsOf(const std::string& text, char separator) {
   std::vector<std::string> parts;
   std::istringstream stream(text);
+  stream.exceptions(std::ios::badbit);  // else it takes a lack of memory for the end
   for (std::string part; std::getline(stream, part, separator);) parts.push_back(part);
   return parts;
 }
@@ -42,7 +44,7 @@ std::vector<double> rangeOf(const std::string& text, const std::vector<std::stri
   const int last = static_cast<int>(count) - 1;
   for (int i = 0; i <= last; ++i) {
     const double share = static_cast<double>(i) / last;
-    values.push_back(i == last ? to : ratios ? from * std::exp(share * std::log(to / from)) : from + share * (to - from));
+    values.push_back(i == last ? to : ratios ? from * math::exp(share * math::log(to / from)) : from + share * (to - from));
   }
   return values;
 }

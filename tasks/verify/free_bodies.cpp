@@ -54,7 +54,7 @@ exact::HeavyTop heavyTopOfScene() {
 double axisError(Scene scene, double heading_rate, MeasureContext& context) {
   const exact::HeavyTop top = heavyTopOfScene();
   constexpr double kAngle = std::numbers::pi / 6;
-  const Vec3 axis(std::sin(kAngle), 0, std::cos(kAngle));
+  const Vec3 axis(math::sin(kAngle), 0, math::cos(kAngle));
   const Vec3 w_W = Vec3(0, 0, heading_rate) + (top.w3 - heading_rate * axis.z()) * axis;
   scene.starts[0].w_W = w_W;
   scene.starts[0].v_W = w_W.cross(top.lever * axis);

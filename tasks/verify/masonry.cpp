@@ -3,7 +3,7 @@
 
 #include <map>
 
-#include "contact/shape/polytope.h"
+#include "contact/polytope.h"
 #include "tasks/verify/scene_run.h"
 #include "tasks/verify/verify.h"
 
@@ -20,7 +20,7 @@ contact::Shape stoneOf(double thickness) {
   for (const double y : {-kArchDepth / 2, kArchDepth / 2}) {
     for (const double side : {-1.0, 1.0}) {
       for (const double r : {1 - thickness / 2, 1 + thickness / 2})
-        points.push_back(kArchRadius * Vec3(r * side * std::sin(half_angle), y / kArchRadius, r * std::cos(half_angle)));
+        points.push_back(kArchRadius * Vec3(r * side * math::sin(half_angle), y / kArchRadius, r * math::cos(half_angle)));
     }
   }
   return contact::Convex{contact::Polytope::hullOf(points, "stone")};
@@ -84,11 +84,14 @@ std::vector<Record> massRatio(MeasureContext& context) {
       sunk = std::max(sunk, std::abs(sim.bodyPose(static_cast<int>(i)).p.z() - sim.scene().starts[i].X_WB.p.z()));
     if (sim.time() < 1) return;
     std::map<int, double> carried;  // by the upper body of a face: its lower body pushes it up
-    engine::forEachContact(sim.scratch().world,
-                           [&](const engine::Contact& c) { carried[std::max(c.a.index, c.b.index)] += std::abs(c.impulse_W.z()); });
+    const engine::WorldScratch& world = grasp::worldOf(sim.scratch());
+    for (int k = 0; k < engine::contactCount(world); ++k) {
+      const engine::ContactReport c = engine::contactAt(world, k);
+      carried[std::max(c.other_body, c.body)] += std::abs(c.f_W.z());
+    }
     double weight = 0;
     for (int i = static_cast<int>(bodies.size()) - 1; i > 0; --i) {
-      weight += bodies[static_cast<std::size_t>(i)].mass * kVerifyG * sim.scene().options.h;
+      weight += bodies[static_cast<std::size_t>(i)].mass * kVerifyG;
       force_error = std::max(force_error, std::abs(carried[i] / weight - 1));
     }
   });

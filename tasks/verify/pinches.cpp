@@ -115,7 +115,7 @@ std::vector<Record> slidingSpinningPlate(MeasureContext& context) {
     if (engine::bodyAngularVelocity(sim.model().world, sim.state().world, 0).norm() > 1e-7) spun_until = sim.time();
   });
   const Pose rest = sim.bodyPose(0);
-  const double angle = 2 * std::atan2(rest.q.x(), rest.q.w());
+  const double angle = 2 * math::atan2(rest.q.x(), rest.q.w());
   // First order in the tick while the friction turns (it has the direction of the tick's end): over 14 rad of turning the angle lags by 0.1,
   // and the place, which goes round with it, by as much; a tenth of that at 0.1 ms.
   return {atMost("place of rest, error over way", (Vec2(rest.p.y(), rest.p.z()) - exact.p).norm() / exact.p.norm(), "-", 0.15),

@@ -25,7 +25,7 @@ std::vector<Record> incline(MeasureContext& context) {
   int done = 0;
   for (const double ratio : {0.3, 0.99, 1.01, 3.0}) {
     context.progress(done++ / 4.0);
-    const exact::RollingIncline exact{kTheta, ratio * 2 / 7 * std::tan(kTheta), kVerifyG};
+    const exact::RollingIncline exact{kTheta, ratio * 2 / 7 * math::tan(kTheta), kVerifyG};
     Scene trial = scene;
     trial.options.gravity_W = tiltedGravity(kTheta, 0);
     setFriction(trial, exact.mu);
@@ -82,7 +82,7 @@ std::vector<Record> eulersDisk(MeasureContext& context) {
   runThrough(sim, context, [&] {
     const Pose X = sim.bodyPose(1);
     const Vec3 axis = X.q * Vec3::UnitZ();
-    const double angle = std::atan2(axis.y(), axis.x());
+    const double angle = math::atan2(axis.y(), axis.x());
     lag = std::max(lag, std::abs(std::remainder(angle - W * sim.time(), 2 * std::numbers::pi)));
     moved = std::max(moved, (X.p - start).norm());
     const double now =

@@ -20,7 +20,7 @@ inline void setFriction(Scene& scene, double mu) {
 
 // Gravity of a slope of angle `theta` whose downhill direction has the heading `heading` about z [rad].
 inline Vec3 tiltedGravity(double theta, double heading) {
-  return kVerifyG * Vec3(std::sin(theta) * std::cos(heading), std::sin(theta) * std::sin(heading), -std::cos(theta));
+  return kVerifyG * Vec3(math::sin(theta) * math::cos(heading), math::sin(theta) * math::sin(heading), -math::cos(theta));
 }
 
 // Ticks that weren't clean. A case that promises exactness adds this to its records.

@@ -26,8 +26,8 @@ std::vector<Record> stick(std::string_view scene, MeasureContext& context) {
 std::vector<Record> slide(std::string_view scene, double v0, double heading, MeasureContext& context) {
   Simulation sim(readBuiltinScene(scene));
   const RunCount run = runThrough(sim, context, [] {});
-  const Vec3 downhill(std::cos(heading), std::sin(heading), 0), p = sim.bodyPose(1).p;
-  const double way = exact::Slope{kSlope, std::tan(kSlope) / 1.05, kVerifyG}.way(v0, sim.time());
+  const Vec3 downhill(math::cos(heading), math::sin(heading), 0), p = sim.bodyPose(1).p;
+  const double way = exact::Slope{kSlope, math::tan(kSlope) / 1.05, kVerifyG}.way(v0, sim.time());
   return {atMost("way, relative error", std::abs(p.dot(downhill) / way - 1), "-", 1e-9),
           atMost("sideways, relative to the way", std::abs(p.cross(downhill).z()) / way, "-", 1e-9),
           exactly("flagged ticks", static_cast<double>(run.flagged), "-", 0)};
@@ -51,10 +51,10 @@ std::vector<Record> slopes(MeasureContext& context) {
   };
   for (const double theta : {0.05, 0.3, 0.7, 1.0}) {
     for (const double heading : {0.0, 0.4, 1.2}) {
-      for (const double ratio : {0.5, 0.999}) creep = std::max(creep, run(theta, std::tan(theta) / ratio, heading, 0.5).norm());
+      for (const double ratio : {0.5, 0.999}) creep = std::max(creep, run(theta, math::tan(theta) / ratio, heading, 0.5).norm());
       for (const double ratio : {1.001, 1.1, 3.0}) {
-        const double mu = std::tan(theta) / ratio, way = exact::Slope{theta, mu, kVerifyG}.way(0, 0.5);
-        const Vec3 error = run(theta, mu, heading, 0.5) - way * Vec3(std::cos(heading), std::sin(heading), 0);
+        const double mu = math::tan(theta) / ratio, way = exact::Slope{theta, mu, kVerifyG}.way(0, 0.5);
+        const Vec3 error = run(theta, mu, heading, 0.5) - way * Vec3(math::cos(heading), math::sin(heading), 0);
         slide_error = std::max(slide_error, error.norm() / way);
       }
     }
@@ -73,7 +73,7 @@ std::vector<Record> isotropy(MeasureContext& context) {
   for (int i = 0; i < kHeadings; ++i) {
     context.progress(static_cast<double>(i) / kHeadings);
     const double heading = 2 * std::numbers::pi * i / kHeadings;
-    const Vec3 way(std::cos(heading), std::sin(heading), 0);
+    const Vec3 way(math::cos(heading), math::sin(heading), 0);
     Scene trial = scene;
     trial.duration = 0.5;
     trial.starts[1].v_W = exact.v0 * way;

@@ -2,6 +2,7 @@
 #include "tasks/exact/toppling.h"
 
 #include "engine/motion/mass.h"
+#include "engine/world/scratch.h"
 #include "tasks/verify/scene_run.h"
 #include "tasks/verify/verify.h"
 
@@ -15,7 +16,7 @@ std::vector<Record> tipping(MeasureContext& context) {
   const auto tips = [&](double tangent) {
     context.progress(done++ / 30.0);
     Scene trial = scene;
-    trial.options.gravity_W = tiltedGravity(std::atan(tangent), 0);
+    trial.options.gravity_W = tiltedGravity(math::atan(tangent), 0);
     Simulation sim(std::move(trial));
     MeasureContext quiet;
     runThrough(sim, quiet, [] {});
@@ -31,7 +32,7 @@ std::vector<Record> rocking(MeasureContext& context) {
   double fallen = std::nan(""), peak = 0, before = kTilt;
   runThrough(sim, context, [&] {
     const Quat q = sim.bodyPose(1).q;
-    const double tilt = 2 * std::atan2(q.y(), q.w());
+    const double tilt = 2 * math::atan2(q.y(), q.w());
     if (std::isnan(fallen) && tilt < 0) fallen = sim.time() - 1e-3 * tilt / (tilt - before);
     peak = std::max(peak, -tilt);
     before = tilt;
@@ -49,8 +50,8 @@ std::vector<Record> ladder(MeasureContext& context) {
     context.progress(done++ / 26.0);
     Scene trial = scene;
     trial.duration = 0.5;
-    trial.starts[2].X_WB.p = {-kRadius - 0.5 * kLength * std::cos(angle), 0, kRadius + 0.5 * kLength * std::sin(angle)};
-    trial.starts[2].X_WB.q = Quat(Eigen::AngleAxisd(std::numbers::pi / 2 - angle, Vec3::UnitY()));
+    trial.starts[2].X_WB.p = {-kRadius - 0.5 * kLength * math::cos(angle), 0, kRadius + 0.5 * kLength * math::sin(angle)};
+    trial.starts[2].X_WB.q = quatFromRotationVector({0, std::numbers::pi / 2 - angle, 0});
     Simulation sim(std::move(trial));
     const Quat start = sim.bodyPose(2).q;
     MeasureContext quiet;
@@ -78,7 +79,7 @@ std::vector<Record> painleve(MeasureContext&) {
     const engine::BodyState& state = sim.state().world.bodies[1];
     worst = std::max(worst, (Vec2(state.v_W.x(), state.v_W.z()) - exact.v).norm());
     gained = std::max(gained, engine::kineticEnergy(sim.model().world, sim.state().world) / energy - 1);
-    sinking = std::max(sinking, -sim.scratch().world.contacts.front().u_C.z());
+    sinking = std::max(sinking, -grasp::worldOf(sim.scratch()).contacts.front().u_C.z());
   }
   // In one tick of 0.1 ms gravity alone changes a velocity by 1e-3 m/s, and the tick's geometry is that of its middle.
   return {atMost("velocity after the jam over three ticks, error", worst, "m/s", 5e-3), atMost("energy gained, relative", gained, "-", 0),

@@ -11,8 +11,8 @@ struct CameraAxes {
 };
 
 CameraAxes cameraAxes(const Camera& c) {
-  const Vec3 back(std::cos(c.pitch) * std::sin(c.yaw), -std::cos(c.pitch) * std::cos(c.yaw), std::sin(c.pitch));
-  const Vec3 right(std::cos(c.yaw), std::sin(c.yaw), 0);
+  const Vec3 back(math::cos(c.pitch) * math::sin(c.yaw), -math::cos(c.pitch) * math::cos(c.yaw), math::sin(c.pitch));
+  const Vec3 right(math::cos(c.yaw), math::sin(c.yaw), 0);
   return {right, back.cross(right), back};
 }
 
@@ -31,7 +31,7 @@ Mat4f Camera::view() const {
 }
 
 Mat4f Camera::projection(double aspect) const {
-  const double near = 0.05 * distance, far = 40 * distance, f = 1 / std::tan(opening / 2);
+  const double near = 0.05 * distance, far = 40 * distance, f = 1 / math::tan(opening / 2);
   Mat4f m = Mat4f::Zero();
   m(0, 0) = static_cast<float>(f / aspect);
   m(1, 1) = static_cast<float>(f);
@@ -54,7 +54,7 @@ void Camera::turn(double right, double up) {
 
 void Camera::pan(double right, double up) {
   const CameraAxes axes = cameraAxes(*this);
-  const double height = 2 * distance * std::tan(opening / 2);
+  const double height = 2 * distance * math::tan(opening / 2);
   target_W += height * (right * axes.right + up * axes.up);
 }
 
@@ -62,7 +62,7 @@ void Camera::zoom(double factor) { distance = std::clamp(distance * factor, 1e-3
 
 void Camera::frame(const Vec3& centre_W, double radius) {
   target_W = centre_W;
-  distance = std::clamp(radius / std::sin(opening / 2), 1e-3, 1e3);
+  distance = std::clamp(radius / math::sin(opening / 2), 1e-3, 1e3);
 }
 
 }  // namespace pincer::tasks

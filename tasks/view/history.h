@@ -2,6 +2,7 @@
 #pragma once
 #include <deque>
 
+#include "contact/assert.h"
 #include "tasks/servo/snapshot.h"
 
 namespace pincer::tasks {
@@ -23,6 +24,7 @@ class History {
 
   // The last one at or before `time` [s], the first if there is none. Not of an empty history.
   std::size_t find(double time) const {
+    PINCER_ASSERT(!kept_.empty());
     std::size_t low = 0, high = kept_.size();
     while (high - low > 1) {
       const std::size_t middle = (low + high) / 2;

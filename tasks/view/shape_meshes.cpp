@@ -4,8 +4,9 @@
 #include <cmath>
 
 #include "contact/mesh/mesh_pieces.h"
-#include "contact/shape/polytope.h"
-#include "contact/surface/smooth_mesh.h"
+#include "contact/polytope.h"
+#include "contact/smooth_mesh.h"
+#include "contact/surface/patch.h"
 #include "tasks/view/revolved.h"
 
 namespace pincer::tasks {
@@ -76,11 +77,11 @@ ViewMesh meshOf(const contact::Cylinder& cylinder) {
 
 ViewMesh meshOf(const contact::CylinderWithFlat& c) {
   ViewMesh mesh;
-  const double half_angle = std::acos(c.flat_distance / c.radius);
+  const double half_angle = math::acos(c.flat_distance / c.radius);
   std::vector<Vec3> top, bottom;
   for (int i = 0; i <= kRound; ++i) {
     const double a = half_angle + (2 * M_PI - 2 * half_angle) * i / kRound;
-    top.emplace_back(c.radius * std::cos(a), c.radius * std::sin(a), c.half_length);
+    top.emplace_back(c.radius * math::cos(a), c.radius * math::sin(a), c.half_length);
     bottom.emplace_back(top.back() - 2 * c.half_length * Vec3::UnitZ());
   }
   const auto normal = [&](std::size_t i) { return Vec3f(Vec3(top[i].x() / c.radius, top[i].y() / c.radius, 0).cast<float>()); };
@@ -109,13 +110,13 @@ ViewMesh meshOf(const contact::Convex& convex) {
 
 // A bowl with a wall: inside, rounded rim, outside, flat foot.
 ViewMesh bowlMesh(double radius, double extent) {
-  const double half = std::asin(std::min(extent / radius, 0.95)), wall = 0.035 * extent;
-  const double rim_r = (radius + wall) * std::sin(half), rim_z = radius - (radius + wall) * std::cos(half);
+  const double half = math::asin(std::min(extent / radius, 0.95)), wall = 0.035 * extent;
+  const double rim_r = (radius + wall) * math::sin(half), rim_z = radius - (radius + wall) * math::cos(half);
   Profile profile;
   addArc(profile, radius, radius, -kUp, -kUp + half, 48, true);
   for (int i = 1; i < 12; ++i) {
     const double a = M_PI - half + kUp - M_PI * i / 12;  // from the inside over the top
-    const Vec2 n(std::cos(a), std::sin(a));
+    const Vec2 n(math::cos(a), math::sin(a));
     profile.push_back({rim_r + wall * n.x(), rim_z + wall * n.y(), n.x(), n.y()});
   }
   addArc(profile, radius, radius + 2 * wall, -kUp + half, -kUp, 48);
@@ -216,7 +217,7 @@ ViewMesh fingerMesh(double length) {
   const double end = width(1);
   for (int i = 1; i <= 12; ++i) {
     const double a = -kUp * i / 12;
-    profile.push_back({std::max(end * std::cos(a), 0.0), -length + 0.5 * end * std::sin(a), std::cos(a), std::sin(a)});
+    profile.push_back({std::max(end * math::cos(a), 0.0), -length + 0.5 * end * math::sin(a), math::cos(a), math::sin(a)});
   }
   ViewMesh mesh = revolve(profile, 64);
   const Eigen::Matrix3f turn = Eigen::Quaternionf::FromTwoVectors(Vec3f::UnitZ(), Vec3f::UnitX()).toRotationMatrix();

@@ -1,6 +1,6 @@
 // shape_meshes: the shapes of contact/ as triangles to be drawn, in their own frames [m].
 #pragma once
-#include "contact/shape/shape.h"
+#include "contact/shape.h"
 #include "tasks/view/draw_list.h"
 
 namespace pincer::tasks {

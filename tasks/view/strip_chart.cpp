@@ -3,12 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact/functions/elementary.h"
+#include "contact/invariants.h"
+
 namespace pincer::tasks {
 namespace {
 
 // The next of 1, 2, 5, 10 ... times a power of ten, at or above x > 0.
 double roundedUp(double x) {
-  const double power = std::pow(10, std::floor(std::log10(x)));
+  PINCER_ASSERT(x > 0);
+  const double power = math::pow(10, std::floor(math::log10(x)));
   for (const double step : {1.0, 2.0, 5.0}) {
     if (x <= step * power * (1 + 1e-12)) return step * power;
   }

@@ -148,7 +148,7 @@ std::string Viewer::paceText() const {
 
 double Viewer::metresPerHeight() const {
   const Camera& camera = painter_.camera();
-  return 2 * camera.distance * std::tan(camera.opening / 2);
+  return 2 * camera.distance * math::tan(camera.opening / 2);
 }
 
 void Viewer::saveScreenshot() {

@@ -72,9 +72,9 @@ void Viewer::drag(double right, double down) {
 void Viewer::wheel(const devices::InputEvent& event) {
   const bool hand = hand_ && !event.modifiers.control && !pace_.paused;
   if (hand) {
-    hand_->changeGrip(std::pow(kGripStep, event.y));
+    hand_->changeGrip(math::pow(kGripStep, event.y));
   } else {
-    painter_.camera().zoom(std::pow(kZoomStep, event.y));
+    painter_.camera().zoom(math::pow(kZoomStep, event.y));
   }
 }
 

@@ -14,10 +14,11 @@
 #include <string>
 #include <vector>
 
-#include "contact/mesh/generated_meshes.h"
-#include "contact/surface/smooth_mesh.h"
-#include "engine/world/state.h"
-#include "engine/world/step.h"
+#include "contact/generated_meshes.h"
+#include "contact/smooth_mesh.h"
+#include "engine/state.h"
+#include "engine/step.h"
+#include "engine/world/scratch.h"
 #include "tests/support/contact_problems.h"
 
 namespace {

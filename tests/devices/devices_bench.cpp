@@ -103,7 +103,7 @@ void twoHands(double seconds) {
   TwoHands cycle(host, seconds);
   const std::atomic<bool> never{false};
   tasks::ServoOptions servo;
-  servo.real_time = true;
+  servo.clock = tasks::ServoClock::kReal;
   servo.watchdog = 1;
   const tasks::ServoReport report = runServo(servo, cycle, never);
   count(1);
@@ -207,7 +207,7 @@ double msAfterAStall() {
   cycle = &stalls;
   const std::atomic<bool> never{false};
   tasks::ServoOptions servo;
-  servo.real_time = true;
+  servo.clock = tasks::ServoClock::kReal;
   runServo(servo, stalls, never);
   bus.stopRealTime();
   return zero_ns == 0 ? kNoBound : 1e-6 * static_cast<double>(zero_ns - stalls.stalledNs());

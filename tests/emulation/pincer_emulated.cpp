@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "tasks/app/app.h"
+#include "tasks/app/process.h"
 #include "tests/emulation/emulated_bus.h"
 #include "tests/emulation/emulated_hand.h"
 
@@ -32,4 +33,7 @@ int run(int argc, char** argv) {
 }  // namespace
 }  // namespace pincer::emulation
 
-int main(int argc, char** argv) { return pincer::emulation::run(argc, argv); }
+int main(int argc, char** argv) {
+  pincer::tasks::prepareProcess();
+  return pincer::emulation::run(argc, argv);
+}

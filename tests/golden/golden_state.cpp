@@ -59,7 +59,7 @@ double smoothStep(double t) { return t <= 0 ? 0 : t >= 1 ? 1 : t * t * (3 - 2 * 
 Vec3 fingerPlace(double t, double side) {
   const double x = 0.04 - 0.014 * smoothStep(t);
   const double lift = 0.06 * smoothStep((t - 1.5) / 2);
-  const double shake = 0.004 * std::fmax(0, t - 5) / 15 * std::sin(12 * t);
+  const double shake = 0.004 * std::fmax(0, t - 5) / 15 * math::sin(12 * t);
   return Vec3(side * x, shake, 0.021 + lift + 0.5 * shake * side);
 }
 
@@ -68,7 +68,7 @@ Vec3 fingerPlace(double t, double side) {
 int main() {
   const World w = makeWorld();
   grasp::GraspState state = grasp::makeState(w.model, w.starts, {fingerPlace(0, -1), fingerPlace(0, 1)});
-  grasp::GraspScratch scratch(w.model);
+  const grasp::ScratchHandle scratch = grasp::makeScratch(w.model);
   std::vector<grasp::FingerInput> inputs(2);
   std::uint32_t status = 0;
   for (int tick = 1; tick <= 20000; ++tick) {
@@ -77,7 +77,7 @@ int main() {
       inputs[i].v_WF = (p_WF - inputs[i].p_WF) / 1e-3 * (tick > 1);
       inputs[i].p_WF = p_WF;
     }
-    status |= grasp::step(w.model, state, scratch, inputs).status;
+    status |= grasp::step(w.model, state, *scratch, inputs).status;
   }
   std::printf("%016llx status %u ball %.3f mm\n", static_cast<unsigned long long>(engine::hashOf(state.world)), status,
               1e3 * state.world.bodies[2].X_WI.p.z());

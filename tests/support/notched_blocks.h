@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "contact/math.h"
-#include "contact/mesh/triangle_mesh.h"
+#include "contact/triangle_mesh.h"
 
 namespace pincer::tests {
 

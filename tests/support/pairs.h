@@ -4,8 +4,9 @@
 #include <limits>
 #include <set>
 
-#include "contact/shape/pair_query.h"
+#include "contact/pair_query.h"
 #include "contact/shape/separation.h"
+#include "contact/surface/patch_cache.h"
 #include "tests/support/random_poses.h"
 
 namespace pincer::tests {

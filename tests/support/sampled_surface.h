@@ -12,8 +12,9 @@
 #include <vector>
 
 #include "contact/math.h"
-#include "contact/shape/polytope.h"
-#include "contact/shape/shape.h"
+#include "contact/polytope.h"
+#include "contact/shape.h"
+#include "contact/surface/patch.h"
 
 namespace pincer::tests {
 

@@ -17,8 +17,8 @@
 
 #include "contact/math.h"
 #include "contact/mesh/connectivity.h"
-#include "contact/mesh/triangle_mesh.h"
-#include "contact/surface/surface_contact.h"
+#include "contact/surface_contact.h"
+#include "contact/triangle_mesh.h"
 
 namespace pincer::tests {
 

@@ -1,6 +1,7 @@
 // touch: the main contact of a finger on a mesh, for tests that need no other; with a cache per thread.
 #pragma once
-#include "contact/surface/smooth_mesh.h"
+#include "contact/smooth_mesh.h"
+#include "contact/surface/patch_cache.h"
 
 namespace pincer::contact {
 

@@ -1,14 +1,15 @@
 // Two fingers close on a bumpy stone, lift it by 50 mm and hold it.
+#include <algorithm>
 #include <cstdio>
 
-#include "contact/mesh/generated_meshes.h"
-#include "contact/surface/smooth_mesh.h"
+#include "contact/generated_meshes.h"
+#include "contact/smooth_mesh.h"
 #include "grasp/step.h"
 
 using namespace pincer;
 
 int main() {
-  // The world: a floor and a stone of 80 g, felt as a smooth surface. (A file: contact::readMesh, contact/mesh/mesh_reader.h.)
+  // The world: a floor and a stone of 80 g, felt as a smooth surface. (A file: contact::readMesh, contact/mesh_reader.h.)
   engine::WorldBuilder builder{engine::WorldOptions{}};
   builder.addBody({.name = "floor", .shape = contact::HalfSpace{}, .dynamic = false});
   const auto surface = contact::SmoothMesh::build(contact::bumpySphere(0.020, 0.08, 3, 12));
@@ -22,7 +23,7 @@ int main() {
   // The stone lies at rest, the fingers wait beside it.
   const std::vector<engine::BodyStart> starts = {{}, {.X_WB = {Quat::Identity(), Vec3(0, 0, 0.021)}}};
   grasp::GraspState state = grasp::makeState(model, starts, {Vec3(-0.05, 0, 0.02), Vec3(0.05, 0, 0.02)});
-  grasp::GraspScratch scratch(model);
+  const grasp::ScratchHandle scratch = grasp::makeScratch(model);
 
   // Every millisecond the devices say where the fingers are. Here: one second closing, one second lifting, one second holding.
   std::vector<grasp::FingerInput> inputs(2);
@@ -31,11 +32,11 @@ int main() {
     const double x = 0.05 - 0.026 * closing;  // 24 mm: 4 mm into the surface
     inputs[0].p_WF = Vec3(-x, 0, 0.02 + 0.05 * lifting);
     inputs[1].p_WF = Vec3(x, 0, 0.02 + 0.05 * lifting);
-    const engine::StepReport report = grasp::step(model, state, scratch, inputs);
+    const grasp::GraspReport report = grasp::step(model, state, *scratch, inputs);
     if (report.status & engine::kStateNotFinite) return 1;
     if (tick % 500 == 0) {
       std::printf("%.1f s: stone at %5.1f mm, fingers press with %.2f and %.2f N\n", 1e-3 * tick, 1e3 * engine::bodyPose(model.world, state.world, stone).p.z(),
-                  scratch.fingers[0].normal_force, scratch.fingers[1].normal_force);
+                  report.fingers[0].normal_force, report.fingers[1].normal_force);
     }
   }
   return engine::bodyPose(model.world, state.world, stone).p.z() > 0.06 ? 0 : 1;  // lifted, and held

@@ -41,7 +41,7 @@ double displayAmplitude(DisplayProbe probe, double amplitude, double frequency) 
   const int period = static_cast<int>(std::lround(1000 / frequency));
   double low = 1, high = -1;
   for (int i = 0; i < 5 * period; ++i) {
-    const double y = probe(amplitude * std::sin(2 * std::numbers::pi * i / period));
+    const double y = probe(amplitude * math::sin(2 * std::numbers::pi * i / period));
     if (i >= 3 * period) low = std::min(low, y), high = std::max(high, y);
   }
   return (high - low) / 2;
@@ -117,7 +117,7 @@ std::vector<Record> policyErrors(double speed) {
   devices::TactorErrorMeter meter({});
   const double amplitude = 4e-3, w = speed / amplitude;
   for (int i = 0; i < 60000; ++i) {
-    const Vec2 wanted(-0.004 + amplitude * std::sin(w * 1e-3 * i), 0.5 * amplitude * std::sin(0.7 * w * 1e-3 * i));
+    const Vec2 wanted(-0.004 + amplitude * math::sin(w * 1e-3 * i), 0.5 * amplitude * math::sin(0.7 * w * 1e-3 * i));
     cld.command({false, wanted});
     cld.advance(1e-3);
     if (i > 5000) meter.add(wanted, cld.trueTactor_L(), 1e-3);

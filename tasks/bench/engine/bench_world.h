@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "contact/shape/shape.h"
+#include "contact/shape.h"
 
 namespace pincer::tasks {
 

@@ -36,7 +36,7 @@ class PincerEngine : public BenchEngine {
     }
     model_ = grasp::buildGrasp(builder, fingers);
     state_ = grasp::makeState(model_, starts, places);
-    scratch_ = std::make_unique<grasp::GraspScratch>(model_);
+    scratch_ = grasp::makeScratch(model_);
     for (const Vec3& p : places) {
       inputs_.emplace_back();
       inputs_.back().p_WF = p;
@@ -44,7 +44,7 @@ class PincerEngine : public BenchEngine {
   }
 
   void step() override {
-    if (inputs_.empty()) return count(engine::step(model_.world, state_.world, scratch_->world));
+    if (inputs_.empty()) return count(engine::step(model_.world, state_.world, grasp::worldOf(*scratch_)));
     const double t = h_ * static_cast<double>(++steps_);
     for (std::size_t i = 0; i < inputs_.size(); ++i) {
       const BenchBody& body = world_.bodies[static_cast<std::size_t>(finger_of_[i])];
@@ -141,7 +141,7 @@ class PincerEngine : public BenchEngine {
   std::vector<int> finger_of_;  // per finger: the bench body
   grasp::GraspModel model_;
   grasp::GraspState state_;
-  std::unique_ptr<grasp::GraspScratch> scratch_;
+  grasp::ScratchHandle scratch_;
   std::vector<grasp::FingerInput> inputs_;
 };
 

@@ -98,7 +98,7 @@ BenchScene pendulumScene() {
       const BenchMotion m = e.motion(0);
       const double off = std::abs(m.X_WB.p.norm() - 0.1);
       if (!(off < 0.01)) return BenchVerdict{.failure = "leaves its hinge"};
-      return BenchVerdict{std::max(angleBetween(Quat(Eigen::AngleAxisd(-angle, Vec3::UnitY())), m.X_WB.q), off / 0.1)};
+      return BenchVerdict{std::max(angleBetween(quatFromRotationVector({0, -angle, 0}), m.X_WB.q), off / 0.1)};
     });
   };
   return s;

@@ -186,7 +186,7 @@ BenchScene capsuleScene(const std::string& name, double squeeze, double seconds)
   s.steps = {4e-3, 2e-3, 1e-3, 5e-4};
   BenchBody rod = benchBall(0.045, 0.004, {0, 0, 0.1});
   rod.shape = contact::Capsule{0.004, 0.05};
-  rod.X_WB.q = Quat(Eigen::AngleAxisd(M_PI / 2, Vec3::UnitX()));
+  rod.X_WB.q = quatFromRotationVector({M_PI / 2, 0, 0});
   s.world.mu = 0.7;
   s.world.bodies = {rod, pad(-1), pad(1)};
   s.judge = [=] {

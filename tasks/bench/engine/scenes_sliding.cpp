@@ -40,10 +40,10 @@ BenchScene slideToRollScene() {
 }
 
 BenchWorld slopeWorld(double tangent_over_mu, double heading, double v0) {
-  const Vec3 downhill(std::cos(heading), std::sin(heading), 0);
+  const Vec3 downhill(math::cos(heading), math::sin(heading), 0);
   BenchWorld world;
-  world.mu = std::tan(kBenchSlope) / tangent_over_mu;
-  world.gravity_W = kBenchG * (std::sin(kBenchSlope) * downhill - std::cos(kBenchSlope) * Vec3::UnitZ());
+  world.mu = math::tan(kBenchSlope) / tangent_over_mu;
+  world.gravity_W = kBenchG * (math::sin(kBenchSlope) * downhill - math::cos(kBenchSlope) * Vec3::UnitZ());
   world.bodies = {benchFloor(), benchBox(0.2, {0.025, 0.025, 0.0125}, {0, 0, 0.0125}, v0 * downhill)};
   return world;
 }
@@ -81,8 +81,8 @@ BenchScene slideScene(const std::string& name, double heading, double v0) {
   s.world = slopeWorld(1.05, heading, v0);
   s.judge = [=] {
     return judgeOfEnd([=](BenchEngine& e) {
-      const double way = exact::Slope{kBenchSlope, std::tan(kBenchSlope) / 1.05, kBenchG}.way(v0, 2);
-      return relativeWay({0, 0, 0.0125}, way * Vec3(std::cos(heading), std::sin(heading), 0), e);
+      const double way = exact::Slope{kBenchSlope, math::tan(kBenchSlope) / 1.05, kBenchG}.way(v0, 2);
+      return relativeWay({0, 0, 0.0125}, way * Vec3(math::cos(heading), math::sin(heading), 0), e);
     });
   };
   return s;
@@ -91,10 +91,10 @@ BenchScene slideScene(const std::string& name, double heading, double v0) {
 // A ball let go on a slope, of a friction at which it rolls, or slides and rolls.
 BenchScene rollingScene(const std::string& name, double friction_over_limit) {
   constexpr double kTheta = 30 * kDegree;
-  const exact::RollingIncline exact{kTheta, friction_over_limit * 2 / 7 * std::tan(kTheta), kBenchG};
+  const exact::RollingIncline exact{kTheta, friction_over_limit * 2 / 7 * math::tan(kTheta), kBenchG};
   BenchScene s{.name = name, .metric = "way in 1 s, relative error", .unit = "-", .floor = 1e-15, .error_bound = 1e-9};
   s.world.mu = exact.mu;
-  s.world.gravity_W = kBenchG * Vec3(std::sin(kTheta), 0, -std::cos(kTheta));
+  s.world.gravity_W = kBenchG * Vec3(math::sin(kTheta), 0, -math::cos(kTheta));
   s.world.bodies = {benchFloor(), benchBall(0.1, 0.02, {0, 0, 0.02})};
   s.judge = [=] { return judgeOfEnd([=](BenchEngine& e) { return relativeWay({0, 0, 0.02}, {0.5 * exact.acceleration(), 0, 0}, e); }); };
   return s;

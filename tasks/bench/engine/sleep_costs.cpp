@@ -2,7 +2,7 @@
 // without, by turns: each runs the same ticks, to the bit.
 #include <fmt/format.h>
 
-#include "engine/world/step.h"
+#include "engine/step.h"
 #include "tasks/bench/engine/engine_bench.h"
 #include "tasks/measure/timing.h"
 
@@ -13,9 +13,11 @@ constexpr int kComingToRest = 200, kTimedTicks = 200;
 
 class RestingBoxes {
  public:
-  RestingBoxes(int count, bool sleep) : model_(boxes(count, sleep)), state_(startOf(model_)), scratch_(model_) { run(kComingToRest); }
+  RestingBoxes(int count, bool sleep) : model_(boxes(count, sleep)), state_(startOf(model_)), scratch_(engine::makeScratch(model_)) {
+    run(kComingToRest);
+  }
   void run(int ticks) {
-    for (int i = 0; i < ticks; ++i) flagged_ += engine::step(model_, state_, scratch_).status != engine::kStepOk;
+    for (int i = 0; i < ticks; ++i) flagged_ += engine::step(model_, state_, *scratch_).status != engine::kStepOk;
   }
   std::uint64_t hash() const { return engine::hashOf(state_); }
   int flagged() const { return flagged_; }
@@ -44,7 +46,7 @@ class RestingBoxes {
 
   engine::WorldModel model_;
   engine::WorldState state_;
-  engine::WorldScratch scratch_;
+  engine::ScratchHandle scratch_;
   int flagged_ = 0;
 };
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/world/stage_clock.h"
 #include "grasp/step.h"
 #include "tasks/bench/engine/engine_bench.h"
 #include "tasks/measure/timing.h"
@@ -27,18 +28,18 @@ struct SolveTimes {
 // One round.
 SolveTimes timeSolves(grasp::GraspModel model, grasp::GraspState state, const std::vector<Vec3>& devices, MeasureContext& context) {
   const Vec3 gravity_W = model.world.options.gravity_W;
-  grasp::GraspScratch scratch(model);
+  const grasp::ScratchHandle scratch = grasp::makeScratch(model);
   engine::StageClock clock;
-  scratch.world.clock = &clock;
+  engine::timeStages(&clock, grasp::worldOf(*scratch));
   std::vector<grasp::FingerInput> inputs(devices.size());
   SolveTimes times;
   for (int k = 0; k < kWarmTicks + kSolveTicks && !context.interrupted(); ++k) {
     // Everything sways a little all the time, as in a hand that moves: no tick's answer is that of the last one.
     const double phase = 0.01 * k;
     for (std::size_t i = 0; i < devices.size(); ++i)
-      inputs[i] = {devices[i] + 1e-3 * std::sin(phase) * Vec3::UnitZ(), 1e-2 * std::cos(phase) * Vec3::UnitZ()};
-    if (devices.empty()) model.world.options.gravity_W = gravity_W + 0.5 * Vec3(std::sin(phase), std::cos(1.7 * phase), 0);
-    const engine::StepReport report = grasp::step(model, state, scratch, inputs);
+      inputs[i] = {devices[i] + 1e-3 * math::sin(phase) * Vec3::UnitZ(), 1e-2 * math::cos(phase) * Vec3::UnitZ()};
+    if (devices.empty()) model.world.options.gravity_W = gravity_W + 0.5 * Vec3(math::sin(phase), math::cos(1.7 * phase), 0);
+    const engine::StepReport report = grasp::step(model, state, *scratch, inputs);
     if (k < kWarmTicks) continue;
     times.us.push_back(1e6 * clock.seconds[static_cast<std::size_t>(engine::Stage::kSolve)]);
     times.residual = std::max(times.residual, report.solve.residual);
@@ -75,7 +76,7 @@ SolveTimes graspedBall(int fingers, int rounds, MeasureContext& context) {
     finger.name = fmt::format("f{}", i);
     finger.radius = kSolvedTip;
     const double a = 2 * M_PI * i / fingers;
-    devices.push_back((kSolvedBall + kSolvedTip - 2e-3) * Vec3(std::cos(a), std::sin(a), 0));
+    devices.push_back((kSolvedBall + kSolvedTip - 2e-3) * Vec3(math::cos(a), math::sin(a), 0));
   }
   const grasp::GraspModel model = grasp::buildGrasp(builder, models);
   return leastOf(rounds, model, grasp::makeState(model, {engine::BodyStart{}}, devices), devices, context);

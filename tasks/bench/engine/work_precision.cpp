@@ -3,13 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact/functions/elementary.h"
+
 namespace pincer::tasks {
 namespace {
 
 // y at x on the line through (x0, y0) and (x1, y1), all in logarithms.
 double betweenLogs(double x, double x0, double y0, double x1, double y1) {
-  const double s = std::log(x / x0) / std::log(x1 / x0);
-  return y0 * std::pow(y1 / y0, s);
+  const double s = math::log(x / x0) / math::log(x1 / x0);
+  return y0 * math::pow(y1 / y0, s);
 }
 
 }  // namespace

@@ -1,12 +1,12 @@
-// Ours and published ways to render a finger, on the same scenes (grasp/baseline/baseline.h): what each gets wrong.
+// Ours and published ways to render a finger, on the same scenes (grasp/baseline.h): what each gets wrong.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "contact/mesh/generated_meshes.h"
-#include "contact/surface/smooth_mesh.h"
+#include "contact/generated_meshes.h"
+#include "contact/smooth_mesh.h"
 #include "tasks/bench/finger_path.h"
 #include "tasks/bench/grasp/bench_grasp.h"
 #include "tasks/bench/grasp/grasp_bench.h"
@@ -33,12 +33,6 @@ contact::Mesh meshBall(FingerMethod method, double radius, int n) {
   return {contact::SmoothMesh::build(contact::geodesicSphere(radius, n), options)};
 }
 
-grasp::FingerModel methodFinger(FingerMethod method, const char* name) {
-  grasp::FingerModel finger = benchFinger(name);
-  finger.method = method;
-  return finger;
-}
-
 // Ours is promised, the others shown.
 Record promised(FingerMethod method, const std::string& metric, double value, const char* unit, double bound) {
   const std::string text = fmt::format("{}: {}", nameOfMethod(method), metric);
@@ -55,7 +49,7 @@ std::vector<Record> pickUp(FingerMethod method, MeasureContext& context) {
     return std::vector<Vec3>{Vec3(-(kRadius + kBenchTip - squeeze), 0, z), Vec3(kRadius + kBenchTip - squeeze, 0, z)};
   };
   BenchGrasp grasp(std::move(builder), {engine::BodyStart{{Quat::Identity(), Vec3(0, 0, kRadius)}}, engine::BodyStart{}},
-                   {methodFinger(method, "left"), methodFinger(method, "right")}, devices(-1e-3, kRadius));
+                   {benchFinger("left"), benchFinger("right")}, devices(-1e-3, kRadius), {method, method});
   grasp.leadAll(devices(kSqueeze, kRadius), 200);
   grasp.leadAll(devices(kSqueeze, kRadius), 200);
   const auto below = [&] {  // of the ball's middle under the proxies' (here: devices' sag counted by the mean of what carries)
@@ -89,7 +83,7 @@ std::vector<Record> drag(FingerMethod method, MeasureContext&) {
   for (const double speed : {0.001, 0.01, 0.1, 0.5}) {
     engine::WorldBuilder builder(benchWorld(false));
     builder.addBody({"plate", contact::HalfSpace{}, false, 0, {0.5, 0.5, 0, 0}});
-    BenchGrasp grasp(std::move(builder), {engine::BodyStart{}}, {methodFinger(method, "finger")}, {Vec3(0, 0, kBenchTip)});
+    BenchGrasp grasp(std::move(builder), {engine::BodyStart{}}, {benchFinger("finger")}, {Vec3(0, 0, kBenchTip)}, {method});
     grasp.leadAll({Vec3(0, 0, kBenchTip - 2e-3)}, 50);
     Vec3 p(0, 0, kBenchTip - 2e-3);
     const int ticks = static_cast<int>(std::max(100.0, 4e-3 / (speed * kGraspTick)));
@@ -103,7 +97,7 @@ std::vector<Record> drag(FingerMethod method, MeasureContext&) {
   // A load of 0.9 of the limit, and then rest.
   engine::WorldBuilder builder(benchWorld(false));
   builder.addBody({"plate", contact::HalfSpace{}, false, 0, {0.5, 0.5, 0, 0}});
-  BenchGrasp grasp(std::move(builder), {engine::BodyStart{}}, {methodFinger(method, "finger")}, {Vec3(0, 0, kBenchTip)});
+  BenchGrasp grasp(std::move(builder), {engine::BodyStart{}}, {benchFinger("finger")}, {Vec3(0, 0, kBenchTip)}, {method});
   grasp.leadAll({Vec3(0, 0, kBenchTip - 2e-3)}, 50);
   grasp.leadAll({Vec3(0.9e-3, 0, kBenchTip - 2e-3)}, 300);
   grasp.leadAll({Vec3(0.9e-3, 0, kBenchTip - 2e-3)}, 500);
@@ -118,8 +112,8 @@ std::vector<Record> facets(FingerMethod method, MeasureContext&) {
   builder.addBody({"ball", meshBall(method, 0.04, 22), false, 0, {0, 0, 0, 0}});
   const double R = 0.04 + kBenchTip - 2e-3, step = 0.1 * kGraspTick / R;
   const Mat3 plane = frameFromNormal(Vec3(0.3, -0.2, 1).normalized());
-  const auto at = [&](double a, double r) { return Vec3(r * (std::cos(a) * plane.col(0) + std::sin(a) * plane.col(1))); };
-  BenchGrasp grasp(std::move(builder), {engine::BodyStart{}}, {methodFinger(method, "finger")}, {at(0, R + 2.1e-3)});
+  const auto at = [&](double a, double r) { return Vec3(r * (math::cos(a) * plane.col(0) + math::sin(a) * plane.col(1))); };
+  BenchGrasp grasp(std::move(builder), {engine::BodyStart{}}, {benchFinger("finger")}, {at(0, R + 2.1e-3)}, {method});
   grasp.leadAll({at(0, R)}, 100);
   double largest = 0;
   Vec3 last = Vec3::Zero();
@@ -139,7 +133,7 @@ std::vector<Record> ringing(FingerMethod method, MeasureContext&) {
   engine::WorldBuilder builder(benchWorld(false));
   builder.addBody({"ball", contact::Sphere{0.02}, true, kMass, {0.6, 0.6, 0, 3.3e-3}});
   const auto devices = [](double squeeze) { return std::vector<Vec3>{Vec3(-(0.028 - squeeze), 0, 0), Vec3(0.028 - squeeze, 0, 0)}; };
-  BenchGrasp grasp(std::move(builder), {engine::BodyStart{}}, {methodFinger(method, "left"), methodFinger(method, "right")}, devices(0));
+  BenchGrasp grasp(std::move(builder), {engine::BodyStart{}}, {benchFinger("left"), benchFinger("right")}, devices(0), {method, method});
   grasp.leadAll(devices(3e-3), 50);
   grasp.state.world.bodies[0].v_W = Vec3(0.05, 0, 0);
   double early = 0, late = 0, momentum = 0;

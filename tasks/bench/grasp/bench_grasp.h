@@ -1,7 +1,9 @@
 // bench_grasp: fingers on bodies, led tick by tick, with what every tick must keep to watched in every tick.
 #pragma once
+#include <optional>
 #include <vector>
 
+#include "grasp/baseline.h"
 #include "grasp/step.h"
 
 namespace pincer::tasks {
@@ -15,7 +17,7 @@ grasp::FingerModel benchFinger(const char* name, double stiffness = 1000, double
 class BenchGrasp {
  public:
   BenchGrasp(engine::WorldBuilder builder, const std::vector<engine::BodyStart>& bodies, std::vector<grasp::FingerModel> fingers,
-             const std::vector<Vec3>& devices);
+             const std::vector<Vec3>& devices, const std::vector<grasp::FingerMethod>& methods = {});  // no methods: all are ours
 
   // One tick, each device where leadFinger put it.
   engine::StepReport tick();
@@ -27,9 +29,9 @@ class BenchGrasp {
   std::vector<grasp::FingerInput> inputs;
   grasp::GraspModel model;
   grasp::GraspState state;
-  grasp::GraspScratch scratch;
+  grasp::ScratchHandle scratch;
 
-  const grasp::FingerReport& felt(int finger) const { return scratch.fingers[static_cast<std::size_t>(finger)]; }
+  const grasp::FingerReport& felt(int finger) const { return grasp::fingersOf(*scratch)[static_cast<std::size_t>(finger)]; }
   Pose body(int i) const { return engine::bodyPose(model.world, state.world, i); }
 
   double coneExcess() const { return cone_excess_; }       // largest |f_t| / (mu f_n) - 1 of any contact in any tick [-]
@@ -38,6 +40,7 @@ class BenchGrasp {
 
  private:
   void watch();
+  std::optional<grasp::BaselineFingers> baselines_;
   double cone_excess_ = -1;
   int reaction_errors_ = 0, flagged_ = 0;
 };

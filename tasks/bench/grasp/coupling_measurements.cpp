@@ -7,9 +7,9 @@
 #include <filesystem>
 
 #include "contact/error.h"
-#include "grasp/coupling/hold_bounds.h"
-#include "grasp/passivity/energy_ledger.h"
-#include "grasp/passivity/passivity.h"
+#include "grasp/energy_ledger.h"
+#include "grasp/hold_bounds.h"
+#include "grasp/passivity.h"
 #include "tasks/bench/finger_path.h"
 #include "tasks/bench/grasp/bench_grasp.h"
 #include "tasks/bench/grasp/grasp_bench.h"
@@ -44,14 +44,14 @@ std::vector<Record> stableCouplings(MeasureContext&) {
     for (const double m : kMasses) {
       const grasp::GraspModel model = heldCube(k, 2 * 0.1 * std::sqrt(k * m), m, 1000);
       grasp::GraspState state = grasp::makeState(model, {engine::BodyStart{}}, {besideCube(0, 0), besideCube(1, 0)});
-      grasp::GraspScratch scratch(model);
+      const grasp::ScratchHandle scratch = grasp::makeScratch(model);
       std::vector<grasp::FingerInput> inputs(2);
       const double squeeze = std::min(1e-3, 10 / k);
       // One side alone at first, so that the cube is pushed off its middle and rings.
       const int ticks = static_cast<int>(1000 * std::clamp(40 * std::sqrt(m / k), 1.0, 20.0));
       for (int i = 0; i < ticks; ++i) {
         for (int f = 0; f < 2; ++f) inputs[static_cast<std::size_t>(f)].p_WF = besideCube(f, f == 0 && i < 20 ? 1.2 * squeeze : squeeze);
-        grasp::step(model, state, scratch, inputs);
+        grasp::step(model, state, *scratch, inputs);
       }
       speed = std::max(speed, state.world.bodies[0].v_W.norm());
       place = std::max(place, state.world.bodies[0].X_WI.p.norm() / squeeze);
@@ -83,7 +83,7 @@ Cell handsOn(double stiffness, double mass, double rate, bool passive) {
   const grasp::GraspModel model = heldCube(stiffness, 0, mass, rate);
   const double h = model.world.options.h;
   grasp::GraspState state = grasp::makeState(model, {engine::BodyStart{}}, {besideCube(0, 0), besideCube(1, 0)});
-  grasp::GraspScratch scratch(model);
+  const grasp::ScratchHandle scratch = grasp::makeScratch(model);
   grasp::PassivityState ports(2);
   grasp::PassivityOptions options;
   std::array<HandOnArm, 2> hands;
@@ -108,8 +108,8 @@ Cell handsOn(double stiffness, double mass, double rate, bool passive) {
       inputs[i].p_WF = p[i] = hand.p_W;
     }
     cell.unforeseen = std::max(cell.unforeseen, unforeseen);
-    grasp::step(model, state, scratch, inputs);
-    for (std::size_t i = 0; i < 2; ++i) f[i] = scratch.fingers[i].f_user_W;
+    grasp::step(model, state, *scratch, inputs);
+    for (std::size_t i = 0; i < 2; ++i) f[i] = grasp::fingersOf(*scratch)[i].f_user_W;
     grasp::observePorts(options, p, grasp::storedEnergy(model, state), h, ports);
     grasp::controlPorts(options, h, ports, f);
     grasp::holdPorts(f, ports);

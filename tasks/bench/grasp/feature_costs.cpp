@@ -5,10 +5,10 @@
 #include <cmath>
 #include <memory>
 
-#include "contact/mesh/generated_meshes.h"
-#include "contact/surface/smooth_mesh.h"
-#include "grasp/passivity/energy_ledger.h"
-#include "grasp/passivity/passivity.h"
+#include "contact/generated_meshes.h"
+#include "contact/smooth_mesh.h"
+#include "grasp/energy_ledger.h"
+#include "grasp/passivity.h"
 #include "tasks/bench/grasp/bench_grasp.h"
 #include "tasks/bench/grasp/grasp_bench.h"
 #include "tasks/measure/timing.h"
@@ -39,7 +39,7 @@ class FeatureHand {
     model_ = grasp::buildGrasp(std::move(builder), fingers);
     state_ = grasp::makeState(model_, {engine::BodyStart{{Quat::Identity(), Vec3(0, 0, kFeatureHeight)}}, engine::BodyStart{}},
                               {device(0), device(1)});
-    scratch_ = std::make_unique<grasp::GraspScratch>(model_);
+    scratch_ = grasp::makeScratch(model_);
     passivity_.on = features.passive;
     run(2000);
   }
@@ -51,7 +51,7 @@ class FeatureHand {
  private:
   Vec3 device(int finger) const {
     const double phase = 0.01 * static_cast<double>(tick_), side = finger == 0 ? -1 : 1;
-    return {side * (kFeatureBall + kBenchTip - kFeatureSqueeze), 0, kFeatureHeight + 1e-3 * std::sin(phase)};
+    return {side * (kFeatureBall + kBenchTip - kFeatureSqueeze), 0, kFeatureHeight + 1e-3 * math::sin(phase)};
   }
 
   void tick() {
@@ -70,7 +70,7 @@ class FeatureHand {
     std::vector<Vec3>&p = places_, &f = forces_;
     for (std::size_t i = 0; i < 2; ++i) {
       p[i] = inputs_[i].p_WF;
-      f[i] = scratch_->fingers[i].f_user_W;
+      f[i] = grasp::fingersOf(*scratch_)[i].f_user_W;
     }
     grasp::observePorts(passivity_, p, grasp::storedEnergy(model_, state_), kGraspTick, ports);
     grasp::controlPorts(passivity_, kGraspTick, ports, f);
@@ -80,7 +80,7 @@ class FeatureHand {
   Features features_;
   grasp::GraspModel model_;
   grasp::GraspState state_;
-  std::unique_ptr<grasp::GraspScratch> scratch_;
+  grasp::ScratchHandle scratch_;
   std::vector<grasp::FingerInput> inputs_ = std::vector<grasp::FingerInput>(2);
   std::vector<Vec3> places_ = std::vector<Vec3>(2), forces_ = std::vector<Vec3>(2);
   grasp::PassivityOptions passivity_;
@@ -101,13 +101,13 @@ class FeatureMarbles {
     }
     model_ = builder.build();
     state_ = engine::makeState(model_, starts, {});
-    scratch_ = std::make_unique<engine::WorldScratch>(model_);
+    scratch_ = engine::makeScratch(model_);
   }
 
   void run(int ticks) {
     for (int k = 0; k < ticks; ++k) {
       const double phase = 0.01 * static_cast<double>(++tick_);
-      model_.options.gravity_W = Vec3(0.5 * std::sin(phase), 0.5 * std::cos(phase), -9.81);
+      model_.options.gravity_W = Vec3(0.5 * math::sin(phase), 0.5 * math::cos(phase), -9.81);
       engine::step(model_, state_, *scratch_);
     }
   }
@@ -115,7 +115,7 @@ class FeatureMarbles {
  private:
   engine::WorldModel model_;
   engine::WorldState state_;
-  std::unique_ptr<engine::WorldScratch> scratch_;
+  engine::ScratchHandle scratch_;
   std::int64_t tick_ = 0;
 };
 

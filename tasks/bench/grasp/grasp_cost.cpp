@@ -3,10 +3,11 @@
 
 #include <cmath>
 
-#include "contact/mesh/generated_meshes.h"
-#include "contact/surface/smooth_mesh.h"
-#include "grasp/passivity/energy_ledger.h"
-#include "grasp/passivity/passivity.h"
+#include "contact/generated_meshes.h"
+#include "contact/smooth_mesh.h"
+#include "grasp/baseline.h"
+#include "grasp/energy_ledger.h"
+#include "grasp/passivity.h"
 #include "tasks/bench/grasp/bench_grasp.h"
 #include "tasks/bench/grasp/grasp_bench.h"
 #include "tasks/measure/timing.h"
@@ -21,6 +22,7 @@ struct HeldBall {
   grasp::GraspState state;
   std::vector<grasp::FingerInput> inputs;
   std::vector<Vec3> around;
+  std::vector<grasp::FingerMethod> methods;
 };
 
 // `fingers` tips spread around a ball of 75 g over a floor, all moving a little all the time, so that no tick repeats the last one.
@@ -34,10 +36,9 @@ HeldBall heldBall(int fingers, const contact::Shape& shape, grasp::FingerMethod 
   std::vector<Vec3> devices;
   for (int i = 0; i < fingers; ++i) {
     const double a = 2 * M_PI * i / fingers;
-    held.around.push_back(Vec3(-std::cos(a), -std::sin(a), 0));
+    held.around.push_back(Vec3(-math::cos(a), -math::sin(a), 0));
     grasp::FingerModel finger = benchFinger("finger");
     finger.name = fmt::format("f{}", i);
-    finger.method = method;
     finger.shape = tip;
     models.push_back(finger);
     devices.push_back(Vec3(0, 0, 0.1) + (kCostBall + kBenchTip - 2e-3) * held.around.back());
@@ -45,6 +46,7 @@ HeldBall heldBall(int fingers, const contact::Shape& shape, grasp::FingerMethod 
   held.model = grasp::buildGrasp(std::move(builder), models);
   held.state = grasp::makeState(held.model, {engine::BodyStart{{Quat::Identity(), Vec3(0, 0, 0.1)}}, engine::BodyStart{}}, devices);
   held.inputs.resize(models.size());
+  held.methods.resize(models.size(), method);
   return held;
 }
 
@@ -56,17 +58,26 @@ std::vector<std::vector<grasp::FingerInput>> swayOf(const HeldBall& held) {
   for (std::size_t k = 0; k < kSwayTicks; ++k) {
     const double rate = 2 * M_PI / (kSwayTicks * kGraspTick), phase = rate * kGraspTick * static_cast<double>(k);
     for (std::size_t i = 0; i < held.inputs.size(); ++i) {
-      sway[k][i].p_WF = Vec3(0, 0, 0.1 + 1e-3 * std::sin(phase)) + (kCostBall + kBenchTip - 2e-3) * held.around[i];
-      sway[k][i].v_WF = Vec3(0, 0, 1e-3 * rate * std::cos(phase));
+      sway[k][i].p_WF = Vec3(0, 0, 0.1 + 1e-3 * math::sin(phase)) + (kCostBall + kBenchTip - 2e-3) * held.around[i];
+      sway[k][i].v_WF = Vec3(0, 0, 1e-3 * rate * math::cos(phase));
     }
   }
   return sway;
 }
 
 double medianTick(HeldBall held) {
-  grasp::GraspScratch scratch(held.model);
+  const grasp::ScratchHandle scratch = grasp::makeScratch(held.model);
+  grasp::BaselineFingers baselines(held.methods);
+  const bool is_ours = held.methods.front() == grasp::FingerMethod::kProxy;
   const std::vector<std::vector<grasp::FingerInput>> sway = swayOf(held);
-  const auto lead = [&](std::int64_t k) { grasp::step(held.model, held.state, scratch, sway[static_cast<std::size_t>(k) % kSwayTicks]); };
+  const auto lead = [&](std::int64_t k) {
+    const std::vector<grasp::FingerInput>& inputs = sway[static_cast<std::size_t>(k) % kSwayTicks];
+    if (is_ours) {
+      grasp::step(held.model, held.state, *scratch, inputs);
+    } else {
+      baselines.step(held.model, held.state, *scratch, inputs);
+    }
+  };
   return costOfCalls(lead, {.warm_up = 2000, .batches = 31, .calls_per_batch = 500, .single_calls = 0}).median / 1000;
 }
 
@@ -113,7 +124,7 @@ std::vector<Record> passivityCost(MeasureContext&) {
   options.on = true;
   std::vector<Vec3> p(2, Vec3::Zero()), f(2);
   const CallCost cost = costOfCalls([&](std::int64_t k) {
-    p[0].x() = 1e-3 * std::sin(0.01 * static_cast<double>(k));
+    p[0].x() = 1e-3 * math::sin(0.01 * static_cast<double>(k));
     f[0] = f[1] = Vec3(1, 0, 0);
     grasp::observePorts(options, p, grasp::storedEnergy(held.model, held.state), kGraspTick, ports);
     grasp::controlPorts(options, kGraspTick, ports, f);

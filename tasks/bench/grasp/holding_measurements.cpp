@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "contact/mesh/generated_meshes.h"
-#include "contact/surface/smooth_mesh.h"
+#include "contact/generated_meshes.h"
+#include "contact/smooth_mesh.h"
+#include "engine/world/scratch.h"
 #include "tasks/bench/finger_path.h"
 #include "tasks/bench/grasp/bench_grasp.h"
 #include "tasks/bench/grasp/grasp_bench.h"
@@ -26,7 +27,7 @@ struct RingGrasp {
     std::vector<Vec3> all;
     for (int i = 0; i < fingers; ++i) {
       const double a = 2 * M_PI * i / fingers;
-      all.push_back(Vec3(-std::cos(a), -std::sin(a), 0));
+      all.push_back(Vec3(-math::cos(a), -math::sin(a), 0));
     }
     return all;
   }
@@ -61,7 +62,7 @@ std::vector<Record> coneAndReaction(MeasureContext& context) {
       Random random(7);
       for (int k = 0; k < 2000 && !context.interrupted(); ++k) {
         for (int i = 0; i < fingers; ++i) {
-          const Vec3 wiggle = 2e-3 * Vec3(std::sin(0.031 * k + i), std::sin(0.047 * k + 2 * i), std::sin(0.023 * k + 3 * i));
+          const Vec3 wiggle = 2e-3 * Vec3(math::sin(0.031 * k + i), math::sin(0.047 * k + 2 * i), math::sin(0.023 * k + 3 * i));
           ring.grasp.leadFinger(
               i, (kBall + kBenchTip - 2e-3) * ring.around[static_cast<std::size_t>(i)] + wiggle + 1e-5 * randomDirection(random));
         }
@@ -90,11 +91,11 @@ std::vector<Record> twoContactsOnOneBody(MeasureContext&) {
   double momentum = 0;
   int both = 0;
   for (int k = 0; k < 600; ++k) {
-    grasp.leadFinger(0, Vec3(1e-3 * std::sin(0.05 * k), 0, 0.03 - 1e-4 * k));
+    grasp.leadFinger(0, Vec3(1e-3 * math::sin(0.05 * k), 0, 0.03 - 1e-4 * k));
     const Vec3 before = grasp.state.world.bodies[0].v_W;
     grasp.tick();
-    both += std::count_if(grasp.scratch.world.contacts.begin(), grasp.scratch.world.contacts.end(),
-                          [](const auto& c) { return c.active(); }) > 1;
+    const auto& contacts = grasp::worldOf(*grasp.scratch).contacts;
+    both += std::count_if(contacts.begin(), contacts.end(), [](const auto& c) { return c.active(); }) > 1;
     const Vec3 change = kMass * (grasp.state.world.bodies[0].v_W - before) / kGraspTick;
     momentum = std::max(momentum, (change + grasp.felt(0).f_contact_W).norm());
   }
@@ -190,7 +191,7 @@ NoisyHold holdInNoise(const contact::Shape& shape, double twist_stiffness, Measu
       mean += ring.grasp.body(0).p / kSecond;
       if (s == 0) continue;  // it settles
       bool slides = false;
-      for (const engine::Contact& c : ring.grasp.scratch.world.contacts) {
+      for (const engine::Contact& c : grasp::worldOf(*ring.grasp.scratch).contacts) {
         hold.slip = std::max(hold.slip, c.offset_C.head<2>().norm());
         slides = slides || c.sliding;
       }

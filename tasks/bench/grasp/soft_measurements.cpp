@@ -34,12 +34,12 @@ OnLimit slideAndTurn(const grasp::SoftPad& pad, double v, double w) {
   for (int k = 1; k <= 1500; ++k) {
     p.x() += v * kGraspTick;
     grasp.leadFinger(0, p);
-    grasp.inputs[0].q_WF = Quat(Eigen::AngleAxisd(w * kGraspTick * k, Vec3::UnitZ()));
+    grasp.inputs[0].q_WF = quatFromRotationVector({0, 0, w * kGraspTick * k});
     grasp.tick();
     if (k < 1000) continue;  // slides by then
     const grasp::FingerReport& f = grasp.felt(0);
     const double e = grasp::torsionRadius(pad, kBenchTip, f.normal_force), limit = kSoftMu * f.normal_force;
-    worst.surface = std::max(worst.surface, std::abs(std::hypot(f.tangential_force / limit, f.torsion / (e * limit)) - 1));
+    worst.surface = std::max(worst.surface, std::abs(math::hypot(f.tangential_force / limit, f.torsion / (e * limit)) - 1));
     if (v > 1e-6 && w > 1e-6) worst.flow = std::max(worst.flow, std::abs(std::abs(f.torsion) / f.tangential_force * v / (e * e * w) - 1));
   }
   return worst;
@@ -48,7 +48,7 @@ OnLimit slideAndTurn(const grasp::SoftPad& pad, double v, double w) {
 std::vector<Record> limitSurface(MeasureContext&) {
   OnLimit given, hertz;
   for (const double angle : {0.0, 0.4, 0.8, 1.2, M_PI / 2}) {
-    const double v = 0.02 * std::cos(angle), w = 6 * std::sin(angle);
+    const double v = 0.02 * math::cos(angle), w = 6 * math::sin(angle);
     const OnLimit a = slideAndTurn({.patch_radius = 5e-3}, v, w), b = slideAndTurn({.modulus = 1e5}, v, w);
     given = {std::max(given.surface, a.surface), std::max(given.flow, a.flow)};
     hertz = {std::max(hertz.surface, b.surface), std::max(hertz.flow, b.flow)};
@@ -69,7 +69,7 @@ std::vector<Record> twistOnset(MeasureContext&) {
   double stiffness = 0, onset = 0;
   for (int k = 1; k <= 60000 && !grasp.felt(0).sliding; ++k) {
     const double angle = 1e-6 * k;
-    grasp.inputs[0].q_WF = Quat(Eigen::AngleAxisd(angle, Vec3::UnitZ()));
+    grasp.inputs[0].q_WF = quatFromRotationVector({0, 0, angle});
     grasp.tick();
     onset = std::abs(grasp.felt(0).torsion) / (kSoftMu * grasp.felt(0).normal_force * 2.0 / 3 * pad.patch_radius);
     if (k == 10000) stiffness = std::abs(grasp.felt(0).torsion) / angle;
@@ -98,7 +98,7 @@ Rolled rollOver(double body_radius) {
   const auto device = [&](double t) -> Vec3 {
     if (body_radius <= 0) return {kSpin * kBenchTip * t, 0, kBenchTip - kDepth};
     const double a = around * t, R = body_radius + kBenchTip - kDepth;
-    return {R * std::sin(a), 0, R * std::cos(a)};
+    return {R * math::sin(a), 0, R * math::cos(a)};
   };
   BenchGrasp grasp(std::move(builder), {engine::BodyStart{}}, {benchFinger("rolling", 1000, 0)}, {device(0) + Vec3(0, 0, kDepth)});
   grasp.leadAll({device(0)}, 100);
@@ -108,7 +108,7 @@ Rolled rollOver(double body_radius) {
     // Eased in over 0.2 s: a jump of the speed would be felt.
     const double s = std::min(1.0, k / 200.0), t = kGraspTick * (k <= 200 ? 200 * (s * s * s - 0.5 * s * s * s * s) : k - 100);
     grasp.leadFinger(0, device(t));
-    grasp.inputs[0].q_WF = Quat(Eigen::AngleAxisd(kSpin * t, Vec3::UnitY()));
+    grasp.inputs[0].q_WF = quatFromRotationVector({0, kSpin * t, 0});
     grasp.tick();
     if (k < 400) continue;
     const grasp::FingerReport& f = grasp.felt(0);

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
+#include "contact/generated_meshes.h"
 #include "contact/mesh/connectivity.h"
-#include "contact/mesh/generated_meshes.h"
 #include "tests/support/constants.h"
 
 namespace pincer::contact {

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cstring>
 
-#include "contact/mesh/generated_meshes.h"
-#include "contact/mesh/mesh_reader.h"
-#include "contact/mesh/mesh_report.h"
+#include "contact/generated_meshes.h"
 #include "contact/mesh/mesh_writer.h"
+#include "contact/mesh_reader.h"
+#include "contact/mesh_report.h"
 #include "tests/support/effort.h"
 #include "tests/support/random_numbers.h"
 

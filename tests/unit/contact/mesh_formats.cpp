@@ -7,7 +7,7 @@
 #include <fstream>
 #include <limits>
 
-#include "contact/mesh/mesh_reader.h"
+#include "contact/mesh_reader.h"
 #include "tests/support/temporary_directory.h"
 
 namespace pincer::contact {

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "contact/mesh/lathe.h"
-#include "contact/mesh/mesh_report.h"
+#include "contact/mesh_report.h"
 #include "tests/support/error_of.h"
 
 namespace pincer::contact {

@@ -4,7 +4,7 @@
 #include <limits>
 #include <sstream>
 
-#include "contact/mesh/mesh_reader.h"
+#include "contact/mesh_reader.h"
 
 namespace pincer::contact {
 namespace {

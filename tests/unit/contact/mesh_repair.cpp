@@ -1,4 +1,4 @@
-#include "contact/mesh/mesh_repair.h"
+#include "contact/mesh_repair.h"
 
 #include <gtest/gtest.h>
 
@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <random>
 
-#include "contact/mesh/generated_meshes.h"
-#include "contact/mesh/mesh_reader.h"
-#include "contact/mesh/mesh_report.h"
+#include "contact/generated_meshes.h"
+#include "contact/mesh_reader.h"
+#include "contact/mesh_report.h"
 #include "tests/support/inside_out.h"
 
 namespace pincer::contact {

@@ -1,10 +1,10 @@
-#include "contact/mesh/mesh_report.h"
+#include "contact/mesh_report.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "contact/mesh/generated_meshes.h"
+#include "contact/generated_meshes.h"
 
 namespace pincer::contact {
 namespace {

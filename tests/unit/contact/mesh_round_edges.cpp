@@ -3,10 +3,10 @@
 #include <cmath>
 #include <functional>
 
-#include "contact/mesh/generated_meshes.h"
-#include "contact/mesh/mesh_report.h"
+#include "contact/generated_meshes.h"
 #include "contact/mesh/round_edges.h"
-#include "contact/surface/smooth_mesh.h"
+#include "contact/mesh_report.h"
+#include "contact/smooth_mesh.h"
 #include "contact/surface/surface_net.h"
 #include "tests/support/inside_out.h"
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "contact/mesh/generated_meshes.h"
-#include "contact/mesh/mesh_reader.h"
+#include "contact/generated_meshes.h"
+#include "contact/mesh_reader.h"
 #include "tests/support/temporary_directory.h"
 
 namespace pincer::contact {

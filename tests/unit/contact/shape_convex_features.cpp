@@ -4,9 +4,9 @@
 #include <random>
 
 #include "contact/error.h"
+#include "contact/polytope.h"
 #include "contact/shape/closed_forms.h"
 #include "contact/shape/convex_features.h"
-#include "contact/shape/polytope.h"
 #include "tests/support/random_numbers.h"
 #include "tests/support/random_poses.h"
 #include "tests/support/sampled_surface.h"

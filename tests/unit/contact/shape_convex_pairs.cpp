@@ -7,10 +7,11 @@
 #include <numbers>
 #include <set>
 
+#include "contact/pair_query.h"
+#include "contact/polytope.h"
 #include "contact/shape/closed_forms.h"
-#include "contact/shape/pair_query.h"
-#include "contact/shape/polytope.h"
 #include "contact/shape/separation.h"
+#include "contact/surface/patch_cache.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/constants.h"
 #include "tests/support/effort.h"

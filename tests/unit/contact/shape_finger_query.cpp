@@ -5,8 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "contact/shape/finger_query.h"
-#include "contact/shape/pair_query.h"
+#include "contact/finger_query.h"
+#include "contact/pair_query.h"
+#include "contact/surface/patch_cache.h"
 #include "tests/support/constants.h"
 #include "tests/support/sampled_surface.h"
 

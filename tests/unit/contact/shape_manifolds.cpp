@@ -5,12 +5,13 @@
 #include <cmath>
 #include <set>
 
-#include "contact/mesh/generated_meshes.h"
+#include "contact/generated_meshes.h"
+#include "contact/pair_query.h"
+#include "contact/polytope.h"
 #include "contact/shape/closed_forms.h"
 #include "contact/shape/contact_candidates.h"
-#include "contact/shape/pair_query.h"
-#include "contact/shape/polytope.h"
-#include "contact/surface/smooth_mesh.h"
+#include "contact/smooth_mesh.h"
+#include "contact/surface/patch_cache.h"
 #include "tasks/exact/convex_gap.h"
 #include "tests/support/constants.h"
 #include "tests/support/pairs.h"

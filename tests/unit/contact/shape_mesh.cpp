@@ -1,9 +1,10 @@
 // A mesh as a body: it stands on the corners of its hull, and fingertips and balls meet its surface.
 #include <gtest/gtest.h>
 
-#include "contact/shape/finger_query.h"
-#include "contact/shape/pair_query.h"
-#include "contact/surface/smooth_mesh.h"
+#include "contact/finger_query.h"
+#include "contact/pair_query.h"
+#include "contact/smooth_mesh.h"
+#include "contact/surface/patch_cache.h"
 #include "tests/support/pairs.h"
 
 namespace pincer::contact {

@@ -5,11 +5,12 @@
 #include <limits>
 #include <set>
 
-#include "contact/mesh/generated_meshes.h"
-#include "contact/shape/pair_query.h"
-#include "contact/shape/polytope.h"
+#include "contact/generated_meshes.h"
+#include "contact/pair_query.h"
+#include "contact/polytope.h"
 #include "contact/shape/separation.h"
-#include "contact/surface/smooth_mesh.h"
+#include "contact/smooth_mesh.h"
+#include "contact/surface/patch_cache.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/pairs.h"
 #include "tests/support/random_numbers.h"

@@ -5,9 +5,10 @@
 #include <set>
 #include <vector>
 
-#include "contact/mesh/generated_meshes.h"
-#include "contact/shape/pair_query.h"
-#include "contact/surface/smooth_mesh.h"
+#include "contact/generated_meshes.h"
+#include "contact/pair_query.h"
+#include "contact/smooth_mesh.h"
+#include "contact/surface/patch_cache.h"
 #include "tests/support/constants.h"
 #include "tests/support/pairs.h"
 

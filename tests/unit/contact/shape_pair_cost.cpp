@@ -4,10 +4,11 @@
 
 #include <chrono>
 
-#include "contact/mesh/generated_meshes.h"
-#include "contact/shape/pair_query.h"
+#include "contact/generated_meshes.h"
+#include "contact/pair_query.h"
 #include "contact/shape/separation.h"
-#include "contact/surface/smooth_mesh.h"
+#include "contact/smooth_mesh.h"
+#include "contact/surface/patch_cache.h"
 #include "tests/support/sampled_surface.h"
 
 namespace pincer::contact {

@@ -6,9 +6,9 @@
 #include <random>
 #include <vector>
 
+#include "contact/finger_query.h"
+#include "contact/pair_query.h"
 #include "contact/shape/convex_features.h"
-#include "contact/shape/finger_query.h"
-#include "contact/shape/pair_query.h"
 #include "tests/support/constants.h"
 #include "tests/support/effort.h"
 #include "tests/support/pairs.h"

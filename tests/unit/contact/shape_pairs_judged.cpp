@@ -2,9 +2,10 @@
 // any scale, begun anew or from the last answer.
 #include <gtest/gtest.h>
 
+#include "contact/pair_query.h"
 #include "contact/shape/convex_features.h"
-#include "contact/shape/pair_query.h"
 #include "contact/shape/separation.h"
+#include "contact/surface/patch_cache.h"
 #include "tasks/exact/convex_gap.h"
 #include "tests/support/effort.h"
 #include "tests/support/pairs.h"

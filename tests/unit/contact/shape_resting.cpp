@@ -7,11 +7,12 @@
 #include <set>
 #include <vector>
 
+#include "contact/pair_query.h"
 #include "contact/shape/direction.h"
 #include "contact/shape/extreme_points.h"
-#include "contact/shape/pair_query.h"
 #include "contact/shape/point_choice.h"
 #include "contact/shape/support.h"
+#include "contact/surface/patch_cache.h"
 #include "tests/support/constants.h"
 #include "tests/support/pairs.h"
 #include "tests/support/random_poses.h"

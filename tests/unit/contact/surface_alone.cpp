@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "contact/mesh/generated_meshes.h"
+#include "contact/generated_meshes.h"
 #include "contact/surface/near_parts.h"
 #include "contact/surface/shell_face.h"
 #include "contact/surface/surface_search.h"

@@ -3,10 +3,10 @@
 
 #include <filesystem>
 
-#include "contact/mesh/mesh_reader.h"
-#include "contact/mesh/mesh_report.h"
+#include "contact/mesh_reader.h"
+#include "contact/mesh_report.h"
+#include "contact/smooth_mesh.h"
 #include "contact/surface/shell_edge.h"
-#include "contact/surface/smooth_mesh.h"
 #include "tests/support/constants.h"
 
 namespace pincer::contact {

@@ -6,8 +6,9 @@
 
 #include <functional>
 
-#include "contact/mesh/generated_meshes.h"
-#include "contact/surface/smooth_mesh.h"
+#include "contact/generated_meshes.h"
+#include "contact/smooth_mesh.h"
+#include "contact/surface/patch_cache.h"
 #include "tests/support/constants.h"
 #include "tests/support/effort.h"
 #include "tests/support/notched_blocks.h"

@@ -1,8 +1,9 @@
 // Every answer of the query judged by brute force (tests/support/shell_oracle.h), on tame meshes and on hostile ones.
 #include <gtest/gtest.h>
 
-#include "contact/mesh/generated_meshes.h"
-#include "contact/surface/smooth_mesh.h"
+#include "contact/generated_meshes.h"
+#include "contact/smooth_mesh.h"
+#include "contact/surface/patch_cache.h"
 #include "tests/support/constants.h"
 #include "tests/support/effort.h"
 #include "tests/support/random_numbers.h"

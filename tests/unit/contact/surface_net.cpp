@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <set>
 
-#include "contact/mesh/generated_meshes.h"
-#include "contact/mesh/mesh_report.h"
+#include "contact/generated_meshes.h"
+#include "contact/mesh_report.h"
+#include "contact/smooth_mesh.h"
 #include "contact/surface/edge_cubic.h"
-#include "contact/surface/smooth_mesh.h"
 #include "tests/support/constants.h"
 
 namespace pincer::contact {

@@ -5,10 +5,10 @@
 #include <filesystem>
 #include <limits>
 
-#include "contact/mesh/generated_meshes.h"
-#include "contact/mesh/mesh_reader.h"
-#include "contact/mesh/mesh_report.h"
-#include "contact/surface/smooth_mesh.h"
+#include "contact/generated_meshes.h"
+#include "contact/mesh_reader.h"
+#include "contact/mesh_report.h"
+#include "contact/smooth_mesh.h"
 #include "contact/surface/surface_net.h"
 #include "tests/support/random_numbers.h"
 #include "tests/support/random_poses.h"

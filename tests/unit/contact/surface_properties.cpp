@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <numeric>
 
-#include "contact/mesh/generated_meshes.h"
-#include "contact/surface/smooth_mesh.h"
+#include "contact/generated_meshes.h"
+#include "contact/smooth_mesh.h"
+#include "contact/surface/patch_cache.h"
 #include "tests/support/constants.h"
 #include "tests/support/random_numbers.h"
 

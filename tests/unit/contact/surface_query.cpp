@@ -3,10 +3,11 @@
 #include <limits>
 #include <thread>
 
-#include "contact/mesh/generated_meshes.h"
-#include "contact/mesh/mesh_reader.h"
+#include "contact/generated_meshes.h"
 #include "contact/mesh/mesh_writer.h"
-#include "contact/surface/smooth_mesh.h"
+#include "contact/mesh_reader.h"
+#include "contact/smooth_mesh.h"
+#include "contact/surface/patch_cache.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/constants.h"
 #include "tests/support/touch.h"

@@ -6,7 +6,7 @@
 #include <map>
 #include <set>
 
-#include "contact/mesh/generated_meshes.h"
+#include "contact/generated_meshes.h"
 #include "contact/surface/outward_float.h"
 #include "tests/support/constants.h"
 #include "tests/support/random_numbers.h"

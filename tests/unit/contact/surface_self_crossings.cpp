@@ -3,7 +3,7 @@
 
 #include <Eigen/LU>
 
-#include "contact/mesh/generated_meshes.h"
+#include "contact/generated_meshes.h"
 #include "contact/surface/self_crossings.h"
 #include "tests/support/random_numbers.h"
 

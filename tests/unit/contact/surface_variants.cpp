@@ -2,8 +2,8 @@
 // how often the published iteration takes how long, and where it fails.
 #include <gtest/gtest.h>
 
-#include "contact/mesh/generated_meshes.h"
-#include "contact/surface/smooth_mesh.h"
+#include "contact/generated_meshes.h"
+#include "contact/smooth_mesh.h"
 #include "contact/surface/surface_net.h"
 #include "contact/surface/surface_variant.h"
 #include "tests/support/allocation_guard.h"

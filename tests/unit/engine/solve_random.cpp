@@ -103,7 +103,7 @@ void fillWithNaN(SolverScratch& s) {
                                       &s.step,
                                       &s.rhs,
                                       &s.response,
-                                      &s.interior,
+                                      &s.workspace,
                                       &s.shift_centre,
                                       &s.give,
                                       &s.local,

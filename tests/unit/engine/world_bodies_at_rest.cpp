@@ -1,11 +1,12 @@
 // Solids resting on each other stay at rest, and each contact carries the exact weight above it.
 #include <gtest/gtest.h>
 
-#include "contact/mesh/generated_meshes.h"
-#include "contact/shape/polytope.h"
-#include "contact/surface/smooth_mesh.h"
-#include "engine/world/state.h"
-#include "engine/world/step.h"
+#include "contact/generated_meshes.h"
+#include "contact/polytope.h"
+#include "contact/smooth_mesh.h"
+#include "engine/state.h"
+#include "engine/step.h"
+#include "engine/world/scratch.h"
 #include "tests/support/constants.h"
 
 namespace pincer::engine {

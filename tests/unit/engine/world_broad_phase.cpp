@@ -4,9 +4,10 @@
 #include <algorithm>
 #include <random>
 
+#include "engine/state.h"
+#include "engine/step.h"
 #include "engine/world/broad_phase.h"
-#include "engine/world/state.h"
-#include "engine/world/step.h"
+#include "engine/world/scratch.h"
 #include "tests/support/allocation_guard.h"
 
 namespace pincer::engine {

@@ -5,7 +5,7 @@
 
 #include "contact/error.h"
 #include "engine/solve/gauss_seidel.h"
-#include "engine/world/step.h"
+#include "engine/step.h"
 #include "tests/support/contact_problems.h"
 #include "tests/support/worlds.h"
 

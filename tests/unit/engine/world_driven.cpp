@@ -4,7 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/world/step.h"
+#include "engine/motion/driven_motion.h"
+#include "engine/step.h"
 #include "tests/support/constants.h"
 #include "tests/support/worlds.h"
 
@@ -49,6 +50,17 @@ TEST(DrivenBody, PlateThatAcceleratesRollsABallWithTwoSeventhsOfIt) {
   EXPECT_NEAR(world.state.bodies[1].X_WI.p.x(), 2.0 / 7 * 0.5 * a * 0.25, 1e-8);
   EXPECT_NEAR(world.state.bodies[1].v_W.x(), 2.0 / 7 * a * 0.5, 1e-8);
   EXPECT_NEAR(world.state.bodies[1].X_WI.p.z(), 0.01, 1e-9);
+}
+
+TEST(DrivenBody, TurnsWithoutAngularMomentum) {
+  Carried world(0.5);
+  const Vec3 w_W(0, 0, 3);
+  for (int i = 1; i <= 20; ++i) world.tick(moving(Vec3(0, 0, -0.01), Vec3::Zero(), 1e-3 * i * w_W, w_W));
+  EXPECT_EQ(world.state.bodies[0].L_W, Vec3::Zero());
+  EXPECT_EQ(bodyAngularVelocity(world.model, world.state, 0), w_W);
+  const std::uint64_t hash = hashOf(world.state);
+  world.state.driven_w_W[0].z() = 4;
+  EXPECT_NE(hashOf(world.state), hash);
 }
 
 // Beyond mu g 7/2 the ball slips: x'' = mu g.

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/world/step.h"
+#include "engine/step.h"
 #include "tests/support/worlds.h"
 
 namespace pincer::engine {

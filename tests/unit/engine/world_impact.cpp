@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "engine/world/step.h"
+#include "engine/step.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/constants.h"
 #include "tests/support/random_numbers.h"

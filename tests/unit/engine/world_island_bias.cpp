@@ -1,7 +1,7 @@
 // Loops of bodies whose gaps and stick offsets ask for what no motion gives.
 #include <gtest/gtest.h>
 
-#include "engine/world/step.h"
+#include "engine/step.h"
 #include "tests/support/worlds.h"
 
 namespace pincer::engine {

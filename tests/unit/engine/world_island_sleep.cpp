@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "engine/world/step.h"
+#include "engine/step.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/random_numbers.h"
 #include "tests/support/worlds.h"
@@ -81,6 +81,22 @@ TEST(IslandSleep, HasTheSameBitsAsWithoutSleep) {
   }
   EXPECT_GT(slept, 4000);  // body ticks
   EXPECT_GT(woken, 10);
+}
+
+// What outlives a tick beside the state is no cause.
+TEST(IslandSleep, ForgottenAtAnyTickChangesNoBit) {
+  int slept = 0;
+  for (int seed = 0; seed < 3; ++seed) {
+    SleepWorld forgets = stacksAndBalls(seed, true, 1), remembers = stacksAndBalls(seed, true, 1);
+    for (int tick = 0; tick < 700; ++tick) {
+      slept += forgets.scratch.sleep.bodies;
+      if (tick % 61 == 60) forgets.scratch.sleep = WorldSleep(forgets.model);
+      forgets.tick();
+      remembers.tick();
+      ASSERT_EQ(hashOf(forgets.state), hashOf(remembers.state)) << "seed " << seed << ", tick " << tick;
+    }
+  }
+  EXPECT_GT(slept, 1000);  // body ticks
 }
 
 TEST(IslandSleep, AllocatesNothing) {

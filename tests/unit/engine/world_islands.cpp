@@ -3,8 +3,9 @@
 
 #include <vector>
 
-#include "engine/world/state.h"
-#include "engine/world/step.h"
+#include "engine/state.h"
+#include "engine/step.h"
+#include "engine/world/scratch.h"
 #include "tests/support/allocation_guard.h"
 
 namespace pincer::engine {

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
+#include "engine/step.h"
 #include "engine/world/scratch.h"
-#include "engine/world/step.h"
 #include "tests/support/constants.h"
 #include "tests/support/worlds.h"
 

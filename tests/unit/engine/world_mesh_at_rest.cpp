@@ -5,12 +5,14 @@
 #include <filesystem>
 #include <string>
 
-#include "contact/mesh/generated_meshes.h"
-#include "contact/mesh/mesh_reader.h"
-#include "contact/mesh/mesh_report.h"
-#include "contact/surface/smooth_mesh.h"
-#include "engine/world/state.h"
-#include "engine/world/step.h"
+#include "contact/generated_meshes.h"
+#include "contact/mesh_reader.h"
+#include "contact/mesh_report.h"
+#include "contact/smooth_mesh.h"
+#include "engine/motion/mass.h"
+#include "engine/state.h"
+#include "engine/step.h"
+#include "engine/world/scratch.h"
 
 namespace pincer::engine {
 namespace {

@@ -1,11 +1,12 @@
 // Bodies over the rim of a table that is a mesh, however its top is cut: they stand while their centre of mass is over it, and tip otherwise.
 #include <gtest/gtest.h>
 
-#include "contact/mesh/generated_meshes.h"
-#include "contact/shape/polytope.h"
-#include "contact/surface/smooth_mesh.h"
-#include "engine/world/state.h"
-#include "engine/world/step.h"
+#include "contact/generated_meshes.h"
+#include "contact/polytope.h"
+#include "contact/smooth_mesh.h"
+#include "engine/state.h"
+#include "engine/step.h"
+#include "engine/world/scratch.h"
 #include "tests/support/constants.h"
 
 namespace pincer::engine {

@@ -3,9 +3,10 @@
 
 #include <cmath>
 
+#include "engine/step.h"
 #include "engine/world/contact_rows.h"
 #include "engine/world/push_out.h"
-#include "engine/world/step.h"
+#include "engine/world/stages.h"
 #include "tests/support/worlds.h"
 
 namespace pincer::engine {

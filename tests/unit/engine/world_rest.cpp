@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "engine/world/step.h"
+#include "engine/step.h"
 #include "tests/support/worlds.h"
 
 namespace pincer::engine {

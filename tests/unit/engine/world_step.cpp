@@ -4,9 +4,10 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/world/step.h"
+#include "engine/step.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/constants.h"
+#include "tests/support/error_of.h"
 #include "tests/support/worlds.h"
 
 namespace pincer::engine {
@@ -21,6 +22,14 @@ WorldModel ballOverTable(double mu = 0.5) {
   builder.addBody({"table", contact::HalfSpace{}, false, 0, material});
   builder.addBody({"ball", contact::Sphere{0.02}, true, 0.1, material});
   return builder.build();
+}
+
+// Contacts are told apart by 15 bits of their bodies' numbers: one body more would share the ids, and the memory, of the first.
+TEST(WorldStep, MoreBodiesThanContactsCanTellApartAreRefused) {
+  WorldBuilder builder{WorldOptions{}};
+  for (int i = 0; i < 32768; ++i) builder.addBody({"post", contact::Sphere{0.01}, false, 0, {}});
+  const std::string error = tests::errorOf([&] { builder.addBody({"one more", contact::Sphere{0.01}, false, 0, {}}); });
+  EXPECT_EQ(error, "body \"one more\": the world has 32768 bodies already, the most that its contacts can tell apart. Use several worlds.");
 }
 
 TEST(WorldStep, LoneBodyFollowsItsParabolaExactly) {

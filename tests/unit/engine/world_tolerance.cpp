@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/world/step.h"
+#include "engine/step.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/constants.h"
 #include "tests/support/worlds.h"

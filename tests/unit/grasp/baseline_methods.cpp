@@ -4,7 +4,9 @@
 #include <array>
 #include <cmath>
 
+#include "grasp/baseline.h"
 #include "grasp/baseline/nearest_outside.h"
+#include "grasp/tick/scratch.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/random_poses.h"
 #include "tests/support/worlds.h"
@@ -12,30 +14,27 @@
 namespace pincer::grasp {
 namespace {
 
-FingerModel rendered(FingerMethod method) {
-  FingerModel finger = tests::softFinger("finger", 1000, 0);
-  finger.method = method;
-  return finger;
-}
-
 struct OnPlate {
   GraspModel model;
   GraspState state;
   GraspScratch scratch;
+  BaselineFingers fingers;
   std::vector<FingerInput> input = std::vector<FingerInput>(1);
 
-  static GraspModel make(FingerMethod method, double mu_s, double mu_d) {
+  static GraspModel make(double mu_s, double mu_d) {
     engine::WorldBuilder builder{engine::WorldOptions{}};
     builder.addBody({"plate", contact::HalfSpace{}, false, 0, {mu_s, mu_d, 0, 0}});
-    return buildGrasp(builder, {rendered(method)});
+    return buildGrasp(builder, {tests::softFinger("finger", 1000, 0)});
   }
   OnPlate(FingerMethod method, double mu_s, double mu_d)
-      : model(make(method, mu_s, mu_d)), state(makeState(model, {tests::startAt(Vec3::Zero())}, {Vec3(0, 0, 8e-3)})), scratch(model) {}
+      : model(make(mu_s, mu_d)),
+        state(makeState(model, {tests::startAt(Vec3::Zero())}, {Vec3(0, 0, 8e-3)})),
+        scratch(model),
+        fingers({method}) {}
   const FingerReport& lead(const Vec3& p) {
     input[0].v_WF = (p - input[0].p_WF) / 1e-3;
     input[0].p_WF = p;
-    step(model, state, scratch, input);
-    return scratch.fingers[0];
+    return fingers.step(model, state, scratch, input).fingers[0];
   }
 };
 
@@ -98,12 +97,12 @@ TEST(Baselines, ActOnBodies) {
   for (const FingerMethod method : {FingerMethod::kGodObject, FingerMethod::kForceShading, FingerMethod::kPenalty}) {
     tests::GraspWorld w = tests::pinchedBall(0.075, 0.6);
     w.model.world.options.gravity_W.setZero();
-    for (FingerModel& f : w.model.fingers) f.method = method;
+    BaselineFingers fingers({method, method});
     GraspScratch scratch(w.model);
     auto inputs = tests::squeezing(2e-3);
     for (int i = 0; i < 200; ++i) {
       const Vec3 before = w.state.world.bodies[0].v_W;
-      step(w.model, w.state, scratch, inputs);
+      fingers.step(w.model, w.state, scratch, inputs);
       const Vec3 change = 0.075 * (w.state.world.bodies[0].v_W - before) / 1e-3;
       EXPECT_LT((change + scratch.fingers[0].f_contact_W + scratch.fingers[1].f_contact_W).norm(), 1e-9);
     }

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <complex>
 
-#include "grasp/coupling/hold_bounds.h"
+#include "grasp/hold_bounds.h"
 #include "tests/support/constants.h"
 
 namespace pincer::grasp {

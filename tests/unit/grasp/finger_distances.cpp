@@ -1,7 +1,8 @@
 // How far fingers are from bodies, and where the two are nearest.
 #include <gtest/gtest.h>
 
-#include "grasp/quality/finger_distance.h"
+#include "grasp/finger_distance.h"
+#include "grasp/tick/scratch.h"
 #include "tests/support/worlds.h"
 
 namespace pincer::grasp {

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "grasp/tick/scratch.h"
 #include "tests/support/worlds.h"
 
 namespace pincer::grasp {

@@ -4,11 +4,12 @@
 #include <algorithm>
 #include <array>
 
-#include "contact/mesh/generated_meshes.h"
+#include "contact/finger_query.h"
+#include "contact/generated_meshes.h"
+#include "contact/polytope.h"
 #include "contact/shape/closed_forms.h"
-#include "contact/shape/finger_query.h"
-#include "contact/shape/polytope.h"
-#include "contact/surface/smooth_mesh.h"
+#include "contact/smooth_mesh.h"
+#include "grasp/tick/scratch.h"
 #include "tests/support/constants.h"
 #include "tests/support/effort.h"
 #include "tests/support/error_of.h"

@@ -1,6 +1,7 @@
 // A held object sleeps, with what the fingers feel unchanged, and wakes when a finger or its force moves.
 #include <gtest/gtest.h>
 
+#include "grasp/tick/scratch.h"
 #include "tests/support/worlds.h"
 
 namespace pincer::grasp {

@@ -4,9 +4,10 @@
 #include <cmath>
 #include <memory>
 
-#include "contact/mesh/generated_meshes.h"
-#include "contact/surface/smooth_mesh.h"
+#include "contact/generated_meshes.h"
+#include "contact/smooth_mesh.h"
 #include "grasp/step.h"
+#include "grasp/tick/scratch.h"
 #include "tests/support/notched_blocks.h"
 #include "tests/support/worlds.h"
 

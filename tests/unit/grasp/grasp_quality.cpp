@@ -1,11 +1,13 @@
 // Quality of a grasp against closed forms, and against the support function searched at random.
-#include "grasp/quality/grasp_quality.h"
+#include "grasp/grasp_quality.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
+#include "grasp/quality/wrench_set.h"
+#include "grasp/tick/scratch.h"
 #include "tests/support/constants.h"
 #include "tests/support/random_poses.h"
 #include "tests/support/worlds.h"

@@ -4,8 +4,9 @@
 #include <cmath>
 #include <vector>
 
-#include "grasp/passivity/energy_ledger.h"
-#include "grasp/passivity/passivity.h"
+#include "grasp/energy_ledger.h"
+#include "grasp/passivity.h"
+#include "grasp/tick/scratch.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/error_of.h"
 #include "tests/support/random_numbers.h"

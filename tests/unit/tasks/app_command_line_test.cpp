@@ -181,7 +181,7 @@ TEST(MeshCommand, MeasuresATetrahedron) {
 
 // In a process of its own, for the flag stays up.
 [[noreturn]] void interruptARun() {
-  interruptFlag();
+  handleSignals();
   std::raise(SIGINT);
   std::string program = "pincer", command = "sim", scene = kScenes + "s4_pinch.json";
   std::array<char*, 3> argv = {program.data(), command.data(), scene.data()};

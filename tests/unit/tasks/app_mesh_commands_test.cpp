@@ -9,10 +9,10 @@
 #include <set>
 #include <sstream>
 
-#include "contact/mesh/generated_meshes.h"
-#include "contact/mesh/mesh_reader.h"
-#include "contact/mesh/mesh_report.h"
+#include "contact/generated_meshes.h"
 #include "contact/mesh/mesh_writer.h"
+#include "contact/mesh_reader.h"
+#include "contact/mesh_report.h"
 #include "tasks/app/app.h"
 #include "tasks/scene/strict_json.h"
 #include "tests/support/run_app.h"

@@ -4,9 +4,10 @@
 #include <filesystem>
 #include <fstream>
 
-#include "contact/shape/finger_query.h"
+#include "contact/finger_query.h"
+#include "contact/smooth_mesh.h"
 #include "contact/surface/patch_cache.h"
-#include "contact/surface/smooth_mesh.h"
+#include "grasp/baseline.h"
 #include "tasks/scene/scene.h"
 #include "tasks/scene/scene_keys.h"
 #include "tasks/scene/strict_json.h"
@@ -269,7 +270,7 @@ TEST(SceneFingers, TipsPadsAndCouplingsAreRead) {
   EXPECT_EQ(f.coupling.stiffness, Vec3(800, 800, 2000));
   EXPECT_EQ(f.coupling.twist_stiffness, 0.3);
   EXPECT_EQ(f.pad.modulus, 1e5);
-  EXPECT_EQ(f.method, grasp::FingerMethod::kPenalty);
+  EXPECT_EQ(scene.fingers.front().method, grasp::FingerMethod::kPenalty);
   EXPECT_EQ(f.arm->damping, 0.4);
   EXPECT_EQ(scene.fingers.front().turn.at(0.5).p_W, Vec3(0, 0.5, 0));
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <new>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -40,7 +41,7 @@ class Cycle final : public ServoCycle {
 
 ServoOptions realTime() {
   ServoOptions options;
-  options.real_time = true;
+  options.clock = ServoClock::kReal;
   options.watchdog = 10;  // s: only the tests of the watchdog want to meet it
   return options;
 }
@@ -149,6 +150,52 @@ TEST(ServoRealTime, SkipsTicksWhoseTimeHasPassedAndCountsThem) {
   ASSERT_GE(cycle.times.size(), 2u);
   EXPECT_GE(cycle.times[1], 0.020);
   for (std::size_t k = 1; k < cycle.times.size(); ++k) EXPECT_GT(cycle.times[k], cycle.times[k - 1]);
+}
+
+// A busy machine took the time of a simulated session's ticks, and its watchdog ended the trial.
+TEST(ServoPaced, LosesNoTickToAStallAndWatchesNobody) {
+  ServoOptions options;
+  options.clock = ServoClock::kPaced;
+  options.watchdog = 1e-3;
+  Cycle cycle([n = 0](double) mutable {
+    if (n % 10 == 5) sleepFor(30);
+    return ++n < 40;
+  });
+  const ServoReport report = runServo(options, cycle, kNeverStop);
+  ASSERT_EQ(cycle.times.size(), 40u);
+  for (std::size_t k = 0; k < cycle.times.size(); ++k) ASSERT_EQ(cycle.times[k], static_cast<double>(k) / 1000);  // to the bit
+  EXPECT_EQ(cycle.cuts, 0);
+  EXPECT_FALSE(report.watchdog_tripped);
+  EXPECT_GE(report.missed, 4 * 29);
+  EXPECT_GE(report.wall, 0.039 + 4 * 0.029);
+  EXPECT_EQ(report.lateness.count(), report.ticks);
+}
+
+TEST(ServoPaced, BeginsNoTickEarly) {
+  ServoOptions options;
+  options.clock = ServoClock::kPaced;
+  const auto start = std::chrono::steady_clock::now();
+  Cycle cycle([&](double now) {
+    EXPECT_GE(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), now);
+    return now < 0.05;
+  });
+  runServo(options, cycle, kNeverStop);
+}
+
+TEST(ServoReport, ThatCanNotBeShownEndsNothing) {
+  ServoOptions options = realTime();
+  options.watchdog = 0.02;
+  std::atomic<int> shown{0};
+  options.show = [&](const ServoReport&) {
+    ++shown;
+    throw std::bad_alloc();
+  };
+  Cycle cycle([&](double now) {
+    if (now > 0.005 && shown == 0) requestServoReport();
+    return shown == 0 && now < 20;
+  });
+  EXPECT_FALSE(runServo(options, cycle, kNeverStop).watchdog_tripped);
+  EXPECT_EQ(shown, 1);
 }
 
 TEST(ServoRealTime, StopsWhenAnotherThreadInterrupts) {

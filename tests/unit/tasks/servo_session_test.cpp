@@ -10,6 +10,7 @@
 #include "contact/error.h"
 #include "tasks/app/manipulation_session.h"
 #include "tasks/app/servo_text.h"
+#include "tasks/servo/paced_cycle.h"
 #include "tasks/session/session_store.h"
 #include "tests/support/session_samples.h"
 #include "tests/support/temporary_directory.h"
@@ -114,8 +115,7 @@ TEST(PickupSession, IsCompleteWhenTheInterruptComesAfterTheLastTrial) {
 TEST(PickupSession, AccountsForTheTicksOfAnInterruptedTrialInRealTime) {
   const tests::TemporaryDirectory directory;
   ManipulationSessionOptions options = shortStudy();
-  options.servo.real_time = true;
-  options.servo.watchdog = 10;
+  options.servo.clock = ServoClock::kPaced;
   std::atomic<bool> interrupted{false};
   std::thread operator_thread([&] {
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
@@ -126,6 +126,61 @@ TEST(PickupSession, AccountsForTheTicksOfAnInterruptedTrialInRealTime) {
   EXPECT_TRUE(result.interrupted);
   EXPECT_GT(result.servo.ticks, 0);
   EXPECT_EQ(result.servo.lateness.count(), result.servo.ticks);
+  EXPECT_EQ(SessionReader(directory / "s.db").state(), "aborted: interrupted by the user");
+}
+
+// A machine that is busy with much else.
+class StallingCycle final : public ServoCycle {
+ public:
+  explicit StallingCycle(ServoCycle& inner) : inner_(inner) {}
+  bool tick(double now) override {
+    if (++ticks_ % 500 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(25));
+    return inner_.tick(now);
+  }
+  void cutForces() noexcept override { inner_.cutForces(); }
+
+ private:
+  ServoCycle& inner_;
+  int ticks_ = 0;
+};
+
+// The trial was lost: "The servo loop stalled for 25 ms (limit 5)".
+TEST(WatchedSession, IsTheSameToTheBitOnABusyMachine) {
+  const tests::TemporaryDirectory directory;
+  ManipulationSessionOptions options = shortStudy();
+  options.sample_rate = 1000;
+  runManipulationSession(options, directory / "alone.db", kNever, {});
+  options.servo.clock = ServoClock::kPaced;
+  options.host.serve = [&](HandsCycle& cycle, std::size_t, std::size_t) {
+    StallingCycle stalling(cycle);
+    PaceControl pace;
+    PacedCycle paced(stalling, pace, options.servo.rate);  // as the window has it (tasks/app/view_run.cpp)
+    return runServo(options.servo, paced, kNever);
+  };
+  const ManipulationSessionResult result = runManipulationSession(options, directory / "watched.db", kNever, {});
+  EXPECT_FALSE(result.servo.watchdog_tripped);
+  EXPECT_GT(result.servo.missed, 24);
+  const SessionReader alone(directory / "alone.db"), watched(directory / "watched.db");
+  const std::vector<SampleRecord> a = samplesOf(alone), b = samplesOf(watched);
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    ASSERT_EQ(a[k].time, b[k].time);
+    ASSERT_EQ(a[k].status, b[k].status);
+    ASSERT_EQ(a[k].p_WB, b[k].p_WB);
+    for (std::size_t i = 0; i < a[k].fingers.size(); ++i) ASSERT_EQ(a[k].fingers[i].f_arm_D, b[k].fingers[i].f_arm_D);
+  }
+  EXPECT_EQ(watched.samplesDropped(), 0);
+  ASSERT_EQ(watched.trials().size(), 1u);
+  EXPECT_EQ(watched.trials()[0].outcome, alone.trials()[0].outcome);
+  EXPECT_EQ(watched.trials()[0].duration, alone.trials()[0].duration);
+}
+
+// The operator ended the session; it was "complete", and couldn't be gone on with.
+TEST(RefusedSession, IsNotComplete) {
+  const tests::TemporaryDirectory directory;
+  ManipulationSessionOptions options = shortStudy();
+  options.host.arm = [](const std::string&) { return false; };
+  EXPECT_TRUE(runManipulationSession(options, directory / "s.db", kNever, {}).interrupted);
   EXPECT_EQ(SessionReader(directory / "s.db").state(), "aborted: interrupted by the user");
 }
 

@@ -58,7 +58,7 @@ TEST(Snapshot, HoldsWhatTheTickKnowsAndAllocatesNothing) {
     const ContactSnapshot& contact = seen.contacts[static_cast<std::size_t>(i)];
     if (contact.finger >= 0) held -= contact.f_W;
   }
-  const Vec3 of_fingers = simulation.scratch().fingers[0].f_contact_W + simulation.scratch().fingers[1].f_contact_W;
+  const Vec3 of_fingers = simulation.fingers()[0].f_contact_W + simulation.fingers()[1].f_contact_W;
   EXPECT_LT((held + of_fingers).norm(), 1e-12);  // the same numbers, summed in the same order but for one
 }
 

@@ -1,6 +1,7 @@
 // What the servo steps may be solved on several threads. The name puts it among the tests that run under the thread sanitizer (tests/run).
 #include <gtest/gtest.h>
 
+#include "engine/world/scratch.h"
 #include "tasks/scene/simulation.h"
 
 namespace pincer::tasks {
@@ -27,7 +28,7 @@ TEST(ServoThreads, SolveIslandsToTheSameBitsAsOne) {
   while (one.ticks() < one.scene().ticks()) {
     one.tick();
     two.tick();
-    most_islands = std::max(most_islands, two.scratch().world.islands.islands.size());
+    most_islands = std::max(most_islands, grasp::worldOf(two.scratch()).islands.islands.size());
     ASSERT_EQ(engine::hashOf(one.state().world), engine::hashOf(two.state().world)) << "tick " << one.ticks();
   }
   EXPECT_GE(most_islands, 6U);  // or the threads had nothing to share

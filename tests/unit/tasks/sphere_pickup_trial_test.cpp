@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "contact/surface/patch_cache.h"
 #include "tasks/experiments/manipulation_study.h"
 #include "tasks/experiments/pickup_trial.h"
 #include "tasks/experiments/simulated_trial.h"

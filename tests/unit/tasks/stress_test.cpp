@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/world/scratch.h"
 #include "tasks/stress/checks.h"
 
 namespace pincer::tasks {

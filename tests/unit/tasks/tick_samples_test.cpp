@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-#include "engine/world/state.h"
+#include "engine/state.h"
 #include "tasks/servo/tick.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/constants.h"
@@ -156,7 +156,7 @@ TEST(Tick, PlacesTheProxyWhereTheFirstValidSampleIs) {
   EXPECT_TRUE(rig.state.mounts[0].seen);
   // A jump of 0.3 m, yet no pull (coupling: 1000 N/m) and no speed. Rounding of X_WD and its inverse: a few ulp of 1 m.
   EXPECT_LE((rig.state.grasp.world.points[0].p_W - p_WF).norm(), 1e-15);
-  EXPECT_LE(rig.scratch.grasp.fingers[0].f_user_W.norm(), 1e-12);
+  EXPECT_LE(rig.scratch.fingers[0].f_user_W.norm(), 1e-12);
   EXPECT_EQ(rig.state.mounts[0].v_WF, Vec3::Zero());
 }
 
@@ -165,12 +165,12 @@ TEST(Tick, RendersTheFingersForceInTheArmsFrame) {
   for (FingerMount& mount : rig.model.mounts) mount.gate.slew = 1e6;  // the gate stands wide open
   rig.run(200);
   for (std::size_t i = 0; i < 2; ++i) {
-    const Vec3 f_W = rig.scratch.grasp.fingers[i].f_user_W;
+    const Vec3 f_W = rig.scratch.fingers[i].f_user_W;
     EXPECT_GT(f_W.norm(), 0.5);
     EXPECT_LE((rig.model.mounts[i].X_WD.q * rig.force(i) - f_W).norm(), 1e-14 * f_W.norm());  // two rotations' rounding
   }
-  EXPECT_LT(rig.scratch.grasp.fingers[0].f_user_W.x(), -0.5);  // out of the ball
-  EXPECT_GT(rig.scratch.grasp.fingers[1].f_user_W.x(), 0.5);
+  EXPECT_LT(rig.scratch.fingers[0].f_user_W.x(), -0.5);  // out of the ball
+  EXPECT_GT(rig.scratch.fingers[1].f_user_W.x(), 0.5);
 }
 
 // First-order low-pass of a measured velocity that jumps to v: after n ticks v (1 - exp(-2 pi f n dt)).

@@ -3,8 +3,9 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "contact/mesh/generated_meshes.h"
-#include "contact/surface/smooth_mesh.h"
+#include "contact/generated_meshes.h"
+#include "contact/smooth_mesh.h"
+#include "grasp/tick/scratch.h"
 #include "tasks/view/viewer.h"
 
 namespace pincer::tasks {

@@ -1,0 +1,179 @@
+// model: what a world is made of. Built once by WorldBuilder, checked once, then constant; many states may step one model in parallel.
+//
+// Frames: B as the shape's author chose it; I the body's inertial frame, at its centre of mass, axes principal. Dynamics works in I,
+// people read B (bodyPose, state.h).
+#pragma once
+#include <array>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "contact/error.h"
+#include "contact/shape.h"
+#include "engine/motion.h"
+#include "engine/solver.h"
+
+namespace pincer::engine {
+
+// Surface of a body. Between two bodies: friction and restitution are the geometric means, torsion and rolling radius the larger ones.
+// A finger takes the body's values: skin on plastic is a property of the pair.
+struct Material {
+  double mu_s = 0.5;          // static friction [-], >= 0
+  double mu_d = 0.5;          // dynamic friction [-], 0 <= mu_d <= mu_s
+  double restitution = 0;     // of the normal velocity [-], 0 .. 1
+  double torsion_radius = 0;  // e_t [m]: the contact carries a torsional moment up to e_t mu f_n; 0 for a point contact
+  double rolling_radius = 0;  // e_r [m]: and one that resists rolling, up to e_r mu f_n. All share one cone (docs/engine.md)
+  double stribeck_speed = 0;  // v_s [m/s]: what slides at speed v has mu_d + (mu_s - mu_d) exp(-(v/v_s)^2); 0: mu_d at any speed
+};
+
+// The number of rows that the solver sees of a contact: 3 rows, with torsion 4, with rolling 6.
+inline int rowsOf(const Material& m) { return m.rolling_radius > 0 ? kMaxContactRows : m.torsion_radius > 0 ? kRollingRow : kTorsionRow; }
+
+struct BodyModel {
+  std::string name;
+  contact::Shape shape;
+  bool dynamic = true;           // false: never moves, or is driven
+  bool driven = false;           // follows the motion that the caller gives, whatever touches it
+  int motion = -1;               // of driven bodies: which of the inputs
+  double mass = 0;               // [kg]; 0 for static and driven bodies
+  double inverse_mass = 0;       // [1/kg]
+  double root_inverse_mass = 0;  // its root
+  Vec3 moments = Vec3::Zero();   // principal moments of inertia [kg m^2]
+  Pose X_BI;                     // inertial frame in B; identity for static and driven bodies
+  Pose X_IB;
+  bool body_is_inertial = true;  // X_IB is the identity
+  FreeRotation rotation;
+  Material material;
+  double bounding_radius = 0;  // about the centre of mass [m]; infinite for half-spaces
+  double inner_radius = 0;     // about half its least thickness [m]; infinite for half-spaces and dishes
+  double corner_reach = 0;     // how much further than that it reaches; 0 where turning doesn't change its outline [m]
+  bool may_be_hollow = false;  // its surface may curve inwards: a mesh, a dish
+  int joint_group = -1;        // that binds it to others or to the world, -1: none
+  bool may_touch = false;      // some pair or point can touch it; the others move in closed form alone
+};
+
+// A point that a spring and a damper pull towards a moving target, along each world axis on its own: a fingertip, or a probe.
+//
+//   m a = -k (p - p_target) - d (v - v_target) + f + contact forces
+//
+// mass 0 gives Colgate's virtual coupling (a massless tip behind a spring-damper); an axis may be locked to the target.
+// Source: J. E. Colgate, M. C. Stanley, J. M. Brown, "Issues in the haptic display of tool use", IROS 1995, 140-145.
+struct DrivenPointModel {
+  std::string name;
+  double mass = 0;                        // [kg], >= 0
+  Vec3 stiffness = Vec3::Constant(1000);  // k [N/m], >= 0; mass + stiffness must be positive on every free axis
+  Vec3 damping = Vec3::Constant(5);       // d [N s/m], >= 0
+  // Turns about the contact normal against its own spring: k_tau [N m/rad], d_tau [N m s/rad], both >= 0; both 0: it turns as it is told.
+  double twist_stiffness = 0, twist_damping = 0;
+  Eigen::Array<bool, 3, 1> locked = Eigen::Array<bool, 3, 1>::Constant(false);  // this axis follows its target exactly
+};
+
+// How the spring-damper of one axis is integrated, chosen once by the builder.
+enum class AxisForm : unsigned char {
+  kLocked,       // follows its target
+  kFourthOrder,  // Fox-Goodwin quadrature of the spring: 4th order in the tick where the coupling is soft for the proxy's mass
+  kImplicit,     // force at the end of the tick: stable for any stiffness and for massless proxies, 1st order
+};
+
+// Friction coefficient of what slides at `speed` [m/s]. Source: R. Stribeck, Z. VDI 46 (1902); the exponential form after B. Armstrong-Helouvry,
+// P. Dupont, C. Canudas de Wit, Automatica 30 (1994) 1083-1138, eq. (5), with the exponent 2.
+double slidingFriction(const Material& m, double speed);
+
+// A pair of bodies that may touch: all that is constant about it.
+struct PairModel {
+  int a = 0, b = 0;   // bodies, a < b
+  Material material;  // combined
+};
+
+// What a joint leaves free, in its frame J.
+enum class JointKind : unsigned char {
+  kPivot,   // a turns about J's z axis
+  kSlider,  // a slides along J's z axis
+  kBall,    // a turns about J's origin
+  kWeld,    // nothing
+};
+struct JointModel {
+  JointKind kind = JointKind::kPivot;
+  int a = 0, b = -1;   // bodies; b = -1: the world. a is dynamic
+  Pose X_AJ, X_BJ;     // J in the two inertial frames (in W for the world); as given to the builder: in the bodies' own frames
+  double damping = 0;  // of the free axis [N m s/rad] or [N s/m], >= 0
+};
+// Joints that share moving bodies, joints[first] .. joints[first + count - 1].
+struct JointGroup {
+  int first = 0, count = 0;
+  std::vector<int> bodies;  // ascending; static and driven ones don't count
+  bool may_touch = false;   // something can touch one of them
+  // One body that one pivot or slider holds to what never moves (held_body.h):
+  bool is_held_body = false;
+  Vec3 axis_A = Vec3::UnitZ();  // of the joint in the body's inertial frame
+  double inertia = 0;           // about the pivot's axis [kg m^2], or the mass [kg]
+};
+constexpr int kMostGroupFreedoms = 48;  // of the bodies of a group that something can touch, without their joints
+constexpr int kMostJointRows = 7;       // of one joint: a weld's six, a pivot's five and its damper
+
+struct WorldOptions {
+  double h = 1e-3;                     // tick [s], 1e-5 .. 1e-2
+  Vec3 gravity_W = Vec3(0, 0, -9.81);  // [m/s^2]
+  double contact_margin = 1e-3;        // pairs closer than this make contacts [m], > 0
+  int max_contacts = 64;               // 4 .. 16384; more are dropped, deepest kept, and StepStatus says so
+  int threads = 1;                     // that solve islands, 1 .. 16; the results are the same to the bit
+  // Position error per tick that is allowed [m], 0 or 1e-12 .. 1; 0: every tick is one part. Costs three times a plain tick, or more.
+  double position_tolerance = 0;
+  int max_parts = 16;  // that a tick may be cut into for that, 2 .. 1024; rounded down to a power of two
+  bool sleep = true;   // what would repeat its last tick to the bit isn't computed: the world (rest.h), islands (island_sleep.h)
+  SolverOptions solver;
+};
+
+struct WorldModel {
+  WorldOptions options;
+  std::vector<BodyModel> bodies;
+  std::vector<DrivenPointModel> points;
+  std::vector<std::array<AxisForm, 3>> point_forms;
+  bool has_corners = false;      // of dynamic bodies: some corner_reach isn't 0
+  bool has_hollows = false;      // that points may touch: there are points, and bodies that may be hollow
+  std::vector<PairModel> pairs;  // only those that can touch: at least one dynamic, shapes supported; none with a broad phase
+  bool has_broad_phase = false;  // of more than kAllPairsBodies bodies: pairs are found tick by tick (broad_phase.h)
+  std::vector<std::pair<int, int>> excluded_pairs;  // sorted; only with a broad phase
+  std::vector<PairModel> special_pairs;             // with a material of their own, sorted
+  std::vector<JointModel> joints;                   // by groups
+  std::vector<JointGroup> joint_groups;
+  bool bounces = false;  // some pair has restitution
+  int driven_count = 0;  // of bodies
+};
+
+inline bool isHeldBody(const WorldModel& model, const BodyModel& body) {
+  return body.joint_group >= 0 && model.joint_groups[body.joint_group].is_held_body;
+}
+
+// What the builder is told about a body; B's pose and velocity at the start live in BodyStart.
+struct BodySpec {
+  std::string name;
+  contact::Shape shape;
+  bool dynamic = true;
+  double mass = 0;  // [kg], > 0 for dynamic bodies
+  Material material;
+  bool driven = false;  // not dynamic, but moves as the caller says
+};
+
+// Collects bodies and points, checks them, and builds the model. Every error names the body, the value, its range and a remedy (InputError).
+class WorldBuilder {
+ public:
+  explicit WorldBuilder(const WorldOptions& options);
+  int addBody(const BodySpec& spec);                             // returns the body's index
+  int addPoint(const DrivenPointModel& point);                   // returns the point's index
+  int addJoint(const JointModel& joint);                         // returns the joint's index in the order of calls; the two never touch
+  void excludePair(int a, int b);                                // these two never touch
+  void setPairMaterial(int a, int b, const Material& material);  // of these two, in place of the combination of theirs; the last one counts
+  WorldModel build() const;                                      // joints in the order of their groups
+
+ private:
+  WorldModel model_;
+  std::vector<std::pair<int, int>> excluded_;
+};
+
+Material combine(const Material& a, const Material& b);
+
+// Of two bodies, a < b: their own, or combined.
+Material materialOf(const WorldModel& model, int a, int b);
+
+}  // namespace pincer::engine

@@ -1,0 +1,74 @@
+// state: all of a world that evolves, and nothing else. Copies by value; a snapshot is a copy; restoring one and giving the same inputs
+// gives the same bits.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "engine/model.h"
+#include "engine/solver.h"
+
+namespace pincer::engine {
+
+struct BodyState {
+  Pose X_WI;                // inertial frame in W
+  Vec3 v_W = Vec3::Zero();  // of the centre of mass [m/s]
+  Vec3 L_W = Vec3::Zero();  // angular momentum about the centre of mass [kg m^2/s]; zero of what isn't dynamic
+};
+
+struct PointState {
+  Vec3 p_W = Vec3::Zero();         // [m]
+  Vec3 v_W = Vec3::Zero();         // [m/s]
+  Vec3 p_target_W = Vec3::Zero();  // where the target was at the end of the last tick
+  Vec3 v_target_W = Vec3::Zero();
+  bool touching = false;  // a contact pushed on it in the last tick
+  double twist = 0;       // by which it has turned past its device about the contact normal [rad]
+  double twist_rate = 0;  // [rad/s]
+};
+
+// What a contact remembers from tick to tick. Sorted by id.
+struct ContactMemory {
+  std::uint64_t id = 0;                     // see contactId
+  ContactVector r = ContactVector::Zero();  // impulse in C (t1, t2, n, torsion, rolling) [N s]; warm start
+  Vec3 t1_W = Vec3::UnitX();                // first tangent of C, so that r keeps its meaning when n turns
+  Vec3 n_W = Vec3::UnitZ();
+  Vec3 arm_a_W = Vec3::Zero(), arm_b_W = Vec3::Zero();  // contact point from the two centres [m]
+  ContactVector offset_C =
+      ContactVector::Zero();  // how far a has moved past b since they stuck: along t1, t2 [m], -, about n, t1, t2 [rad]
+  bool active = false;        // pushed in the last tick
+  bool sliding = false;
+  bool closing = false;  // it closed in the last tick
+  int settling = 0;      // for so many ticks a warm start must be exact to round-off (solve/cascade.h)
+};
+
+struct WorldState {
+  double time = 0;  // [s]
+  std::int64_t tick = 0;
+  int parts = 1;      // that the last tick was cut into by the tolerance
+  double h_last = 0;  // length of the last part of a tick [s], see world/stages.h; 0 before the first
+  std::vector<BodyState> bodies;
+  std::vector<Vec3> driven_w_W;  // angular velocities of driven bodies, by BodyModel::motion [rad/s]
+  std::vector<PointState> points;
+  std::vector<ContactMemory> contacts;  // always options.max_contacts of them, so that no tick allocates; the first contact_count count
+  int contact_count = 0;
+};
+
+// Pose X_WB and velocity of a body's own frame B at the start.
+struct BodyStart {
+  Pose X_WB;
+  Vec3 v_W = Vec3::Zero();  // of the centre of mass [m/s]
+  Vec3 w_W = Vec3::Zero();  // [rad/s]
+};
+
+// State with every body at `starts` (one per body) and every point at rest on its target `points` (one per point). Throws InputError when
+// sizes differ or a value isn't finite.
+WorldState makeState(const WorldModel& model, const std::vector<BodyStart>& starts, const std::vector<Vec3>& points);
+
+Pose bodyPose(const WorldModel& model, const WorldState& state, int body);             // X_WB
+Vec3 bodyAngularVelocity(const WorldModel& model, const WorldState& state, int body);  // w_WB [rad/s]
+double kineticEnergy(const WorldModel& model, const WorldState& state);                // of all bodies [J]
+double potentialEnergy(const WorldModel& model, const WorldState& state);              // in gravity, zero at W's origin [J]
+
+// FNV-1a hash over every bit of the state: equal states, equal hashes, on every machine.
+std::uint64_t hashOf(const WorldState& state);
+
+}  // namespace pincer::engine

@@ -1,0 +1,51 @@
+#include "contact/invariants.h"
+#include "engine/world/stages.h"
+#include "engine/solve/cone.h"
+#include "engine/world/contact_rows.h"
+
+namespace pincer::engine {
+namespace {
+
+constexpr double kSlidingSpeed = 1e-9;  // slower than this is rest: well above the solver's residual, far below anything felt [m/s]
+constexpr double kOnCone = 1 - 1e-9;    // of mu r_n, from which friction counts as exhausted
+constexpr double kResidue = 1e-9;       // of the velocity with which a contact opens, ten times the solver's tolerance
+
+double inverseMassOf(const WorldModel& model, const WorldScratch& scratch, const Side& side) {
+  return side.kind == SideKind::kBody ? model.bodies[side.index].inverse_mass : scratch.points[side.index].inverse_mass.sum() * (1.0 / 3);
+}
+
+// Whether a contact that opens still has an impulse, below the solver's tolerance: what is in the air would stick with it, and remember how far it
+// flies as slip that is to be undone.
+bool isResidue(const WorldModel& model, const WorldScratch& scratch, const Contact& c) {
+  const double w = inverseMassOf(model, scratch, c.a) + inverseMassOf(model, scratch, c.b);
+  return w * c.r[kNormalRow] < kResidue * c.u_C[kNormalRow];
+}
+
+void readSolution(const WorldModel& model, const WorldScratch& scratch, int i, Contact& c) {
+  const int first = scratch.first_row[i], count = scratch.first_row[i + 1] - first;
+  const double *const r = scratch.r.data() + first, *const u = scratch.u.data() + first;
+  PINCER_ASSERT(!scratch.solve.converged || r[kNormalRow] >= 0);
+  PINCER_ASSERT(!scratch.solve.converged || isInCone(r, count, c.mu, 1e-6) || scratch.h == 0);
+  c.r.setZero();
+  withRows(count, [&](auto rows) {
+    for (int k = 0; k < rows; ++k) c.r[k] = r[k];
+  });
+  c.u_C = Eigen::Map<const Vec3>(u);
+  if (isResidue(model, scratch, c)) c.r.setZero();
+  c.impulse_W = c.R_WC * c.r.head<3>();
+  const double on_cone = kOnCone * c.mu * c.r[2];
+  c.sliding = c.active() && tangentNorm2(c.r.data(), count) >= on_cone * on_cone && tangentNorm2(u, count) > kSlidingSpeed * kSlidingSpeed;
+}
+
+}  // namespace
+
+void solveContacts(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
+  scratch.solve = {};
+  if (scratch.contacts.empty()) return;
+  sortContacts(scratch);
+  fillContacts(model, state, scratch);
+  solveIslands(model, scratch);
+  for (std::size_t i = 0; i < scratch.contacts.size(); ++i) readSolution(model, scratch, static_cast<int>(i), scratch.contacts[i]);
+}
+
+}  // namespace pincer::engine

@@ -1,0 +1,82 @@
+#include "grasp/model.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "contact/invariants.h"
+
+namespace pincer::grasp {
+namespace {
+
+void checkPadRange(const FingerModel& finger, const char* what, double value, double high, const char* remedy) {
+  if (value >= 0 && value <= high) return;
+  throw InputError(fmt::format("finger \"{}\": {} = {} is out of range [0, {}]. {}", finger.name, what, value, high, remedy));
+}
+
+void checkCoupling(const FingerModel& finger) {
+  checkPadRange(finger, "patch_radius", finger.pad.patch_radius, 0.1, "It is in metres; a fingertip's patch has 0.004 to 0.006.");
+  checkPadRange(finger, "modulus", finger.pad.modulus, 1e12, "It is in pascals; a fingertip has about 1e5.");
+  checkPadRange(finger, "effective_radius", finger.pad.effective_radius, 10, "It is in metres; 0 takes the fingertip's own.");
+  if (finger.pad.patch_radius > 0 && finger.pad.modulus > 0) {
+    throw InputError(fmt::format("finger \"{}\": patch_radius and modulus both say how large the patch is. Keep one.", finger.name));
+  }
+  if (finger.along_normal && finger.coupling.locked.any()) {
+    throw InputError(
+        fmt::format("finger \"{}\": locked axes are the world's, its stiffness is along the contact's. Keep one.", finger.name));
+  }
+}
+
+void check(const FingerModel& finger) {
+  if (finger.shape) {
+    const std::string problem = contact::problemWith(*finger.shape);
+    if (!problem.empty()) throw InputError(fmt::format("finger \"{}\": {}", finger.name, problem));
+  }
+  checkCoupling(finger);
+  if (!(finger.radius > 0 && finger.radius <= 1)) {
+    throw InputError(fmt::format("finger \"{}\": radius = {} is out of range (0, 1]. It is in metres; a fingertip has about 0.008.",
+                                 finger.name, finger.radius));
+  }
+  if (!(finger.reach >= 0 && finger.reach <= 10)) {
+    throw InputError(fmt::format("finger \"{}\": reach = {} is out of range [0, 10]. It is in metres; 0.03 is the usual one.", finger.name,
+                                 finger.reach));
+  }
+  const double tolerance = 1e-6;
+  const bool orthonormal = std::abs(finger.pad_normal_F.norm() - 1) < tolerance && std::abs(finger.distal_F.norm() - 1) < tolerance &&
+                           std::abs(finger.pad_normal_F.dot(finger.distal_F)) < tolerance;
+  if (!orthonormal) {
+    throw InputError(
+        fmt::format("finger \"{}\": pad_normal and distal must be unit vectors at right angles. Normalise them.", finger.name));
+  }
+}
+
+}  // namespace
+
+double patchRadius(const SoftPad& pad, double tip_radius, double f_n) {
+  PINCER_ASSERT(!(f_n < 0));
+  if (pad.patch_radius > 0) return pad.patch_radius;
+  if (!(pad.modulus > 0)) return 0;
+  const double R = pad.effective_radius > 0 ? pad.effective_radius : tip_radius;
+  return math::cbrt(0.75 * f_n * R / pad.modulus);
+}
+
+double torsionRadius(const SoftPad& pad, double tip_radius, double f_n) {
+  constexpr double kLeastForce = 1e-3;  // a patch of no size would be no patch, and the contact's rows would change [N]
+  if (pad.patch_radius > 0) return 2.0 / 3 * pad.patch_radius;
+  return 3.0 / 16 * std::numbers::pi * patchRadius(pad, tip_radius, std::max(f_n, kLeastForce));
+}
+
+GraspModel buildGrasp(engine::WorldBuilder builder, std::vector<FingerModel> fingers) {
+  for (std::size_t i = 0; i < fingers.size(); ++i) {
+    check(fingers[i]);
+    if (fingers[i].shape) fingers[i].radius = contact::boundingRadiusOf(*fingers[i].shape);
+    fingers[i].coupling.name = fingers[i].name;
+    if (builder.addPoint(fingers[i].coupling) != static_cast<int>(i)) {
+      throw InputError("the world already has driven points; fingers come first. Add other points after the fingers.");
+    }
+  }
+  return {builder.build(), std::move(fingers)};
+}
+
+}  // namespace pincer::grasp

@@ -1,0 +1,202 @@
+#include "grasp/step.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "contact/invariants.h"
+#include "engine/motion/driven_motion.h"
+#include "grasp/tick/finger_contacts.h"
+#include "grasp/tick/finger_tick.h"
+
+namespace pincer::grasp {
+namespace {
+
+// The finger turns evenly from where it was at the end of the last tick.
+void setRotation(const FingerInput& input, const FingerState& last, double h, engine::PointInput& point, Quat& q_mid_WF) {
+  PINCER_ASSERT(isUnitIfFinite(input.q_WF));
+  q_mid_WF = input.q_WF;
+  if (!last.seen || last.q_WF.coeffs() == input.q_WF.coeffs()) return;
+  const Vec3 turn_W = engine::rotationVectorOf(input.q_WF * last.q_WF.conjugate());
+  point.w_W = turn_W / h;
+  q_mid_WF = quatFromRotationVector(0.5 * turn_W) * last.q_WF;
+}
+
+}  // namespace
+
+void setInputs(const GraspModel& model, const GraspState& state, std::span<const FingerInput> inputs, GraspScratch& scratch) {
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    engine::PointInput& point = scratch.inputs[i];
+    point.p_target_W = inputs[i].p_WF;
+    point.v_target_W = inputs[i].v_WF;
+    point.f_W = inputs[i].f_W;
+    point.w_W.setZero();
+    setRotation(inputs[i], state.fingers[i], model.world.options.h, point, scratch.q_mid_WF[i]);
+    const engine::DrivenPointModel& coupling = model.fingers[i].coupling;
+    point.turned = model.fingers[i].along_normal;
+    const bool has_axis = point.turned || coupling.twist_stiffness + coupling.twist_damping > 0;
+    point.n_W = has_axis ? state.fingers[i].n_W : Vec3(Vec3::UnitZ());
+  }
+}
+
+namespace {
+
+// Sums the contacts of one finger into its report; returns the way from its centre to their force-weighted mean place, or its direction.
+Vec3 sumContacts(const GraspScratch& scratch, int finger, double h, FingerReport& report) {
+  Vec3 p_sum = Vec3::Zero(), n_sum = Vec3::Zero(), impulse_W = Vec3::Zero(), tangential_W = Vec3::Zero();
+  double normal = 0, torsion = 0, largest = 0;  // impulses
+  int pushing = 0;
+  for (const engine::Contact& c : scratch.world.contacts) {
+    if (c.a.kind != engine::SideKind::kPoint || c.a.index != finger || !c.active()) continue;
+    const double r_n = c.r[engine::kNormalRow];
+    const Vec3 n_W = c.n_W();
+    impulse_W += c.impulse_W;
+    tangential_W += c.impulse_W - r_n * n_W;
+    normal += r_n;
+    if (engine::rowsOf(c.material) > engine::kTorsionRow) torsion += c.r[engine::kTorsionRow] * c.material.torsion_radius;
+    report.sliding = report.sliding || c.sliding;
+    p_sum += r_n * c.p_W;
+    n_sum += r_n * n_W;
+    ++pushing;
+    if (!(r_n > largest)) continue;
+    largest = r_n;
+    report.body = c.b.index;
+    report.p_WC = c.p_W;
+    report.n_W = n_W;
+  }
+  report.touching = normal > 0;
+  if (!report.touching) return Vec3::Zero();
+  report.f_contact_W = impulse_W / h;
+  report.normal_force = normal / h;
+  report.tangential_force = tangential_W.norm() / h;
+  report.torsion = torsion / h;
+  if (pushing > 1) {
+    report.p_WC = p_sum / normal;
+    if (n_sum.squaredNorm() > 0) report.n_W = n_sum.normalized();
+  }
+  PINCER_ASSERT(isUnitIfFinite(report.n_W) && report.body >= 0);
+  const Vec3 to_mean = report.p_WC - scratch.world.points[finger].p_mid_W;
+  return to_mean.squaredNorm() > 0 ? to_mean : Vec3(-report.n_W);
+}
+
+// Where the tick was cut, its last part doesn't speak for all of it: a landing in a short part would be felt as a blow.
+void averageOverTick(const engine::PointScratch& point, double tick, FingerReport& report) {
+  PINCER_ASSERT(tick > 0);
+  report.f_contact_W = point.tick_impulse_W / tick;
+  if (!report.touching) return;
+  report.normal_force = std::max(report.f_contact_W.dot(report.n_W), 0.0);
+  report.tangential_force = (report.f_contact_W - report.n_W * report.f_contact_W.dot(report.n_W)).norm();
+}
+
+// What of the pad is touched, or would be. All geometry is that of the middle of the tick.
+void reportTouch(const GraspModel& model, int finger, const Vec3& touch_W, GraspScratch& scratch) {
+  FingerReport& report = scratch.fingers[finger];
+  const bool has_shape = model.fingers[finger].shape.has_value();
+  const Quat& q_WF = scratch.q_mid_WF[finger];
+  const Vec3 n_W = -scratch.nearest_n_W[finger];
+  if (report.touching) {
+    report.touch = {true, q_WF, has_shape ? Vec3(report.p_WC - scratch.world.points[finger].p_mid_W) : touch_W, -report.n_W};
+  } else if (!n_W.isZero(0)) {
+    report.nearest = {true, q_WF, has_shape ? scratch.nearest_d_W[finger] : n_W, n_W};
+  }
+}
+
+}  // namespace
+
+void reportFinger(const GraspModel& model, const GraspState& state, int finger, GraspScratch& scratch) {
+  const double h = scratch.world.h;
+  FingerReport& report = scratch.fingers[finger];
+  const engine::PointScratch& point = scratch.world.points[finger];
+  const Vec3 touch_W = sumContacts(scratch, finger, h, report);
+  reportTouch(model, finger, touch_W, scratch);
+  const double tick = model.world.options.h;
+  if (h < tick) averageOverTick(point, tick, report);
+  report.f_user_W = report.f_contact_W + scratch.inputs[finger].f_W;
+  const double mass = model.fingers[finger].coupling.mass;
+  if (mass > 0) report.f_user_W -= mass / tick * (state.world.points[finger].v_W - point.v_tick_W);
+}
+
+void rememberFinger(const GraspModel& model, const FingerInput& input, int finger, GraspState& state, GraspScratch& scratch) {
+  const FingerModel& f = model.fingers[finger];
+  FingerReport& report = scratch.fingers[finger];
+  FingerState& memory = state.fingers[finger];
+  report.last_touch = memory.touch;
+  if (f.pad.isSoft()) report.patch_radius = patchRadius(f.pad, f.radius, report.normal_force);
+  memory.seen = true;
+  memory.q_WF = input.q_WF;
+  memory.normal_force = report.normal_force;
+  memory.touch = report.touch;
+  if (report.touching) memory.n_W = report.n_W;
+  scratch.orientations[finger] = input.q_WF;
+}
+
+bool keepOrientations(std::span<const FingerInput> inputs, const GraspScratch& scratch) {
+  return std::equal(inputs.begin(), inputs.end(), scratch.orientations.begin(), scratch.orientations.end(),
+                    [](const FingerInput& input, const Quat& last) { return input.q_WF.coeffs() == last.coeffs(); });
+}
+
+namespace {
+
+// The fingers' contacts, for each part of the tick.
+class FingerContacts final : public engine::ContactSource {
+ public:
+  FingerContacts(const GraspModel& model, GraspState& state, GraspScratch& scratch, std::span<const FingerInput> inputs)
+      : model_(model), state_(state), scratch_(scratch), inputs_(inputs) {}
+  void addContacts(engine::WorldScratch&) override {
+    for (int i = 0; i < static_cast<int>(model_.fingers.size()); ++i) findFingerContacts(model_, i, state_, scratch_);
+    engine::mark(scratch_.world, engine::Stage::kFingerContacts);
+  }
+  bool repeatsItself() const override { return keepOrientations(inputs_, scratch_); }
+
+ private:
+  const GraspModel& model_;
+  GraspState& state_;
+  GraspScratch& scratch_;
+  std::span<const FingerInput> inputs_;
+};
+
+}  // namespace
+
+GraspScratch::GraspScratch(const GraspModel& model)
+    : world(model.world),
+      inputs(model.fingers.size()),
+      q_mid_WF(model.fingers.size(), Quat::Identity()),
+      nearest_n_W(model.fingers.size()),
+      nearest_d_W(model.fingers.size()),
+      fingers(model.fingers.size()),
+      orientations(model.fingers.size()) {}
+
+void DeleteScratch::operator()(GraspScratch* scratch) const { delete scratch; }
+ScratchHandle makeScratch(const GraspModel& model) { return ScratchHandle(new GraspScratch(model)); }
+
+std::span<const FingerReport> fingersOf(const GraspScratch& scratch) { return scratch.fingers; }
+engine::WorldScratch& worldOf(GraspScratch& scratch) { return scratch.world; }
+const engine::WorldScratch& worldOf(const GraspScratch& scratch) { return scratch.world; }
+
+GraspState makeState(const GraspModel& model, const std::vector<engine::BodyStart>& starts, const std::vector<Vec3>& fingers) {
+  GraspState state{engine::makeState(model.world, starts, fingers), {}, {}, {}};
+  state.trackers.resize(model.fingers.size() * model.world.bodies.size());
+  const auto has_shape = [](const FingerModel& f) { return f.shape.has_value(); };
+  if (std::any_of(model.fingers.begin(), model.fingers.end(), has_shape)) state.tips.resize(state.trackers.size());
+  state.fingers.resize(model.fingers.size());
+  return state;
+}
+
+GraspReport step(const GraspModel& model, GraspState& state, GraspScratch& scratch, std::span<const FingerInput> inputs,
+                 std::span<const engine::MotionInput> motions) {
+  PINCER_DEMAND(inputs.size() == model.fingers.size(), "step: one input per finger");
+  PINCER_DEMAND(state.fingers.size() == model.fingers.size() && state.trackers.size() == model.fingers.size() * model.world.bodies.size(),
+                "step: the state is one of this model (makeState)");
+  PINCER_DEMAND(scratch.fingers.size() == model.fingers.size(), "step: the scratch is one of this model");
+  setInputs(model, state, inputs, scratch);
+  FingerContacts contacts(model, state, scratch, inputs);
+  const engine::StepReport report = engine::step(model.world, state.world, scratch.world, {scratch.inputs, motions}, &contacts);
+  if (report.asleep) return {report, scratch.fingers};  // those of the last tick
+  for (int i = 0; i < static_cast<int>(inputs.size()); ++i) {
+    reportFinger(model, state, i, scratch);
+    rememberFinger(model, inputs[i], i, state, scratch);
+  }
+  engine::mark(scratch.world, engine::Stage::kFingerReport);
+  return {report, scratch.fingers};
+}
+
+}  // namespace pincer::grasp

@@ -1,0 +1,30 @@
+// child_process: another program, without a shell. It never outlives the object that stands for it.
+#pragma once
+#include <sys/types.h>
+
+#include <atomic>
+#include <string>
+#include <vector>
+
+namespace pincer::tasks {
+
+class ChildProcess {
+ public:
+  // Starts arguments[0], looked up in PATH unless it holds a slash, in `directory`; it reads nothing and says everything into the file `log`
+  // there. Throws std::system_error where it can't be started.
+  ChildProcess(std::vector<std::string> arguments, const std::string& directory, const char* log);
+  ~ChildProcess();  // ends it: SIGTERM, and after a second SIGKILL
+  ChildProcess(const ChildProcess&) = delete;
+  ChildProcess& operator=(const ChildProcess&) = delete;
+
+  // Waits for its end. Returns its exit code, or 128 + the signal that ended it. Throws Interrupted.
+  int wait(const std::atomic<bool>& interrupted);
+
+ private:
+  bool ended();  // asks the system
+
+  pid_t child_ = 0;
+  int status_ = 0;
+};
+
+}  // namespace pincer::tasks
