@@ -9,7 +9,7 @@
 #include <cmath>
 #include <limits>
 
-#include "contact/functions/elementary.h"
+#include "contact/elementary.h"
 
 namespace pincer {
 

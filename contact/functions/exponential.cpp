@@ -8,7 +8,7 @@
 
 #include <array>
 
-#include "contact/functions/elementary.h"
+#include "contact/elementary.h"
 
 namespace pincer::math {
 namespace {

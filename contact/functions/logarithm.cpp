@@ -8,8 +8,8 @@
 #include <array>
 #include <limits>
 
+#include "contact/elementary.h"
 #include "contact/functions/double_double.h"
-#include "contact/functions/elementary.h"
 #include "contact/functions/exponential.h"
 
 namespace pincer::math {

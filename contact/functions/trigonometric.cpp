@@ -7,8 +7,8 @@
 // reduction for trigonometric functions", SIGNUM Newsletter 18, 1983).
 #include <limits>
 
+#include "contact/elementary.h"
 #include "contact/functions/double_double.h"
-#include "contact/functions/elementary.h"
 
 namespace pincer::math {
 namespace {

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "contact/mesh/connectivity.h"
 #include "contact/mesh/union_find.h"
 

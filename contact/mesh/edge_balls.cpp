@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "contact/error.h"
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "contact/mesh/mesh_findings.h"
 #include "contact/mesh/union_find.h"
 

@@ -4,6 +4,7 @@
 #include <map>
 #include <set>
 
+#include "contact/io/counted.h"
 #include "contact/mesh/mesh_findings.h"
 #include "contact/mesh/mesh_topology.h"
 #include "contact/mesh/polygon.h"
@@ -67,8 +68,8 @@ class HoleFiller {
     if (filled_.count == 0) return {};
     const std::string left = left_ > 0 ? fmt::format("; {} left: larger than asked, or not flat enough", left_) : "";
     return MeshChange{"filled-holes", filled_.count,
-                      fmt::format("filled {} holes with {} triangles; the first is at {}{}", filled_.count, triangles_,
-                                  vertexPlace(mesh_, filled_.first), left)};
+                      fmt::format("filled {} with {}; the first is at {}{}", counted(filled_.count, "hole"),
+                                  counted(triangles_, "triangle"), vertexPlace(mesh_, filled_.first), left)};
   }
 
  private:

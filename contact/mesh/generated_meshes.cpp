@@ -6,7 +6,7 @@
 #include <map>
 #include <utility>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 
 namespace pincer::contact {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 
 namespace pincer::contact {
 
@@ -43,7 +43,13 @@ void MeshBuilder::reserveFaces(std::size_t faces, std::int32_t place) {
   corners_.reserve(3 * faces);
 }
 
+void MeshBuilder::requireRoom(std::size_t count, const char* what, std::int32_t place) const {
+  if (count < kMaxVertices) return;
+  file_.failAt(place, fmt::format("the mesh has more than {} {}. Simplify (decimate) it.", kMaxVertices, what));
+}
+
 void MeshBuilder::addVertex(const Vec3& p, std::int32_t place) {
+  requireRoom(vertices(), "vertices", place);
   PINCER_ASSERT(p.allFinite());
   const Vec3 scaled = options_.metres_per_unit * p;
   const double farthest = scaled.cwiseAbs().maxCoeff();
@@ -55,6 +61,7 @@ void MeshBuilder::addVertex(const Vec3& p, std::int32_t place) {
 }
 
 void MeshBuilder::addNormal(const Vec3& n, std::int32_t place) {
+  requireRoom(normals(), "normals", place);
   PINCER_ASSERT(n.allFinite());
   const double largest = n.cwiseAbs().maxCoeff();
   if (largest == 0) {

@@ -13,8 +13,9 @@
 namespace pincer::contact {
 
 constexpr std::size_t kMaxTriangles = 2'000'000;
-constexpr std::size_t kMaxCorners = 1000;  // of one polygon: ear clipping is quadratic
-constexpr double kMaxCoordinate = 1000;    // [m]
+constexpr std::size_t kMaxVertices = 3 * kMaxTriangles;  // as in files that share none; also of normals
+constexpr std::size_t kMaxCorners = 1000;                // of one polygon: ear clipping is quadratic
+constexpr double kMaxCoordinate = 1000;                  // [m]
 constexpr const char* kCutOffOrJoined = "The file is cut off or was joined by hand; export it again.";
 
 class MeshBuilder {
@@ -63,6 +64,7 @@ class MeshBuilder {
 
   Polygon polygon(std::size_t face) const;
   void requireFew(std::size_t triangles, std::int32_t place) const;
+  void requireRoom(std::size_t count, const char* what, std::int32_t place) const;
   std::int32_t inRange(std::int64_t index, const char* what) const;
   void dropUnusedFeatures();
   void checkIndices(const Polygon& face) const;

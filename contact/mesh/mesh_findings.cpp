@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "contact/io/counted.h"
+
 namespace pincer::contact {
 
 namespace {
@@ -11,13 +13,6 @@ namespace {
 constexpr double kSmallestHeld = 0.005, kLargestHeld = 0.5;  // [m]
 
 std::string millimetres(const Vec3& p) { return fmt::format("({:.4g}, {:.4g}, {:.4g}) mm", 1e3 * p.x(), 1e3 * p.y(), 1e3 * p.z()); }
-
-// "1 edge", "3 edges".
-std::string counted(int n, std::string_view thing) {
-  const std::string_view plural = thing.ends_with('x') ? "ices" : "s";
-  if (n == 1) return fmt::format("1 {}", thing);
-  return fmt::format("{} {}{}", n, thing.ends_with('x') ? thing.substr(0, thing.size() - 2) : thing, plural);
-}
 
 // Open edges that remain once vertices at the same place are one.
 int boundaryAfterMerging(const TriangleMesh& mesh) {

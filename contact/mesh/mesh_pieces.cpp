@@ -1,6 +1,6 @@
 #include "contact/mesh/mesh_pieces.h"
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 
 namespace pincer::contact {
 

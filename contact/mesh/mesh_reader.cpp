@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
 
+#include "contact/io/input_file.h"
 #include "contact/mesh/mesh_file.h"
 #include "contact/mesh/obj_reader.h"
 #include "contact/mesh/off_reader.h"
@@ -15,36 +15,10 @@ namespace pincer::contact {
 
 namespace {
 
-constexpr std::size_t kMaxBytes = std::size_t{1} << 29;  // 512 MB of text: several times what the largest mesh needs
-
-std::string readBytes(std::istream& in, std::size_t expected, const std::string& name) {
-  std::string bytes;
-  bytes.reserve(std::min(expected, kMaxBytes) + 1);
-  std::string block(std::size_t{1} << 20, '\0');
-  while (in) {
-    in.read(block.data(), static_cast<std::streamsize>(block.size()));
-    bytes.append(block.data(), static_cast<std::size_t>(in.gcount()));
-    if (bytes.size() > kMaxBytes) {
-      throw InputError(fmt::format("{}: the file is larger than {} MB. Simplify (decimate) the mesh.", name, kMaxBytes >> 20));
-    }
-  }
-  if (in.bad())
-    throw InputError(fmt::format("{}: reading failed after {} bytes. Check the disk and copy the file again.", name, bytes.size()));
-  return bytes;
-}
-
-std::string readBytes(const std::filesystem::path& path) {
-  std::error_code error;
-  const auto status = std::filesystem::status(path, error);
-  const std::string name = path.string();
-  if (!std::filesystem::exists(status)) throw InputError(fmt::format("{}: there is no such file. Check the path.", name));
-  if (!std::filesystem::is_regular_file(status))
-    throw InputError(fmt::format("{}: this is not a file. Give the path of a mesh file ({}).", name, kMeshFormats));
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw InputError(fmt::format("{}: the file cannot be opened. Check that you may read it.", name));
-  const auto size = std::filesystem::file_size(path, error);
-  return readBytes(in, error ? 0 : size, name);
-}
+// As text STL, the longest of the formats, the 2 million triangles that a mesh may have (mesh_builder.h) take some 500 MB. Memory while it is
+// read: the file, and at most 1 GB more for 6 million vertices and normals.
+constexpr std::size_t kMaxMeshBytes = 512 * kMegabyte;
+constexpr InputKind kMeshFile = {"a mesh (OBJ, STL, PLY or OFF)", kMaxMeshBytes, false, "Simplify (decimate) the mesh."};
 
 void requireNotEmpty(std::string_view bytes, const std::string& name) {
   if (bytes.empty()) throw InputError(fmt::format("{}: the file is empty. Export or copy it again.", name));
@@ -65,7 +39,7 @@ MeshFormat formatOf(std::string_view bytes, const std::string& name) {
 }  // namespace
 
 TriangleMesh readMesh(const std::filesystem::path& path, const ReadOptions& options) {
-  const std::string bytes = readBytes(path);
+  const std::string bytes = readInputFile(path.string(), kMeshFile);
   requireNotEmpty(bytes, path.string());
   return parseMesh(bytes, formatOf(bytes, path.string()), path.string(), options);
 }
@@ -76,8 +50,8 @@ TriangleMesh parseMesh(std::string_view bytes, MeshFormat format, const std::str
         fmt::format("{}: metres per unit = {} must be a finite number above 0: 0.001 for millimetres.", name, options.metres_per_unit));
   }
   requireNotEmpty(bytes, name);
-  if (bytes.size() > kMaxBytes) {
-    throw InputError(fmt::format("{}: the file is larger than {} MB. Simplify (decimate) the mesh.", name, kMaxBytes >> 20));
+  if (bytes.size() > kMaxMeshBytes) {
+    throw InputError(fmt::format("{}: the file is larger than {} MB. Simplify (decimate) the mesh.", name, kMaxMeshBytes / kMegabyte));
   }
   MeshFile file(bytes, name, options.progress);
   constexpr std::array kReaders = {readObj, readStl, readPly, readOff};

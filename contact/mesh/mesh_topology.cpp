@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 
 namespace pincer::contact {
 

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <optional>
 
 #include "contact/error.h"
+#include "contact/io/atomic_file.h"
 #include "contact/mesh/mesh_file.h"
 
 namespace pincer::contact {
@@ -224,14 +224,7 @@ void writeMesh(const std::filesystem::path& path, const TriangleMesh& mesh, cons
   if (!format)
     throw InputError(
         fmt::format("{}: the name's ending doesn't tell the format. Let it end like an {} file's.", path.string(), kMeshFormats));
-  const std::string bytes = formatMesh(mesh, *format, options);
-  std::ofstream out(path, std::ios::binary);
-  if (!out)
-    throw InputError(
-        fmt::format("{}: the file cannot be opened for writing. Check the folder and that you may write there.", path.string()));
-  out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  out.close();
-  if (!out) throw InputError(fmt::format("{}: writing {} bytes failed. Check that the disk has room.", path.string(), bytes.size()));
+  writeAtomically(path.string(), formatMesh(mesh, *format, options));
 }
 
 std::vector<std::string> lossesOf(const TriangleMesh& mesh, MeshFormat format, const WriteOptions& options) {

@@ -2,6 +2,7 @@
 
 #include <map>
 
+#include "contact/io/counted.h"
 #include "contact/mesh/mesh_findings.h"
 #include "contact/mesh/mesh_pieces.h"
 #include "contact/mesh/mesh_topology.h"
@@ -80,8 +81,9 @@ MaybeChange flipMarked(TriangleMesh& mesh, const std::vector<bool>& flip, const 
   }
   if (flipped.count == 0) return {};
   flipTriangles(mesh, flip);
-  return MeshChange{name, flipped.count,
-                    fmt::format("flipped {} triangles {}; the first is {}", flipped.count, what, trianglePlace(mesh, flipped.first))};
+  return MeshChange{
+      name, flipped.count,
+      fmt::format("flipped {} {}; the first is {}", counted(flipped.count, "triangle"), what, trianglePlace(mesh, flipped.first))};
 }
 
 }  // namespace

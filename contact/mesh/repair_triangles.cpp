@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "contact/io/counted.h"
 #include "contact/mesh/mesh_findings.h"
 #include "contact/mesh/mesh_topology.h"
 #include "contact/mesh/polygon.h"
@@ -162,7 +163,7 @@ MaybeChange dropPointlessTriangles(TriangleMesh& mesh) {
   const std::string first = trianglePlace(mesh, pointless.first);
   dropTriangles(mesh, drop);
   return MeshChange{"dropped-degenerate-triangles", pointless.count,
-                    fmt::format("dropped {} triangles two of whose corners are one; the first was {}", pointless.count, first)};
+                    fmt::format("dropped {} two of whose corners are one; the first was {}", counted(pointless.count, "triangle"), first)};
 }
 
 MaybeChange dropDuplicateTriangles(TriangleMesh& mesh) {
@@ -179,14 +180,15 @@ MaybeChange dropDuplicateTriangles(TriangleMesh& mesh) {
   const std::string first = trianglePlace(mesh, duplicates.first);
   dropTriangles(mesh, drop);
   return MeshChange{"dropped-duplicate-faces", duplicates.count,
-                    fmt::format("dropped {} triangles on top of others; the first was {}", duplicates.count, first)};
+                    fmt::format("dropped {} on top of others; the first was {}", counted(duplicates.count, "triangle"), first)};
 }
 
 MaybeChange turnFlatTriangles(TriangleMesh& mesh) {
   const Occurrences<std::string> removed = FlatTriangles(mesh).remove();
   if (removed.count == 0) return {};
-  return MeshChange{"removed-flat-triangles", removed.count,
-                    fmt::format("removed {} triangles without area, without a gap; the first was {}", removed.count, removed.first)};
+  return MeshChange{
+      "removed-flat-triangles", removed.count,
+      fmt::format("removed {} without area, without a gap; the first was {}", counted(removed.count, "triangle"), removed.first)};
 }
 
 }  // namespace pincer::contact

@@ -5,6 +5,7 @@
 #include <map>
 #include <numeric>
 
+#include "contact/io/counted.h"
 #include "contact/mesh/mesh_findings.h"
 #include "contact/mesh/mesh_topology.h"
 #include "contact/mesh/polygon.h"
@@ -98,9 +99,9 @@ MaybeChange weldVertices(TriangleMesh& mesh, double distance) {
     for (std::int32_t& v : t) v = target[static_cast<std::size_t>(v)];
   }
   const std::string near = distance > 0 ? fmt::format("within {:.4g} mm", 1e3 * distance) : "at the same place";
-  return MeshChange{
-      "welded-vertices", welded.count,
-      fmt::format("welded {} vertices onto earlier ones {}; the first is {}", welded.count, near, vertexPlace(mesh, welded.first))};
+  return MeshChange{"welded-vertices", welded.count,
+                    fmt::format("welded {} onto earlier ones {}; the first is {}", counted(welded.count, "vertex"), near,
+                                vertexPlace(mesh, welded.first))};
 }
 
 MaybeChange cutApart(TriangleMesh& mesh) {
@@ -143,7 +144,7 @@ MaybeChange dropUnusedVertices(TriangleMesh& mesh) {
   for (auto& t : mesh.triangles) {
     for (std::int32_t& v : t) v = place[static_cast<std::size_t>(v)];
   }
-  return MeshChange{"dropped-vertices", unused, fmt::format("dropped {} vertices that no triangle uses", unused)};
+  return MeshChange{"dropped-vertices", unused, fmt::format("dropped {} that no triangle uses", counted(unused, "vertex"))};
 }
 
 }  // namespace pincer::contact

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <map>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "contact/mesh/cone_tips.h"
 #include "contact/mesh/connectivity.h"
 #include "contact/mesh/edge_balls.h"

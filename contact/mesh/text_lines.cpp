@@ -40,6 +40,8 @@ bool TextLines::next() {
   while (position_ < file_.bytes().size()) {
     std::string_view line = takeLine();
     joined += line.size();
+    if (line.find('\0') != std::string_view::npos)
+      fail("the line holds a NUL byte, which is no part of a text. The file is damaged; export it again.");
     if (joined > kLongestLine) fail(fmt::format("the line is longer than {} bytes. Is this a text file? Export it again.", kLongestLine));
     if (rules_.comments) line = line.substr(0, line.find('#'));
     if (line.ends_with('\r')) line.remove_suffix(1);

@@ -1,4 +1,4 @@
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "contact/shape/closed_forms.h"
 #include "contact/shape/direction.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <type_traits>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "contact/polytope.h"
 
 namespace pincer::contact {

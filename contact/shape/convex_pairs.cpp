@@ -1,6 +1,6 @@
 #include "contact/shape/convex_pairs.h"
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "contact/shape/direction.h"
 #include "contact/shape/facet_overlap.h"
 #include "contact/shape/separation.h"

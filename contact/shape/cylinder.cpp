@@ -1,5 +1,5 @@
 // Nearest points of right cylinders: first in the section (x, y), then along z.
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "contact/shape/closed_forms.h"
 #include "contact/shape/direction.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "contact/shape/point_choice.h"
 
 namespace pincer::contact {

@@ -2,7 +2,7 @@
 
 #include <type_traits>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "contact/pair_query.h"
 #include "contact/shape/closed_forms.h"
 #include "contact/smooth_mesh.h"

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "contact/polytope.h"
 #include "contact/shape/closed_forms.h"
 

@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "contact/finger_query.h"
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "contact/polytope.h"
 #include "contact/shape/convex_features.h"
 #include "contact/shape/convex_pairs.h"

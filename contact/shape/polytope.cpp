@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "contact/error.h"
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "contact/mesh/union_find.h"
 #include "contact/shape/quick_hull.h"
 #include "contact/surface/convex_hull.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 
 namespace pincer::contact {
 namespace {

@@ -1,5 +1,5 @@
 // Nearest points of the surfaces at constant distance from a point, a segment or a plane.
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "contact/shape/closed_forms.h"
 #include "contact/shape/direction.h"
 

@@ -2,7 +2,7 @@
 
 #include <numeric>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 
 namespace pincer::contact {
 

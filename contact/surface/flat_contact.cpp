@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "contact/surface/flat_minimum.h"
 #include "contact/surface/shell_edge.h"
 

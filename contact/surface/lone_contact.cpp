@@ -1,6 +1,6 @@
 #include "contact/surface/lone_contact.h"
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "contact/surface/surface_search.h"
 
 namespace pincer::contact {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 
 namespace pincer::contact {
 namespace {

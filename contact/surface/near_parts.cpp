@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "contact/surface/outward_float.h"
 #include "contact/surface/surface_search.h"
 

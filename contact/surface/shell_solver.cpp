@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "contact/surface/shell_edge.h"
 #include "contact/surface/shell_face.h"
 

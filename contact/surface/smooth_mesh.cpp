@@ -4,7 +4,7 @@
 
 #include <mutex>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "contact/mesh_report.h"
 #include "contact/surface/contact_slots.h"
 #include "contact/surface/convex_hull.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "contact/surface/edge_cubic.h"
 #include "contact/surface/large_pages.h"
 

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "contact/surface/edge_cubic.h"
 #include "contact/surface/lone_contact.h"
 #include "contact/surface/outward_float.h"

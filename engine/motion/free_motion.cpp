@@ -1,6 +1,6 @@
 #include "engine/motion/free_motion.h"
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 
 namespace pincer::engine {
 namespace {

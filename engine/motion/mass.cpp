@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "contact/error.h"
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "contact/polytope.h"
 #include "contact/smooth_mesh.h"
 

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "contact/error.h"
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "engine/motion/mass.h"
 
 namespace pincer::engine {

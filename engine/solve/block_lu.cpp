@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 
 namespace pincer::engine {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "engine/solve/contact_equations.h"
 #include "engine/solve/gauss_seidel.h"
 #include "engine/solve/interior_point.h"

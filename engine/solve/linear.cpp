@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 
 namespace pincer::engine {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "contact/shape/bullet_memory.h"
 #include "engine/world/broad_phase.h"
 #include "engine/world/scratch.h"

@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "contact/pair_query.h"
 #include "engine/world/budget.h"
 #include "engine/world/impact.h"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "engine/world/hollow_inertia.h"
 #include "engine/world/impact.h"
 #include "engine/world/push_out.h"

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "engine/motion/free_motion.h"
 #include "engine/motion/one_freedom.h"
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "engine/solve/local_contact.h"
 #include "engine/world/contact_rows.h"
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "engine/world/rest.h"
 
 namespace pincer::engine {

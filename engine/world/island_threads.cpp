@@ -1,7 +1,8 @@
 #include "engine/world/island_threads.h"
 
-#include "contact/invariants.h"
 #include <exception>
+
+#include "contact/functions/invariants.h"
 
 namespace pincer::engine {
 namespace {

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <span>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "engine/world/contact_rows.h"
 #include "engine/world/contact_sides.h"
 #include "engine/world/island_threads.h"

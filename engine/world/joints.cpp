@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "engine/motion/free_motion.h"
 #include "engine/solve/linear.h"
 #include "engine/world/held_body.h"

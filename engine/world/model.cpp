@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "contact/pair_query.h"
 #include "engine/motion/mass.h"
 #include "engine/solve/contact_problem.h"
@@ -79,9 +79,12 @@ void groupJoints(WorldModel& model) {
   std::vector<int> root(model.bodies.size());
   for (std::size_t i = 0; i < root.size(); ++i) root[i] = static_cast<int>(i);
   const auto moves = [&](int body) { return body >= 0 && model.bodies[body].dynamic; };
-  for (std::size_t pass = 0; pass < model.joints.size(); ++pass) {
+  for (bool changes = true; changes;) {
+    changes = false;
     for (const JointModel& joint : model.joints) {
-      if (moves(joint.b)) root[joint.a] = root[joint.b] = std::min(root[joint.a], root[joint.b]);
+      if (!moves(joint.b) || root[joint.a] == root[joint.b]) continue;
+      root[joint.a] = root[joint.b] = std::min(root[joint.a], root[joint.b]);
+      changes = true;
     }
   }
   std::stable_sort(model.joints.begin(), model.joints.end(),
@@ -141,6 +144,54 @@ void checkGroups(WorldModel& model) {
 
 bool comesBefore(const PairModel& x, const PairModel& y) { return std::pair(x.a, x.b) < std::pair(y.a, y.b); }
 
+// Of several for the same two bodies the last one stays.
+void sortSpecialPairs(std::vector<PairModel>& pairs) {
+  std::stable_sort(pairs.begin(), pairs.end(), comesBefore);
+  const auto isSame = [](const PairModel& x, const PairModel& y) { return !comesBefore(x, y) && !comesBefore(y, x); };
+  pairs.erase(pairs.begin(), std::unique(pairs.rbegin(), pairs.rend(), isSame).base());
+}
+
+using IndexPair = std::pair<int, int>;
+
+// How many others of those that `counts` each body can meet: one of the two moves, and the pair isn't excluded. Counted, not listed: of
+// thousands of bodies there are millions of pairs.
+template <class Counts>
+std::vector<int> partnersOf(const WorldModel& model, const std::vector<IndexPair>& excluded, const Counts& counts) {
+  const int n = static_cast<int>(model.bodies.size());
+  int all = 0, moving = 0;
+  for (const BodyModel& body : model.bodies) {
+    if (!counts(body)) continue;
+    ++all;
+    if (body.dynamic) ++moving;
+  }
+  std::vector<int> partners(model.bodies.size(), 0);
+  for (int i = 0; i < n; ++i) {
+    const BodyModel& body = model.bodies[i];
+    if (counts(body)) partners[i] = body.dynamic ? all - 1 : moving;
+  }
+  for (const auto& [a, b] : excluded) {
+    if (a < 0 || b >= n || a == b || !counts(model.bodies[a]) || !counts(model.bodies[b])) continue;
+    if (!model.bodies[a].dynamic && !model.bodies[b].dynamic) continue;
+    --partners[a];
+    --partners[b];
+  }
+  return partners;
+}
+
+// Marks the bodies that something can touch, and prepares the meshes that are touched as flat triangles (contact::preparePair).
+void findWhoMayTouch(WorldModel& model, const std::vector<IndexPair>& excluded) {
+  const auto any = [](const BodyModel&) { return true; };
+  const auto flat = [](const BodyModel& body) {
+    return !isSupportOnly(body.shape) && !std::holds_alternative<contact::Sphere>(body.shape);
+  };
+  const std::vector<int> partners = partnersOf(model, excluded, any), flat_partners = partnersOf(model, excluded, flat);
+  for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+    BodyModel& body = model.bodies[i];
+    body.may_touch = body.may_touch || partners[i] > 0;
+    if (flat_partners[i] > 0) contact::preparePair(body.shape, body.shape);
+  }
+}
+
 }  // namespace
 
 Material materialOf(const WorldModel& model, int a, int b) {
@@ -168,6 +219,21 @@ double slidingFriction(const Material& m, double speed) {
   const double ratio = speed / m.stribeck_speed;
   return m.mu_d + (m.mu_s - m.mu_d) * math::exp(-ratio * ratio);
 }
+
+namespace {
+
+// Every pair of bodies that can meet.
+void listPairs(WorldModel& model, const std::vector<IndexPair>& excluded) {
+  const int n = static_cast<int>(model.bodies.size());
+  for (int a = 0; a < n; ++a) {
+    for (int b = a + 1; b < n; ++b) {
+      if (!model.bodies[a].dynamic && !model.bodies[b].dynamic) continue;
+      if (!std::binary_search(excluded.begin(), excluded.end(), IndexPair(a, b))) model.pairs.push_back({a, b, materialOf(model, a, b)});
+    }
+  }
+}
+
+}  // namespace
 
 WorldBuilder::WorldBuilder(const WorldOptions& options) {
   requireRange("tick", options.h, 1e-5, 1e-2, "The tick is in seconds; 0.001 is the usual one.");
@@ -238,14 +304,7 @@ void WorldBuilder::setPairMaterial(int a, int b, const Material& material) {
   checkMaterial(
       fmt::format("pair {} and {}", model_.bodies[static_cast<std::size_t>(a)].name, model_.bodies[static_cast<std::size_t>(b)].name),
       material);
-  std::vector<PairModel>& special = model_.special_pairs;
-  const PairModel pair{std::min(a, b), std::max(a, b), material};
-  const auto place = std::lower_bound(special.begin(), special.end(), pair, comesBefore);
-  if (place != special.end() && !comesBefore(pair, *place)) {
-    *place = pair;
-  } else {
-    special.insert(place, pair);
-  }
+  model_.special_pairs.push_back({std::min(a, b), std::max(a, b), material});
 }
 
 int WorldBuilder::addJoint(const JointModel& joint) {
@@ -270,6 +329,7 @@ int WorldBuilder::addJoint(const JointModel& joint) {
 
 WorldModel WorldBuilder::build() const {
   WorldModel model = model_;
+  sortSpecialPairs(model.special_pairs);
   groupJoints(model);
   for (const BodyModel& body : model.bodies) model.bounces = model.bounces || body.material.restitution > 0;
   for (const PairModel& pair : model.special_pairs) model.bounces = model.bounces || pair.material.restitution > 0;
@@ -283,19 +343,15 @@ WorldModel WorldBuilder::build() const {
   model.has_corners = std::any_of(model.bodies.begin(), model.bodies.end(), has_corners);
   const auto may_be_hollow = [](const BodyModel& body) { return body.may_be_hollow; };
   model.has_hollows = !model.points.empty() && std::any_of(model.bodies.begin(), model.bodies.end(), may_be_hollow);
-  std::vector<std::pair<int, int>> excluded = excluded_;
+  std::vector<IndexPair> excluded = excluded_;
   std::sort(excluded.begin(), excluded.end());
-  for (int a = 0; a < n; ++a) {
-    for (int b = a + 1; b < n; ++b) {
-      BodyModel &A = model.bodies[a], &B = model.bodies[b];
-      if (!A.dynamic && !B.dynamic) continue;
-      if (std::binary_search(excluded.begin(), excluded.end(), std::pair(a, b))) continue;
-      contact::preparePair(A.shape, B.shape);
-      if (!model.has_broad_phase) model.pairs.push_back({a, b, materialOf(model, a, b)});
-      A.may_touch = B.may_touch = true;
-    }
+  excluded.erase(std::unique(excluded.begin(), excluded.end()), excluded.end());
+  findWhoMayTouch(model, excluded);
+  if (model.has_broad_phase) {
+    model.excluded_pairs = std::move(excluded);
+  } else {
+    listPairs(model, excluded);
   }
-  if (model.has_broad_phase) model.excluded_pairs = std::move(excluded);
   if (!model.points.empty()) {
     for (BodyModel& body : model.bodies) body.may_touch = true;
   }

@@ -1,5 +1,5 @@
 // Where everything would be in the middle of the tick, and how fast at its end, if nothing touched.
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "engine/motion/driven_motion.h"
 #include "engine/motion/free_motion.h"
 #include "engine/world/held_body.h"

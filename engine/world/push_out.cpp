@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "engine/motion/free_motion.h"
 #include "engine/world/contact_rows.h"
 

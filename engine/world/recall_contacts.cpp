@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "engine/world/contact_rows.h"
 
 namespace pincer::engine {

@@ -1,5 +1,5 @@
 // What each contact remembers of a tick.
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "engine/world/contact_rows.h"
 #include "engine/world/rest.h"
 

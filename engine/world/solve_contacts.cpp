@@ -1,7 +1,7 @@
-#include "contact/invariants.h"
-#include "engine/world/stages.h"
+#include "contact/functions/invariants.h"
 #include "engine/solve/cone.h"
 #include "engine/world/contact_rows.h"
+#include "engine/world/stages.h"
 
 namespace pincer::engine {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <bit>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "engine/motion/free_motion.h"
 #include "engine/world/joints.h"
 

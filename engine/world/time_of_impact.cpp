@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "contact/pair_query.h"
 #include "engine/motion/driven_motion.h"
 #include "engine/motion/free_motion.h"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "grasp/baseline/nearest_outside.h"
 #include "grasp/tick/finger_contacts.h"
 #include "grasp/tick/finger_tick.h"

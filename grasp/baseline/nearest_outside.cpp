@@ -2,7 +2,7 @@
 
 #include <Eigen/LU>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 
 namespace pincer::grasp {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <complex>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "contact/math.h"
 
 namespace pincer::grasp {
@@ -57,7 +57,8 @@ double loopRadius(const ArmPort& arm, double stiffness, double damping, double t
   }
   loop(2, 0) = 1;
   double radius = 0;
-  for (const std::complex<double>& z : Eigen::EigenSolver<Mat3>(loop, false).eigenvalues()) radius = std::max(radius, math::hypot(z.real(), z.imag()));
+  for (const std::complex<double>& z : Eigen::EigenSolver<Mat3>(loop, false).eigenvalues())
+    radius = std::max(radius, math::hypot(z.real(), z.imag()));
   return radius;
 }
 

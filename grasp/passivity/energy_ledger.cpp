@@ -1,8 +1,7 @@
 #include "grasp/energy_ledger.h"
 
+#include "contact/functions/invariants.h"
 #include "grasp/tick/scratch.h"
-
-#include "contact/invariants.h"
 
 namespace pincer::grasp {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "contact/error.h"
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 
 namespace pincer::grasp {
 namespace {

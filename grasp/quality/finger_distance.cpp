@@ -1,6 +1,6 @@
 #include "grasp/finger_distance.h"
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "grasp/tick/finger_contacts.h"
 
 namespace pincer::grasp {

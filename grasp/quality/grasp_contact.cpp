@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "grasp/tick/scratch.h"
 
 namespace pincer::grasp {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "grasp/quality/wrench_set.h"
 
 namespace pincer::grasp {

@@ -9,7 +9,7 @@
 #include <limits>
 #include <numbers>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 
 namespace pincer::grasp {
 namespace {

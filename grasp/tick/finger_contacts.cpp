@@ -3,7 +3,7 @@
 #include <limits>
 #include <type_traits>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 
 namespace pincer::grasp {
 namespace {

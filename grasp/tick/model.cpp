@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 
 namespace pincer::grasp {
 namespace {

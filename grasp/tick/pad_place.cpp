@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "grasp/step.h"
 
 namespace pincer::grasp {

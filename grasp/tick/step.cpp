@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "engine/motion/driven_motion.h"
 #include "grasp/tick/finger_contacts.h"
 #include "grasp/tick/finger_tick.h"

@@ -8,11 +8,14 @@
 #include <exception>
 #include <new>
 
+#include "contact/error.h"
+#include "contact/io/printable.h"
 #include "devices/window/surface.h"
 #include "tasks/app/commands.h"
 #include "tasks/app/process.h"
 #include "tasks/measure/interrupted.h"
 #include "tasks/servo/hand_devices.h"
+#include "tasks/session/build_info.h"
 
 namespace pincer::tasks {
 namespace {
@@ -42,13 +45,13 @@ int flushed(int exit_code) {
 
 int reportUsage(const CLI::App& app, const CLI::ParseError& error) {
   if (error.get_exit_code() == 0) return flushed(app.exit(error));  // --help, --version
-  complain(fmt::format("{}. See `pincer --help`.", error.what()));
+  complain(fmt::format("{}. See `pincer --help`.", printableMessage(error.what())));
   return kExitUsage;
 }
 
 int run(int argc, char** argv) {
   CLI::App app("pincer: multi-finger manipulation physics", "pincer");
-  app.set_version_flag("--version", "pincer " PINCER_VERSION);
+  app.set_version_flag("--version", versionText());
   app.footer(kExamples);
   app.require_subcommand(1);
   int exit_code = kExitOk;
@@ -73,13 +76,13 @@ int runApp(int argc, char** argv) {
     complain("interrupted. What was whole by then is kept, the rest is removed.");
     return kExitInterrupted;
   } catch (const devices::DisplayError& error) {
-    complain(error.what());
+    complain(printableMessage(error.what()));
     return kExitDevice;
   } catch (const DeviceError& error) {
-    complain(error.what());
+    complain(printableMessage(error.what()));
     return kExitDevice;
   } catch (const std::exception& error) {  // InputError; and what the system refuses, such as a thread
-    complain(error.what());
+    complain(printableMessage(error.what()));
     return kExitBadInput;
   }
 }

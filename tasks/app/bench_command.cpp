@@ -6,12 +6,14 @@
 #include "tasks/app/app.h"
 #include "tasks/app/commands.h"
 #include "tasks/app/measure_command.h"
+#include "tasks/app/usage.h"
 #include "tasks/bench/contact_bench.h"
 #include "tasks/bench/devices/devices_bench.h"
 #include "tasks/bench/engine/engine_bench.h"
 #include "tasks/bench/grasp/grasp_bench.h"
 #include "tasks/bench/study_bench.h"
 #include "tasks/bench/view_bench.h"
+#include "tasks/scene/strict_json.h"
 
 namespace pincer::tasks {
 namespace {
@@ -76,7 +78,7 @@ void addContactBench(CLI::App& bench, const std::shared_ptr<BenchArguments>& arg
   CLI::App* contact = bench.add_subcommand("contact", "A finger on meshes: iterations, failures, continuity, errors, nanoseconds");
   addMeasureOptions(*contact, arguments->measure);
   contact->add_option("--queries", arguments->contact.queries, "Queries per object")
-      ->check(CLI::Range(1000, 100'000'000))
+      ->check(wholeWithin(1000, 100'000'000))
       ->capture_default_str();
   contact->add_option("--meshes", arguments->contact.meshes, "Directory of mesh files to touch too, each scaled to 80 mm");
   contact->add_option("--out", arguments->contact.out, "Directory for tables (CSV) and plots of the contact's place on the finger");
@@ -94,7 +96,7 @@ void addEngineBench(CLI::App& bench, const std::shared_ptr<BenchArguments>& argu
   engine->add_flag("--peers", arguments->engine.peers, "Run other engines too (built with -DPINCER_PEERS=ON)");
   engine->add_flag("--long", arguments->engine.whole, "Scenes of a minute last a minute, and 1000 spheres fall");
   engine->add_option("--rounds", arguments->engine.race.rounds, "Rounds of timing; the least of them counts")
-      ->check(CLI::Range(1, 100))
+      ->check(wholeWithin(1, 100))
       ->capture_default_str();
   engine->footer(kEngineExample);
   engine->callback(
@@ -104,7 +106,9 @@ void addEngineBench(CLI::App& bench, const std::shared_ptr<BenchArguments>& argu
 void addStudyBench(CLI::App& bench, const std::shared_ptr<BenchArguments>& arguments, int& exit_code) {
   CLI::App* study = bench.add_subcommand("study", "Staircases and fits, on observers whose thresholds are known");
   addMeasureOptions(*study, arguments->measure);
-  study->add_option("--observers", arguments->study.observers, "Per measurement")->check(CLI::Range(100, 1'000'000))->capture_default_str();
+  study->add_option("--observers", arguments->study.observers, "Per measurement")
+      ->check(wholeWithin(100, 1'000'000))
+      ->capture_default_str();
   study->footer(kStudyExample);
   study->callback(
       [arguments, &exit_code] { exit_code = runMeasurements(studyMeasurements(arguments->study), arguments->measure, "bench study"); });
@@ -122,9 +126,9 @@ void addGraspBench(CLI::App& bench, const std::shared_ptr<BenchArguments>& argum
 void addViewBench(CLI::App& bench, const std::shared_ptr<BenchArguments>& arguments, int& exit_code) {
   CLI::App* view = bench.add_subcommand("view", "Watching: pictures per second, a snapshot's cost, whether it delays the servo");
   addMeasureOptions(*view, arguments->measure);
-  view->add_option("--pictures", arguments->view.pictures, "Pictures to time")->check(CLI::Range(1, 10000))->capture_default_str();
+  view->add_option("--pictures", arguments->view.pictures, "Pictures to time")->check(wholeWithin(1, 10000))->capture_default_str();
   view->add_option("--seconds", arguments->view.seconds, "Of the servo in real time, watched and not")
-      ->check(CLI::Range(0.1, 3.9))
+      ->check(within({.min = 0.1, .max = 3.9, .remedy = "In seconds."}))
       ->capture_default_str();
   view->footer("\nExample:\n  pincer bench view");
   view->callback(
@@ -135,10 +139,10 @@ void addDevicesBench(CLI::App& bench, const std::shared_ptr<BenchArguments>& arg
   CLI::App* devices = bench.add_subcommand("devices", "Displays, arm, force limiter and USB against what is published and promised");
   addMeasureOptions(*devices, arguments->measure);
   devices->add_option("--seconds", arguments->devices.seconds, "Of two hands at 1 kHz")
-      ->check(CLI::Range(1.0, 3600.0))
+      ->check(within({.min = 1.0, .max = 3600.0, .remedy = "In seconds."}))
       ->capture_default_str();
   devices->add_option("--cycles", arguments->devices.cycles, "Of pulling out and plugging in")
-      ->check(CLI::Range(1, 100000))
+      ->check(wholeWithin(1, 100000))
       ->capture_default_str();
   devices->add_option("--usb", arguments->devices.usb, "The program that measures USB (default: devices_bench beside this one)");
   devices->footer(kDevicesExample);

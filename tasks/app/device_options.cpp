@@ -7,9 +7,12 @@
 #include <CLI/CLI.hpp>
 #include <csignal>
 
+#include "contact/io/printable.h"
 #include "tasks/app/interrupt.h"
 #include "tasks/app/print.h"
 #include "tasks/app/servo_text.h"
+#include "tasks/app/usage.h"
+#include "tasks/scene/strict_json.h"
 
 namespace pincer::tasks {
 
@@ -44,7 +47,7 @@ void addDeviceOptions(CLI::App& command, DeviceRunOptions& options) {
       .add_option("--watchdog", options.watchdog_ms,
                   "Of usb and falcon: so long may the program stall before forces are cut; samples count for 0.6 of it, arms go limp after "
                   "0.8 [ms]")
-      ->check(CLI::Range(2.0, 100.0))
+      ->check(within({.min = 2, .max = 100, .remedy = "In milliseconds."}))
       ->default_str("5");
   command.add_option("--calibration", options.which.calibrations, "Files of the arms' bases (pincer devices calibrate --save)")
       ->delimiter(',');
@@ -67,9 +70,11 @@ std::unique_ptr<HandDevices> openDevices(const DeviceRunOptions& options, ServoO
   DeviceOptions which = options.which;
   which.watchdog = servo.watchdog;
   which.choice = choice;
+  if (choice == DeviceChoice::kReplay && which.recording.empty())
+    refuseUsage("--devices replay needs the recording: --recording FILE, a session.db, or a CSV of samples (pincer export)");
   if (choice == DeviceChoice::kSim || choice == DeviceChoice::kMouse) return nullptr;
   auto devices = openHandDevices(which);
-  for (const std::string& line : devices->describe()) print(stderr, "{}\n", line);
+  for (const std::string& line : devices->describe()) print(stderr, "{}\n", printableMessage(line));
   servo.clock = hasMotors(choice) ? ServoClock::kReal : ServoClock::kPaced;
   return devices;
 }

@@ -10,6 +10,7 @@
 #include "tasks/app/app.h"
 #include "tasks/app/devices_commands.h"
 #include "tasks/app/print.h"
+#include "tasks/app/usage.h"
 #include "tasks/servo/device_calibration.h"
 #include "tasks/servo/hand_devices_parts.h"
 
@@ -47,8 +48,9 @@ NamedValue assignment(const std::string& text) {
   const std::string number = equals == std::string::npos ? "" : text.substr(equals + 1);
   const double value = std::strtod(number.c_str(), &end);
   if (number.empty() || *end != '\0') {
-    throw InputError(fmt::format("calibrate: \"{}\" isn't NAME=VALUE. For example --set base_x=0.012.", text));
+    refuseUsage(fmt::format("calibrate: \"{}\" isn't NAME=VALUE. For example --set base_x=0.012.", text));
   }
+  asUsage([&] { checkCalibrationValue(text.substr(0, equals), value); });
   return {text.substr(0, equals), value};
 }
 

@@ -5,14 +5,17 @@
 #include <memory>
 #include <thread>
 
+#include "contact/io/printable.h"
 #include "devices/falcon/falcon_arm.h"
 #include "devices/usb/usb_host.h"
 #include "tasks/app/app.h"
 #include "tasks/app/devices_commands.h"
 #include "tasks/app/interrupt.h"
 #include "tasks/app/print.h"
+#include "tasks/app/usage.h"
 #include "tasks/measure/interrupted.h"
 #include "tasks/scene/json_writer.h"
+#include "tasks/scene/strict_json.h"
 #include "tasks/servo/hand_devices_parts.h"
 
 namespace pincer::tasks {
@@ -34,22 +37,22 @@ std::string tipOf(const devices::ArmCapabilities& can) {
 
 void listArm(const devices::usb::UsbArm& arm) {
   const auto& can = arm.capabilities();
-  print("arm      {:<12} {:<16} {:<10} {:.3g} N peak, {:.3g} N continuous, {:.3g} um, {:.3g} N/mm{}\n", arm.deviceIdentity().serial,
-        arm.deviceIdentity().model, devices::nameOf(arm.linkState()), can.peak_force, can.continuous_force, 1e6 * can.resolution,
-        1e-3 * can.stiffness_limit, tipOf(can));
+  print("arm      {:<12} {:<16} {:<10} {:.3g} N peak, {:.3g} N continuous, {:.3g} um, {:.3g} N/mm{}\n",
+        printable(arm.deviceIdentity().serial), printable(arm.deviceIdentity().model), devices::nameOf(arm.linkState()), can.peak_force,
+        can.continuous_force, 1e6 * can.resolution, 1e-3 * can.stiffness_limit, tipOf(can));
 }
 
 void listDisplay(const devices::usb::UsbDisplay& display) {
   const auto& can = display.capabilities();
-  print("display  {:<12} {:<16} {:<10} +-{:.3g} x +-{:.3g} mm, {:.3g} um, {:.3g} mm/s\n", display.deviceIdentity().serial,
-        display.deviceIdentity().model, devices::nameOf(display.linkState()), 1e3 * can.reach.x(), 1e3 * can.reach.y(),
+  print("display  {:<12} {:<16} {:<10} +-{:.3g} x +-{:.3g} mm, {:.3g} um, {:.3g} mm/s\n", printable(display.deviceIdentity().serial),
+        printable(display.deviceIdentity().model), devices::nameOf(display.linkState()), 1e3 * can.reach.x(), 1e3 * can.reach.y(),
         1e6 * can.resolution, 1e3 * can.speed);
 }
 
 // Found, not opened: that would take its firmware, and homing.
 void listFalcon(const devices::falcon::FalconPlace& place) {
   print("falcon   {:<12} {:<16} {:<10} pincer run ... --devices falcon --arms {}\n", place.port, "Novint Falcon",
-        place.serial.empty() ? "-" : place.serial, place.port);
+        place.serial.empty() ? "-" : printable(place.serial), place.port);
 }
 
 template <typename Device>
@@ -89,7 +92,7 @@ int listDevices(const DevicesListArguments& arguments) {
     for (const auto* arm : host.arms()) listArm(*arm);
     for (const auto* display : host.displays()) listDisplay(*display);
     for (const auto& falcon : falcons) listFalcon(falcon);
-    for (const std::string& problem : host.problems()) print("{}\n", problem);
+    for (const std::string& problem : host.problems()) print("{}\n", printableMessage(problem));
     if (host.arms().empty() && host.displays().empty() && falcons.empty() && host.problems().empty()) {
       print("No device of pincer's USB protocol is plugged in. Check cable and power; `lsusb` must show 1209:0001 (docs/devices.md).\n");
     }
@@ -103,7 +106,9 @@ void addDevicesList(CLI::App& devices, int& exit_code) {
   auto arguments = std::make_shared<DevicesListArguments>();
   CLI::App* command = devices.add_subcommand("list", "What is plugged in, and what it can do");
   command->add_flag("--json", arguments->json, "For machines");
-  command->add_option("--timeout", arguments->timeout, "For devices to answer [s]")->check(CLI::Range(0.1, 60.0))->capture_default_str();
+  command->add_option("--timeout", arguments->timeout, "For devices to answer [s]")
+      ->check(within({.min = 0.1, .max = 60, .remedy = "In seconds."}))
+      ->capture_default_str();
   command->footer("\nExample:\n  pincer devices list");
   command->callback([arguments, &exit_code] { exit_code = listDevices(*arguments); });
 }

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "contact/io/printable.h"
 #include "devices/gate/force_gate.h"
 #include "devices/usb/usb_host.h"
 #include "tasks/app/app.h"
@@ -120,7 +121,7 @@ int testDevices(const DevicesTestArguments& arguments) {
   host.waitFor(16, 16, 1);  // whatever answers within a second
   const auto arms = withSerial(host.arms(), arguments.serial);
   const auto displays = withSerial(host.displays(), arguments.serial);
-  for (const std::string& problem : host.problems()) print("{}\n", problem);
+  for (const std::string& problem : host.problems()) print("{}\n", printableMessage(problem));
   if (arms.empty() && displays.empty()) {
     throw DeviceError(arguments.serial.empty()
                           ? "No device is ready on USB. See what is there: pincer devices list"

@@ -8,6 +8,7 @@
 #include "tasks/app/commands.h"
 #include "tasks/app/interrupt.h"
 #include "tasks/app/print.h"
+#include "tasks/app/usage.h"
 #include "tasks/session/bids_export.h"
 #include "tasks/session/csv_export.h"
 
@@ -49,8 +50,10 @@ void addExportCommand(CLI::App& app, int& exit_code) {
   command->add_option("session", arguments->session, "Session file")->required();
   command->add_option("--out", arguments->directory, "Directory for the tables (default: csv beside the session)");
   command->add_option("--bids", arguments->bids, "The trials as a BIDS data set in this directory, in place of CSV tables");
-  command->add_option("--trial", arguments->filter.trial, "Samples of this trial only");
-  command->add_option("--every", arguments->filter.stride, "Every n-th sample only")->check(CLI::PositiveNumber)->capture_default_str();
+  command->add_option("--trial", arguments->filter.trial, "Samples of this trial only")->check(wholeWithin(0, 1'000'000'000));
+  command->add_option("--every", arguments->filter.stride, "Every n-th sample only")
+      ->check(wholeWithin(1, 1'000'000'000))
+      ->capture_default_str();
   command->footer(kExportExample);
   command->callback([arguments, &exit_code] { exit_code = exportSession(*arguments); });
 }

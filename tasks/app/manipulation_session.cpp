@@ -8,7 +8,7 @@
 #include "contact/error.h"
 #include "tasks/experiments/manipulation_file.h"
 #include "tasks/scene/json_writer.h"
-#include "tasks/session/session_store.h"
+#include "tasks/session/build_info.h"
 
 namespace pincer::tasks {
 namespace {
@@ -70,6 +70,15 @@ ManipulationSessionResult runInto(SessionWriter& writer, const ManipulationSessi
   return result;
 }
 
+std::set<std::int64_t> finishedTrials(const SessionReader& session, std::size_t planned) {
+  std::set<std::int64_t> finished;
+  for (const TrialRecord& trial : session.trials()) {
+    requirePlanned(session, trial.trial, planned);
+    finished.insert(trial.trial);
+  }
+  return finished;
+}
+
 SessionOptions storeOptions(const ServoOptions& servo) {
   SessionOptions store;
   store.block_when_full = servo.clock != ServoClock::kReal;
@@ -82,13 +91,20 @@ SessionInfo manipulationSessionInfo(const ManipulationSessionOptions& o) {
   SessionInfo info;
   info.task = taskName(o.study);
   info.seed = o.study.seed;
-  info.version = PINCER_VERSION;
-  info.build = "compiler " __VERSION__;
+  tellBuild(info);
   info.protocol_json = studyFile(o.study);
   info.devices_json = devicesJson(o);
   info.participants_json = describe(o.study.people);
   info.participants_hash = hashOf(o.study.people);
   return info;
+}
+
+void requirePlanned(const SessionReader& session, std::int64_t trial, std::size_t planned) {
+  if (trial >= 0 && trial < static_cast<std::int64_t>(planned)) return;
+  throw InputError(
+      fmt::format("{}: trial {} isn't one of its plan, which has trials 0 to {}. The file is damaged, or something else than pincer "
+                  "changed it. Take a copy of before.",
+                  session.path(), trial, static_cast<std::int64_t>(planned) - 1));
 }
 
 void validate(const ManipulationSessionOptions& options) {
@@ -111,15 +127,11 @@ ManipulationSessionResult runManipulationSession(const ManipulationSessionOption
 ManipulationSessionResult resumeManipulationSession(const ManipulationSessionOptions& wanted, const std::string& path,
                                                     const std::atomic<bool>& interrupted, const TrialProgressLine& progress) {
   ManipulationSessionOptions options = wanted;
-  StudyHooks hooks{{}, progress, {}, {}};
-  {
-    const SessionReader session(path);
-    if (session.complete()) throw InputError(path + ": the session is complete; there is nothing to go on with.");
-    options.study = parseStudyFile(session.info().protocol_json, path + ": protocol");
-    for (const TrialRecord& trial : session.trials()) hooks.finished.insert(trial.trial);
-  }
+  options.study = parseStudyFile(SessionReader(path).info().protocol_json, path + ": protocol");
   validate(options);
   SessionWriter writer = SessionWriter::resume(path, storeOptions(options.servo));
+  StudyHooks hooks{{}, progress, {}, {}};
+  hooks.finished = finishedTrials(SessionReader(path), manipulationTrials(options.study).size());
   return runInto(writer, options, hooks, interrupted);
 }
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "tasks/experiments/manipulation_study.h"
-#include "tasks/session/records.h"
+#include "tasks/session/session_store.h"
 
 namespace pincer::tasks {
 
@@ -23,6 +23,9 @@ void validate(const ManipulationSessionOptions& options);
 
 // What such a session says of its study, people, program and devices.
 SessionInfo manipulationSessionInfo(const ManipulationSessionOptions& options);
+
+// Throws InputError for a trial that the session's plan of `planned` trials doesn't have.
+void requirePlanned(const SessionReader& session, std::int64_t trial, std::size_t planned);
 
 struct ManipulationSessionResult {
   std::size_t trials = 0;    // finished, those of a resumed session's earlier runs included

@@ -14,6 +14,7 @@
 #include "tasks/app/process.h"
 #include "tasks/app/progress.h"
 #include "tasks/app/record_text.h"
+#include "tasks/app/usage.h"
 #include "tasks/scene/json_writer.h"
 
 namespace pincer::tasks {
@@ -23,8 +24,8 @@ std::vector<Measurement> selected(const std::vector<Measurement>& all, const std
   std::vector<Measurement> chosen;
   std::copy_if(all.begin(), all.end(), std::back_inserter(chosen), [&](const Measurement& m) { return matches(m.name, pattern); });
   if (!chosen.empty()) return chosen;
-  throw InputError(fmt::format("--only {}: no measurement has a name like this. --list shows all {} of them; * stands for any text.",
-                               pattern, all.size()));
+  refuseUsage(fmt::format("--only {}: no measurement has a name like this. --list shows all {} of them; * stands for any text.", pattern,
+                          all.size()));
 }
 
 void printNames(const std::vector<Measurement>& measurements, bool as_json) {

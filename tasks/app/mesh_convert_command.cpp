@@ -4,17 +4,20 @@
 #include <algorithm>
 #include <memory>
 
+#include "contact/io/printable.h"
 #include "contact/mesh_repair.h"
 #include "tasks/app/app.h"
 #include "tasks/app/mesh_commands.h"
 #include "tasks/app/print.h"
+#include "tasks/app/usage.h"
+#include "tasks/scene/scene_ranges.h"
 
 namespace pincer::tasks {
 namespace {
 
 constexpr const char* kMeshConvertExample = R"(
 The formats are told from the names: OBJ, STL, PLY, OFF. With --repair every change is printed; a sound mesh comes out as it went in.
-What is left to mend by hand is printed last.
+What is left to mend by hand is printed last; if that makes the mesh unfit for grasping, the exit code is 1 although the file is written.
 
 Examples:
   pincer mesh convert scan.stl scan.obj --units mm --to-units m --repair
@@ -45,8 +48,9 @@ contact::TriangleMesh repaired(contact::TriangleMesh mesh, const ConvertArgument
   return std::move(result.mesh);
 }
 
-void convert(const ConvertArguments& arguments) {
-  print("{}\n", arguments.input.file);
+// False if a repair was asked for and something is left that makes the mesh unfit.
+bool convert(const ConvertArguments& arguments) {
+  print("{}\n", printable(arguments.input.file));
   contact::TriangleMesh mesh =
       readWithProgress(arguments.input, arguments.repair ? contact::Degenerate::keep : contact::Degenerate::reject);
   if (arguments.size > 0) scaleToSize(arguments.size, mesh);
@@ -55,6 +59,7 @@ void convert(const ConvertArguments& arguments) {
   writeAndSay(arguments.input, arguments.out, mesh, units);
   const contact::MeshReport report = contact::inspect(mesh, {.metres_per_unit = contact::metresPerUnit(arguments.input.units)});
   print("{}", findingsText(report.findings));
+  return !arguments.repair || report.isFit();
 }
 
 }  // namespace
@@ -65,19 +70,16 @@ void addMeshConvert(CLI::App& mesh, int& exit_code) {
   addMeshFile(*command, arguments->input);
   command->add_option("out", arguments->out, "File to write (.obj, .stl, .ply or .off)")->required();
   addUnits(*command, "--to-units", arguments->to_units, "Length unit to write (default: as read)");
-  command->add_option("--size", arguments->size, "Scale it so that its largest dimension is this [m]")->check(CLI::PositiveNumber);
+  command->add_option("--size", arguments->size, "Scale it so that its largest dimension is this [m]")->check(within(ranges::kLength));
   auto* repair = command->add_flag("--repair", arguments->repair, "Mend what can be mended without guessing at the shape");
   command->add_option("--weld", arguments->weld, "With --repair: make vertices on open edges one that are so near [mm]")
-      ->check(CLI::NonNegativeNumber)
+      ->check(within({.min = 0, .max = 1e3, .remedy = "In millimetres."}))
       ->needs(repair);
   command->add_option("--fill-holes", arguments->fill_holes, "With --repair: close nearly flat holes of at most so many edges")
-      ->check(CLI::Range(0, 1000))
+      ->check(wholeWithin(0, 1000))
       ->needs(repair);
   command->footer(kMeshConvertExample);
-  command->callback([arguments, &exit_code] {
-    convert(*arguments);
-    exit_code = kExitOk;
-  });
+  command->callback([arguments, &exit_code] { exit_code = convert(*arguments) ? kExitOk : kExitCheckFailed; });
 }
 
 }  // namespace pincer::tasks

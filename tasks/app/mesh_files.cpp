@@ -4,6 +4,8 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
+#include "contact/io/counted.h"
+#include "contact/io/printable.h"
 #include "contact/mesh/mesh_writer.h"
 #include "tasks/app/interrupt.h"
 #include "tasks/app/mesh_commands.h"
@@ -43,7 +45,8 @@ void writeAndSay(const MeshInput& input, const std::string& out, const contact::
   throwIf(interruptFlag());
   const contact::WriteOptions options = {.metres_per_unit = contact::metresPerUnit(units)};
   contact::writeMesh(out, mesh, options);
-  print("{}: {} vertices, {} triangles, in {}\n", out, mesh.vertices.size(), mesh.triangles.size(), units);
+  print("{}: {}, {}, in {}\n", printable(out), counted(static_cast<std::int64_t>(mesh.vertices.size()), "vertex"),
+        counted(static_cast<std::int64_t>(mesh.triangles.size()), "triangle"), units);
   for (const std::string& loss : contact::lossesOf(mesh, *contact::formatOfName(out), options)) print("  - lost: {}\n", loss);
 }
 

@@ -4,11 +4,15 @@
 #include <cmath>
 #include <memory>
 
+#include "contact/io/counted.h"
+#include "contact/io/printable.h"
 #include "engine/motion/mass.h"
 #include "tasks/app/app.h"
 #include "tasks/app/mesh_commands.h"
 #include "tasks/app/print.h"
 #include "tasks/app/terminal.h"
+#include "tasks/app/usage.h"
+#include "tasks/scene/scene_ranges.h"
 
 namespace pincer::tasks {
 namespace {
@@ -26,6 +30,8 @@ Exit code 0: fit for grasping; 1: something named "!" makes it unfit; 3: the fil
 Example:
   pincer mesh check bunny.obj --units m --finger-radius 8)";
 
+constexpr NumberRule kFingerMillimetres = {.min = 1e-3, .max = 1e3, .remedy = "In millimetres; a fingertip has 8."};
+
 struct MeshArguments {
   MeshInput input;
   double density = 1000;  // [kg/m^3]
@@ -35,8 +41,9 @@ struct MeshArguments {
 
 struct MeshFacts {
   MeshCheck check;
-  bool solid = false;  // closed and turned outwards: it has a mass
+  std::string no_mass;  // why it has none; empty: the rest holds
   engine::MassProperties mass;
+  Vec3 moments = Vec3::Zero();  // principal ones [kg m^2]
 };
 
 MeshFacts examine(const MeshArguments& arguments) {
@@ -44,17 +51,25 @@ MeshFacts examine(const MeshArguments& arguments) {
   MeshFacts facts;
   facts.check = checkMesh(mesh, contact::metresPerUnit(arguments.input.units), kMetresPerMillimetre * arguments.finger_radius);
   const contact::MeshReport& report = facts.check.report;
-  facts.solid = report.closed && report.volume > 0;
-  if (facts.solid) facts.mass = engine::massPropertiesOf(mesh, arguments.density * report.volume);
+  if (!(report.closed && report.volume > 0)) {
+    facts.no_mass = "the surface encloses no volume";
+    return facts;
+  }
+  try {
+    facts.mass = engine::massPropertiesOf(mesh, arguments.density * report.volume);
+    facts.moments = engine::principalInertia(facts.mass).moments;
+  } catch (const InputError&) {  // a piece that faces inwards counts with a negative mass
+    facts.no_mass = "parts of the surface are turned inside out, or pass through each other";
+  }
   return facts;
 }
 
 std::string massText(const MeshFacts& facts, double density) {
-  if (!facts.solid) return "  no mass: the surface encloses no volume\n";
+  if (!facts.no_mass.empty()) return fmt::format("  no mass: {}\n", facts.no_mass);
   const engine::MassProperties& m = facts.mass;
   std::string out = fmt::format("  at {:g} kg/m^3: {:.4g} g, centre of mass ({:.4g}, {:.4g}, {:.4g}) mm\n", density, 1e3 * m.mass,
                                 1e3 * m.p_BBcm.x(), 1e3 * m.p_BBcm.y(), 1e3 * m.p_BBcm.z());
-  const Vec3 moments = 1e9 * engine::principalInertia(m).moments;
+  const Vec3 moments = 1e9 * facts.moments;
   return out + fmt::format("  principal moments of inertia {:.4g}, {:.4g}, {:.4g} g mm^2\n", moments.x(), moments.y(), moments.z());
 }
 
@@ -62,7 +77,7 @@ std::string surfaceText(const MeshCheck& check) {
   if (!check.has_surface) return "  no smooth surface: the triangles don't hang together as one needs\n";
   const std::string hollow =
       std::isinf(check.concave_radius) ? "nothing is concave" : fmt::format("tightest hollow {:.3g} mm", 1e3 * check.concave_radius);
-  return fmt::format("  smooth surface: {}, {} folded patch{}\n", hollow, check.folded_triangles, check.folded_triangles == 1 ? "" : "es");
+  return fmt::format("  smooth surface: {}, {}\n", hollow, counted(check.folded_triangles, "folded patch"));
 }
 
 std::string findingsOrNone(const contact::MeshReport& report) {
@@ -77,19 +92,19 @@ const char* featureSource(const contact::MeshReport& r) {
 std::string infoText(const MeshArguments& arguments, const MeshFacts& facts) {
   const contact::MeshReport& r = facts.check.report;
   const Vec3 size = 1e3 * (r.box_max - r.box_min);
-  std::string out = fmt::format("{}\n", arguments.input.file);
-  out += fmt::format("  {} vertices, {} triangles, {} edges, {} piece{}\n", r.vertices, r.triangles, r.edges, r.components,
-                     r.components == 1 ? "" : "s");
+  std::string out = fmt::format("{}\n", printable(arguments.input.file));
+  out += fmt::format("  {}, {}, {}, {}\n", counted(r.vertices, "vertex"), counted(r.triangles, "triangle"), counted(r.edges, "edge"),
+                     counted(r.components, "piece"));
   out += fmt::format("  {:.4g} x {:.4g} x {:.4g} mm, area {:.4g} mm^2, volume {:.4g} mm^3\n", size.x(), size.y(), size.z(), 1e6 * r.area,
                      1e9 * r.volume);
-  out += fmt::format("  {}, {} sharp edges at {} vertices ({})\n", r.closed ? "closed" : "open", r.crease_edges, r.creased_vertices,
-                     featureSource(r));
+  out += fmt::format("  {}, {} at {} ({})\n", r.closed ? "closed" : "open", counted(r.crease_edges, "sharp edge"),
+                     counted(r.creased_vertices, "vertex"), featureSource(r));
   return out + surfaceText(facts.check) + massText(facts, arguments.density) + findingsOrNone(r);
 }
 
 std::string checkText(const MeshArguments& arguments, const MeshFacts& facts) {
   const contact::MeshReport& r = facts.check.report;
-  return fmt::format("{}: {}\n", arguments.input.file, r.isFit() ? good("fit for grasping") : bad("unfit for grasping")) +
+  return fmt::format("{}: {}\n", printable(arguments.input.file), r.isFit() ? good("fit for grasping") : bad("unfit for grasping")) +
          findingsOrNone(r);
 }
 
@@ -109,7 +124,7 @@ void writeCounts(const contact::MeshReport& r, JsonWriter& json) {
 
 void writeMass(const MeshFacts& facts, double density, JsonWriter& json) {
   json.key("mass").beginObject().key("density").value(density).key("mass").value(facts.mass.mass);
-  json.key("p_BBcm").value(facts.mass.p_BBcm).key("principal_moments").value(engine::principalInertia(facts.mass).moments).endObject();
+  json.key("p_BBcm").value(facts.mass.p_BBcm).key("principal_moments").value(facts.moments).endObject();
 }
 
 std::string meshJson(const MeshArguments& arguments, const MeshFacts& facts) {
@@ -119,7 +134,7 @@ std::string meshJson(const MeshArguments& arguments, const MeshFacts& facts) {
   if (facts.check.has_surface) {
     json.key("folded_triangles").value(facts.check.folded_triangles).key("concave_radius").value(facts.check.concave_radius);
   }
-  if (facts.solid) writeMass(facts, arguments.density, json);
+  if (facts.no_mass.empty()) writeMass(facts, arguments.density, json);
   writeFindings(facts.check.report.findings, json);
   return json.endObject().text();
 }
@@ -127,7 +142,7 @@ std::string meshJson(const MeshArguments& arguments, const MeshFacts& facts) {
 void addCommonOptions(CLI::App& command, MeshArguments& arguments) {
   addMeshFile(command, arguments.input);
   command.add_option("--finger-radius", arguments.finger_radius, "Radius of the fingertip that will touch it [mm]")
-      ->check(CLI::PositiveNumber)
+      ->check(within(kFingerMillimetres))
       ->capture_default_str();
   command.add_flag("--json", arguments.json, "Print the result as JSON, in SI units");
 }
@@ -139,7 +154,9 @@ void addMeshInfo(CLI::App& mesh, int& exit_code) {
   CLI::App* info = mesh.add_subcommand("info", "Size, mass properties and faults of a mesh");
   addCommonOptions(*info, *arguments);
   info->get_option("--units")->required();
-  info->add_option("--density", arguments->density, "Density of the solid [kg/m^3]")->check(CLI::PositiveNumber)->capture_default_str();
+  info->add_option("--density", arguments->density, "Density of the solid [kg/m^3]")
+      ->check(within(ranges::kDensity))
+      ->capture_default_str();
   info->footer(kInfoExample);
   info->callback([arguments, &exit_code] {
     const MeshFacts facts = examine(*arguments);

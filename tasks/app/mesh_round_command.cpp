@@ -4,10 +4,14 @@
 #include <cmath>
 #include <memory>
 
+#include "contact/io/counted.h"
+#include "contact/io/printable.h"
 #include "contact/mesh/round_edges.h"
 #include "tasks/app/app.h"
 #include "tasks/app/mesh_commands.h"
 #include "tasks/app/print.h"
+#include "tasks/app/usage.h"
+#include "tasks/scene/strict_json.h"
 
 namespace pincer::tasks {
 namespace {
@@ -28,8 +32,6 @@ struct RoundArguments {
   bool ignore_normals = false;
 };
 
-std::string counted(int n, const char* one, const char* many) { return fmt::format("{} {}", n, n == 1 ? one : many); }
-
 void roundFile(const RoundArguments& arguments) {
   const contact::TriangleMesh mesh = readWithProgress(arguments.input, contact::Degenerate::reject);
   const contact::RoundedMesh rounded = contact::roundEdges(mesh, {.radius = kMetresPerMillimetre * arguments.radius,
@@ -37,10 +39,10 @@ void roundFile(const RoundArguments& arguments) {
                                                                   .use_file_normals = !arguments.ignore_normals,
                                                                   .segments = arguments.segments});
   if (rounded.creases + rounded.tips == 0) {
-    print("{}: no edge is sharp; the result is a copy\n", arguments.input.file);
+    print("{}: no edge is sharp; the result is a copy\n", printable(arguments.input.file));
   } else {
-    print("{}: rounded {}, {} and {} to {} mm\n", arguments.input.file, counted(rounded.creases, "edge", "edges"),
-          counted(rounded.corners, "corner", "corners"), counted(rounded.tips, "tip", "tips"), arguments.radius);
+    print("{}: rounded {}, {} and {} to {} mm\n", printable(arguments.input.file), counted(rounded.creases, "edge"),
+          counted(rounded.corners, "corner"), counted(rounded.tips, "tip"), arguments.radius);
   }
   writeAndSay(arguments.input, arguments.out, rounded.mesh, arguments.input.units);
 }
@@ -52,11 +54,15 @@ void addMeshRoundEdges(CLI::App& mesh, int& exit_code) {
   CLI::App* command = mesh.add_subcommand("round-edges", "Round sharp edges, so that a finger keeps contact there");
   addMeshFile(*command, arguments->input);
   command->add_option("out", arguments->out, "File to write (.obj, .stl, .ply or .off)")->required();
-  command->add_option("--radius", arguments->radius, "Radius of the rounding [mm]")->check(CLI::PositiveNumber)->capture_default_str();
-  command->add_option("--crease-angle", arguments->crease_angle, "Edges with a larger angle between facets are sharp [degrees]")
-      ->check(CLI::Range(1.0, 180.0))
+  command->add_option("--radius", arguments->radius, "Radius of the rounding [mm]")
+      ->check(within({.min = 1e-3, .max = 1e3, .remedy = "In millimetres."}))
       ->capture_default_str();
-  command->add_option("--segments", arguments->segments, "Pieces of an arc of 90 degrees")->check(CLI::Range(1, 64))->capture_default_str();
+  command->add_option("--crease-angle", arguments->crease_angle, "Edges with a larger angle between facets are sharp [degrees]")
+      ->check(within({.min = 1, .max = 180, .remedy = "In degrees."}))
+      ->capture_default_str();
+  command->add_option("--segments", arguments->segments, "Pieces of an arc of 90 degrees")
+      ->check(wholeWithin(1, 64))
+      ->capture_default_str();
   command->add_flag("--ignore-normals", arguments->ignore_normals, "The crease angle decides, not the file's normals");
   command->footer(kMeshRoundExample);
   command->callback([arguments, &exit_code] {

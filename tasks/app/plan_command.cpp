@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 
+#include "contact/io/printable.h"
 #include "engine/world/stage_clock.h"
 #include "tasks/app/app.h"
 #include "tasks/app/commands.h"
@@ -14,6 +15,7 @@
 #include "tasks/app/print.h"
 #include "tasks/app/progress.h"
 #include "tasks/app/tick_times.h"
+#include "tasks/app/usage.h"
 #include "tasks/scene/builtin_scenes.h"
 #include "tasks/scene/json_writer.h"
 #include "tasks/scene/simulation.h"
@@ -87,7 +89,7 @@ std::string timesRow(const char* name, const TickTimes& times) {
 }
 
 std::string planText(const Scene& scene, const std::vector<PlanLine>& plan, const PlanTimes& times) {
-  std::string out = fmt::format("{}\n{}\n\n", scene.file, scene.description);
+  std::string out = fmt::format("{}\n{}\n\n", printable(scene.file), printable(scene.description, kLongestMessage));
   std::size_t width = 0;
   for (const PlanLine& line : plan) width = std::max(width, line.name.size());
   for (const PlanLine& line : plan) out += fmt::format("  {:<8} {:<{}}  {}\n", line.part, line.name, width, line.form);
@@ -131,7 +133,7 @@ void addPlanCommand(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<PlanArguments>();
   CLI::App* command = app.add_subcommand("plan", "What runs in a tick of a scene, and what it costs");
   command->add_option("scene", arguments->scene, "Scene file (JSON), or the name of a built-in scene")->required();
-  command->add_option("--ticks", arguments->ticks, "Ticks to measure")->check(CLI::Range(1, 10'000'000))->capture_default_str();
+  command->add_option("--ticks", arguments->ticks, "Ticks to measure")->check(wholeWithin(1, 10'000'000))->capture_default_str();
   command->add_flag("--json", arguments->json, "Print the plan as JSON");
   command->footer(kPlanExample);
   command->callback([arguments, &exit_code] { exit_code = runPlan(*arguments); });

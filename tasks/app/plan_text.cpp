@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "contact/io/counted.h"
 #include "contact/polytope.h"
 #include "contact/smooth_mesh.h"
 
@@ -28,7 +29,7 @@ struct ShapeName {
   std::string operator()(const contact::HalfSpace&) const { return "half-space"; }
   std::string operator()(const contact::Dish& d) const { return fmt::format("dish r {:g} mm", 1e3 * d.radius); }
   std::string operator()(const contact::Mesh& m) const {
-    return fmt::format("mesh of {} triangles", m.surface->triangles().triangles.size());
+    return fmt::format("mesh of {}", counted(static_cast<std::int64_t>(m.surface->triangles().triangles.size()), "triangle"));
   }
   std::string operator()(const contact::Convex& c) const {
     return fmt::format("convex, {} corners, {} faces", c.hull->vertices().size(), c.hull->faces().size());
@@ -133,7 +134,8 @@ void describeMany(const grasp::GraspModel& model, std::vector<PlanLine>& lines) 
     lines.push_back(
         {"pairs", "broad phase", fmt::format("tree of the boxes of {} bodies; materials combined where two touch", world.bodies.size())});
   if (world.options.threads > 1)
-    lines.push_back({"solve", "threads", fmt::format("islands shared by {} threads, the same bits as on one", world.options.threads)});
+    lines.push_back(
+        {"solve", "threads", fmt::format("islands shared by {}, the same bits as on one", counted(world.options.threads, "thread"))});
 }
 
 void describeSkipped(const grasp::GraspModel& model, std::vector<PlanLine>& lines) {

@@ -7,9 +7,11 @@
 #include <vector>
 
 #include "contact/error.h"
+#include "tasks/app/manipulation_session.h"
 #include "tasks/experiments/manipulation_file.h"
 #include "tasks/experiments/recorded_hands.h"
 #include "tasks/experiments/simulated_trial.h"
+#include "tasks/session/build_info.h"
 #include "tasks/session/input_codec.h"
 
 namespace pincer::tasks {
@@ -103,11 +105,37 @@ class ComparingSink final : public RecordSink {
   std::size_t next_ = 0, next_input_ = 0, next_event_ = 0, next_reading_ = 0;
 };
 
-void requireReplayable(const SessionReader& session, bool simulated) {
+// Bits are promised for the same version and the same sources. Sessions of before format 5 don't tell their sources.
+bool isByThisProgram(const SessionInfo& then, const SessionInfo& now) {
+  return then.version == now.version && (then.sources.empty() || then.sources == now.sources);
+}
+
+// Why bits may differ, for somebody whose bits do.
+std::vector<std::string> notesOnBuilds(const SessionInfo& then) {
+  SessionInfo now;
+  tellBuild(now);
+  std::vector<std::string> notes;
+  if (then.sources != now.sources || then.version != now.version) {
+    notes.push_back(fmt::format("The session was made by {}; this is {}. Their bits may differ.", programOf(then), programOf(now)));
+  }
+  for (const std::string& difference : surroundingsThatDiffer(then, now)) notes.push_back(fmt::format("Not the same: {}.", difference));
+  return notes;
+}
+
+void requireReplayable(const SessionReader& session, bool simulated, bool other_version) {
   const std::string& task = session.info().task;
   const auto refuse = [&](const std::string& why) { throw InputError(session.path() + ": can't be replayed: " + why); };
   if (task != "manipulation" && task != "sphere-pickup" && task != "cylinder-alignment") {
     refuse(fmt::format("only sphere pickup and cylinder alignment are (task: {}).", task));
+  }
+  if (const std::string doubled = session.doubledTrials(); !doubled.empty()) refuse(doubled);
+  SessionInfo now;
+  tellBuild(now);
+  if (!other_version && !isByThisProgram(session.info(), now)) {
+    refuse(
+        fmt::format("it was made by {}, and this is {}: the bits may differ. Replay it with the program that made it, or with "
+                    "--other-version to see where they do.",
+                    programOf(session.info()), programOf(now)));
   }
   if (!simulated && !session.keepsInputs()) {
     refuse("it was recorded by a pincer that didn't keep what people's hands did. Its tables and its report are as good as ever.");
@@ -158,7 +186,8 @@ class Replayer {
 
   // False: interrupted.
   bool replay(StoredTrial& stored, ReplayResult& result) {
-    const ManipulationTrial& spec = plan_.at(static_cast<std::size_t>(stored.row.trial));
+    requirePlanned(session_, stored.row.trial, plan_.size());
+    const ManipulationTrial& spec = plan_[static_cast<std::size_t>(stored.row.trial)];
     return simulated_ ? replaySimulated(spec, stored, result) : replayRecorded(spec, stored, result);
   }
 
@@ -205,13 +234,14 @@ class Replayer {
 
 }  // namespace
 
-ReplayResult replaySession(const SessionReader& session, std::optional<std::int64_t> trial, const std::atomic<bool>& interrupted,
+ReplayResult replaySession(const SessionReader& session, const ReplayOptions& options, const std::atomic<bool>& interrupted,
                            const std::function<void(std::int64_t, std::int64_t)>& progress, const ReplayRun& run) {
   const bool simulated = session.info().devices_json.find("\"arms\": \"simulated\"") != std::string::npos;
-  requireReplayable(session, simulated);
-  std::vector<StoredTrial> trials = wantedTrials(session, trial, simulated);
+  requireReplayable(session, simulated, options.other_version);
+  std::vector<StoredTrial> trials = wantedTrials(session, options.trial, simulated);
   Replayer replayer(session, simulated, interrupted, run);
   ReplayResult result;
+  result.notes = notesOnBuilds(session.info());
   std::int64_t done = 0;
   for (StoredTrial& stored : trials) {
     if (!replayer.replay(stored, result) || result.first) break;

@@ -26,15 +26,21 @@ struct ReplayDifference {
 struct ReplayResult {
   std::int64_t trials = 0, cut_short = 0;  // compared: finished trials, and others
   std::int64_t samples = 0, inputs = 0;    // compared
-  std::vector<std::string> notes;          // sentences about what couldn't be compared
+  std::vector<std::string> notes;          // sentences about what couldn't be compared, and why bits may differ
   std::optional<ReplayDifference> first;
 };
 
 // Runs a trial's cycle in virtual time, and may look at it; the row is the stored one.
 using ReplayRun = std::function<ServoReport(HandsCycle& cycle, const TrialRecord& row)>;
 
-// Every trial, or only `trial`. Stops at the first difference. Throws InputError for a session that can't be replayed.
-ReplayResult replaySession(const SessionReader& session, std::optional<std::int64_t> trial, const std::atomic<bool>& interrupted,
+struct ReplayOptions {
+  std::optional<std::int64_t> trial{};  // only this one
+  bool other_version = false;           // also of a session that a program with other sources made
+};
+
+// Every trial, or only one. Stops at the first difference. Throws InputError for a session that can't be replayed: of another task, without
+// people's inputs, with doubled trials, by a program of another version or with other sources (build_info.h).
+ReplayResult replaySession(const SessionReader& session, const ReplayOptions& options, const std::atomic<bool>& interrupted,
                            const std::function<void(std::int64_t done, std::int64_t total)>& progress = {}, const ReplayRun& run = {});
 
 }  // namespace pincer::tasks

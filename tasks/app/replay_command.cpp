@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "contact/io/counted.h"
 #include "tasks/app/app.h"
 #include "tasks/app/commands.h"
 #include "tasks/app/interrupt.h"
@@ -10,6 +11,8 @@
 #include "tasks/app/progress.h"
 #include "tasks/app/replay.h"
 #include "tasks/app/trial_recording.h"
+#include "tasks/app/usage.h"
+#include "tasks/scene/scene_ranges.h"
 
 namespace pincer::tasks {
 namespace {
@@ -17,6 +20,7 @@ namespace {
 constexpr const char* kReplayExample = R"(
 Runs the trials of a session again, through the same tick, and compares every kept sample and every trial to the bit: simulated participants do
 theirs again, people's hands are given as they were recorded. Exit code 1 when something differs; then the first differing tick is named.
+A session of another version is refused: its bits may differ. With --other-version it is compared all the same.
 
 With --view the trial is played in a window, to be paused and scrubbed; --screenshot writes a picture of it at the time of --at.
 
@@ -25,9 +29,11 @@ Examples:
   pincer replay out/first/session.db --trial 3 --view
   pincer replay out/first/session.db --trial 3 --at 2.5 --screenshot grasp.png)";
 
+constexpr std::int64_t kLastTrial = 1'000'000'000;
+
 struct ReplayArguments {
   std::string session;
-  std::optional<std::int64_t> trial;
+  ReplayOptions options;
   double at = 0;  // [s]
   ViewOptions view;
   bool looks() const { return view.view || !view.screenshot.empty(); }
@@ -36,8 +42,8 @@ struct ReplayArguments {
 // One trial is looked at: the one that was named, or the first.
 ReplayResult replayAndLook(const ReplayArguments& arguments, const SessionReader& session) {
   const std::vector<TrialRecord> trials = session.trials();
-  std::optional<std::int64_t> wanted = arguments.trial;
-  if (!wanted && !trials.empty()) wanted = trials.front().trial;
+  ReplayOptions wanted = arguments.options;
+  if (!wanted.trial && !trials.empty()) wanted.trial = trials.front().trial;
   ViewOptions options = arguments.view;
   return replaySession(session, wanted, interruptFlag(), {}, [&](HandsCycle& cycle, const TrialRecord& row) {
     options.title = fmt::format("{}, trial {}", row.task, row.trial);
@@ -49,7 +55,7 @@ ReplayResult replayAndLook(const ReplayArguments& arguments, const SessionReader
 
 ReplayResult replayAll(const ReplayArguments& arguments, const SessionReader& session) {
   std::unique_ptr<Progress> line;
-  return replaySession(session, arguments.trial, interruptFlag(), [&](std::int64_t done, std::int64_t total) {
+  return replaySession(session, arguments.options, interruptFlag(), [&](std::int64_t done, std::int64_t total) {
     if (!line) line = std::make_unique<Progress>("trials", total);
     line->update(done);
   });
@@ -59,16 +65,17 @@ int replay(const ReplayArguments& arguments) {
   SessionReader session(arguments.session);
   session.heed(interruptFlag());
   const ReplayResult result = arguments.looks() ? replayAndLook(arguments, session) : replayAll(arguments, session);
+  for (const std::string& note : result.notes) print(stderr, "pincer: {}\n", note);
   if (result.first) {
     const ReplayDifference& d = *result.first;
     print("Differs first in trial {}, {}: {}\n", d.trial,
           d.tick < 0 ? fmt::format("after {:.3f} s", d.time) : fmt::format("tick {} ({:.3f} s)", d.tick, d.time), d.what);
+    if (result.notes.empty()) print(stderr, "pincer: Version, sources, compiler, C library and processor are those of the session.\n");
     return kExitCheckFailed;
   }
-  for (const std::string& note : result.notes) print(stderr, "pincer: {}\n", note);
-  print("The same to the bit: {} trials{}, {} samples{}\n", result.trials,
-        result.cut_short > 0 ? fmt::format(" and {} that was cut short", result.cut_short) : "", result.samples,
-        result.inputs > 0 ? fmt::format(", {} ticks of a person's hands", result.inputs) : "");
+  print("The same to the bit: {}{}, {}{}\n", counted(result.trials, "trial"),
+        result.cut_short > 0 ? fmt::format(" and {} that was cut short", result.cut_short) : "", counted(result.samples, "sample"),
+        result.inputs > 0 ? fmt::format(", {} of a person's hands", counted(result.inputs, "tick")) : "");
   if (!interruptFlag()) return kExitOk;
   print(stderr, "pincer: interrupted; these are the trials that were whole.\n");
   return kExitInterrupted;
@@ -80,9 +87,10 @@ void addReplayCommand(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<ReplayArguments>();
   CLI::App* command = app.add_subcommand("replay", "A session again, compared to the bit");
   command->add_option("session", arguments->session, "Session file")->required();
-  command->add_option("--trial", arguments->trial, "Only this trial");
+  command->add_option("--trial", arguments->options.trial, "Only this trial")->check(wholeWithin(0, kLastTrial));
+  command->add_flag("--other-version", arguments->options.other_version, "Also a session that another version made: bits may differ");
   addViewOptions(*command, arguments->view);
-  command->add_option("--at", arguments->at, "Begin there [s]")->check(CLI::NonNegativeNumber);
+  command->add_option("--at", arguments->at, "Begin there [s]")->check(within(ranges::kTime));
   command->footer(kReplayExample);
   command->callback([arguments, &exit_code] { exit_code = replay(*arguments); });
 }

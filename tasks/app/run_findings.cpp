@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "contact/error.h"
+#include "contact/io/atomic_file.h"
 #include "tasks/app/app.h"
 #include "tasks/app/interrupt.h"
 #include "tasks/app/print.h"
@@ -11,9 +12,9 @@
 #include "tasks/app/run_options.h"
 #include "tasks/app/run_tasks.h"
 #include "tasks/app/study_runs.h"
+#include "tasks/app/usage.h"
 #include "tasks/app/variant_runs.h"
 #include "tasks/findings/findings_report.h"
-#include "tasks/session/atomic_file.h"
 
 namespace pincer::tasks {
 namespace {
@@ -60,12 +61,13 @@ PublishedFindings runStudyFindings(StudyRuns studies, const FindingsOptions& opt
 }
 
 int runFindingsCommand(const FindingsArguments& arguments) {
+  asUsage([&] { validate(arguments.options); });
   const std::string directory = outputDirectory(arguments.run, "findings");
   const PublishedFindings studies = runStudyFindings(arguments.studies, arguments.options, directory + "/sessions");
   const FindingsResult result = runManipulationFindings(arguments.options, directory + "/sessions");
   const bool interrupted = interruptFlag();
   if (result.variants.empty() && studies.figures.empty()) {
-    if (!interrupted) throw InputError(fmt::format("findings: no variant's or study's name holds one of \"{}\".", arguments.options.only));
+    if (!interrupted) refuseUsage(fmt::format("findings: no variant's or study's name holds one of \"{}\".", arguments.options.only));
     print(stderr, "pincer: interrupted before an experiment was whole. The same command with --out {} goes on.\n", directory);
     return kExitInterrupted;
   }
@@ -90,13 +92,13 @@ void addFindingsTask(CLI::App& run, int& exit_code) {
   command->add_option("--experiments", options.experiments, "Of the primary analysis")->capture_default_str();
   command->add_option("--control-experiments", options.control_experiments, "Of every other variant")->capture_default_str();
   command->add_option("--study-experiments", arguments->studies.experiments, "Of every study with one finger")
-      ->check(CLI::Range(0, 1000))
+      ->check(wholeWithin(0, 1000))
       ->capture_default_str();
   command->add_option("--participants", options.participants, "In an experiment")->capture_default_str();
   command->add_option("--pickups", options.pickups, "Of every friction, per participant and condition")->capture_default_str();
   command->add_option("--alignments", options.alignments, "Per participant and condition")->capture_default_str();
   command->add_option("--threads", options.threads, "That work at once")->capture_default_str();
-  command->add_option("--seed", options.seed, "Of all that varies")->capture_default_str();
+  addSeedOption(*command, options.seed, "Of all that varies");
   command->add_option("--only", options.only, "Only variants and studies whose name holds one of these, separated by commas");
   command->add_option("--out", arguments->run.out, "Directory for report and sessions (default: out/findings-DATE-TIME)");
   command->add_flag("!--no-report", arguments->run.report, "Only the table");

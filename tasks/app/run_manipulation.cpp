@@ -5,6 +5,8 @@
 #include <memory>
 #include <optional>
 
+#include "contact/io/atomic_file.h"
+#include "contact/io/counted.h"
 #include "tasks/app/app.h"
 #include "tasks/app/device_options.h"
 #include "tasks/app/interrupt.h"
@@ -15,11 +17,11 @@
 #include "tasks/app/run_tasks.h"
 #include "tasks/app/servo_text.h"
 #include "tasks/app/trial_view.h"
+#include "tasks/app/usage.h"
 #include "tasks/experiments/live_hands.h"
 #include "tasks/experiments/manipulation_file.h"
 #include "tasks/experiments/pickup_object.h"
 #include "tasks/report/report.h"
-#include "tasks/session/atomic_file.h"
 
 namespace pincer::tasks {
 namespace {
@@ -66,7 +68,7 @@ contact::SurfaceVariant variantOf(const std::string& name) {
 
 ObjectFile objectOf(const ManipulationArguments& arguments) {
   if (arguments.size && !arguments.units.empty()) {
-    throw InputError("run: --size and --units contradict each other: --size scales the mesh whatever its unit. Give one of them.");
+    refuseUsage("run: --size and --units contradict each other: --size scales the mesh whatever its unit. Give one of them.");
   }
   return {arguments.object, arguments.units.empty() ? "mm" : arguments.units, arguments.size, variantOf(arguments.shading)};
 }
@@ -82,10 +84,10 @@ ManipulationSessionOptions optionsOf(const ManipulationArguments& arguments) {
   if (arguments.free_body) options.study.alignment.pivot = false;
   if (!arguments.object.empty()) options.study.pickup.object = objectOf(arguments);
   if (arguments.object.empty() && arguments.size) {
-    throw InputError("run: --size is that of a mesh, and none is given. Give --object FILE, or --radius for the sphere.");
+    refuseUsage("run: --size is that of a mesh, and none is given. Give --object FILE, or --radius for the sphere.");
   }
   if (arguments.object.empty() && !arguments.shading.empty()) {
-    throw InputError("run: --shading is that of a mesh, and none is given. Give --object FILE; the sphere is one exactly.");
+    refuseUsage("run: --shading is that of a mesh, and none is given. Give --object FILE; the sphere is one exactly.");
   }
   return options;
 }
@@ -107,8 +109,8 @@ int showStudy(const ManipulationArguments& arguments, const std::string& directo
   say(fmt::format("Session: {}", session.path()));
   if (!by_the_clock) say(throughputText(static_cast<double>(result.servo.ticks) / servo.rate));
   if (result.interrupted) {
-    say(fmt::format("Interrupted after {} trials; they are safe. Go on: the same command with --resume --out {}", result.trials,
-                    directory));
+    say(fmt::format("Interrupted after {}; what is done is safe. Go on: the same command with --resume --out {}",
+                    counted(result.trials, "trial"), directory));
     return kExitInterrupted;
   }
   if (arguments.run.report)
@@ -155,13 +157,13 @@ int runManipulation(const ManipulationArguments& arguments) {
     return showStudy(arguments, directory, result);
   };
   if (arguments.resume) {
-    if (arguments.run.out.empty()) throw InputError("run: --resume needs --out DIR, the directory of the session to go on with.");
+    if (arguments.run.out.empty()) refuseUsage("run: --resume needs --out DIR, the directory of the session to go on with.");
     ManipulationSessionOptions options = optionsOf(arguments);
     const Stage stage = setStage(arguments, options, interrupted);
     return finish(arguments.run.out, resumeManipulationSession(options, arguments.run.out + "/session.db", interrupted, progress));
   }
   ManipulationSessionOptions options = optionsOf(arguments);
-  validate(options);
+  asUsage([&] { validate(options); });  // a study file was checked by itself
   if (!arguments.write_study.empty()) {
     writeAtomically(arguments.write_study, studyFile(options.study));
     print("Study: {}\n", arguments.write_study);
@@ -204,7 +206,7 @@ CLI::App* addManipulationCommand(CLI::App& run, const char* name, const char* wh
   command->add_option("--participants", arguments->study.participants, "How many simulated participants")->capture_default_str();
   command->add_option("--strategy", arguments->strategy, "Of simulated participants (default: rational)")
       ->check(CLI::IsMember({"rational", "simple"}));
-  command->add_option("--seed", arguments->study.seed, "Of all that varies; the same seed gives the same session")->capture_default_str();
+  addSeedOption(*command, arguments->study.seed, "Of all that varies; the same seed gives the same session");
   command->add_flag("--resume", arguments->resume, "Go on with the interrupted or killed session in --out");
   addRunOptions(*command, arguments->run);
   addDeviceOptions(*command, arguments->devices);

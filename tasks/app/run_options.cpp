@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <charconv>
 #include <chrono>
 #include <ctime>
 
@@ -16,6 +17,32 @@ void addRunOptions(CLI::App& command, RunOptions& options) {
   command.add_option("--sample-rate", options.sample_rate, "Of the 1000 ticks of a second, so many are kept [Hz]")->capture_default_str();
   command.add_flag("!--no-report", options.report, "Only the session and the table");
   command.add_flag("--json", options.json, "Print the table as JSON");
+}
+
+namespace {
+
+// CLI11 would take -1 for 2^64 - 1, and 010 for 8.
+std::uint64_t seedOf(const std::string& text) {
+  std::uint64_t seed = 0;
+  const auto read = std::from_chars(text.data(), text.data() + text.size(), seed);
+  if (read.ec == std::errc{} && read.ptr == text.data() + text.size() && !text.empty()) return seed;
+  throw CLI::ValidationError("--seed", fmt::format("{} isn't a whole number in [0, 18446744073709551615]; take for example 1", text));
+}
+
+template <class Seed>
+void addSeed(CLI::App& command, Seed& seed, const std::string& what, std::uint64_t otherwise) {
+  command
+      .add_option_function<std::string>(
+          "--seed", [&seed](const std::string& text) { seed = seedOf(text); }, what)
+      ->type_name("UINT64")
+      ->default_str(std::to_string(otherwise));
+}
+
+}  // namespace
+
+void addSeedOption(CLI::App& command, std::uint64_t& seed, const std::string& what) { addSeed(command, seed, what, seed); }
+void addSeedOption(CLI::App& command, std::optional<std::uint64_t>& seed, const std::string& what, std::uint64_t otherwise) {
+  addSeed(command, seed, what, otherwise);
 }
 
 std::string outputDirectory(const RunOptions& options, const std::string& task) {

@@ -6,6 +6,8 @@
 #include <optional>
 
 #include "contact/error.h"
+#include "contact/io/atomic_file.h"
+#include "contact/io/counted.h"
 #include "tasks/app/app.h"
 #include "tasks/app/interrupt.h"
 #include "tasks/app/print.h"
@@ -15,8 +17,8 @@
 #include "tasks/app/servo_text.h"
 #include "tasks/app/study_file.h"
 #include "tasks/app/study_session.h"
+#include "tasks/app/usage.h"
 #include "tasks/report/study_report.h"
-#include "tasks/session/atomic_file.h"
 
 namespace pincer::tasks {
 namespace {
@@ -35,16 +37,16 @@ Study studyOf(Study study, const StudyArguments& arguments) {
   if (!arguments.study_file.empty()) readStudy(arguments.study_file, study);
   if (arguments.participants) study.participants = *arguments.participants;
   if (arguments.seed) study.seed = *arguments.seed;
-  validate(study);
+  asUsage([&] { validate(study); });  // the file was checked by itself
   return study;
 }
 
 // Of a session that is to go on: its parameters, whoever takes part being the same as today.
 template <class Study>
 Study resumedStudy(const std::string& task, Study study, const StudyArguments& arguments) {
-  if (arguments.run.out.empty()) throw InputError("run: --resume needs --out DIR, the directory of the session to go on with.");
+  if (arguments.run.out.empty()) refuseUsage("run: --resume needs --out DIR, the directory of the session to go on with.");
   if (!arguments.study_file.empty() || arguments.participants || arguments.seed)
-    throw InputError("run: --resume goes on with the session's own parameters. Leave out --study, --participants and --seed.");
+    refuseUsage("run: --resume goes on with the session's own parameters. Leave out --study, --participants and --seed.");
   const SessionReader session(arguments.run.out + "/session.db");
   const SessionInfo& info = session.info();
   if (info.task != task)
@@ -61,7 +63,7 @@ Study resumedStudy(const std::string& task, Study study, const StudyArguments& a
 int strideOf(const RunOptions& options) {
   const int rate = options.sample_rate;
   if (rate >= 1 && rate <= 1000 && 1000 % rate == 0) return 1000 / rate;
-  throw InputError(
+  refuseUsage(
       fmt::format("run: --sample-rate {} is out of range: a whole number in [1, 1000] Hz that divides 1000. Take for example 1000, "
                   "200, 50 or 20.",
                   rate));
@@ -77,7 +79,8 @@ int showStudy(const StudyArguments& arguments, const std::string& directory, con
   say(throughputText(simulated));
   say(fmt::format("Session: {}", session.path()));
   if (outcome.interrupted) {
-    say(fmt::format("Interrupted after {} trials; they are safe. Go on: the same task with --resume --out {}", outcome.trials, directory));
+    say(fmt::format("Interrupted after {}; what is done is safe. Go on: the same task with --resume --out {}",
+                    counted(outcome.trials, "trial"), directory));
     return kExitInterrupted;
   }
   if (arguments.run.report)
@@ -115,7 +118,7 @@ std::shared_ptr<StudyArguments> addStudyTask(CLI::App& run, const std::string& t
   arguments->run.sample_rate = 20;  // hours of strokes
   command = run.add_subcommand(task, what);
   command->add_option("--participants", arguments->participants, "How many simulated participants (default: 12)");
-  command->add_option("--seed", arguments->seed, "Of all that varies; the same seed gives the same session (default: 1)");
+  addSeedOption(*command, arguments->seed, "Of all that varies; the same seed gives the same session", 1);
   command->add_option("--study", arguments->study_file, "File with parameters that differ from the published design (JSON)");
   command->add_flag("--print-study", arguments->print_study, "Print all parameters as JSON with what they mean, and run nothing");
   command->add_flag("--resume", arguments->resume, "Go on with the interrupted or killed session in --out");

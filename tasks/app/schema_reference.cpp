@@ -20,7 +20,7 @@ std::string literal(const JsonValue& v) {
     case JsonValue::Kind::kBoolean:
       return v.boolean() ? "true" : "false";
     case JsonValue::Kind::kNumber:
-      return fmt::format("{}", v.number());
+      return v.isWhole() ? std::to_string(v.whole()) : fmt::format("{}", v.number());
     case JsonValue::Kind::kString:
       return fmt::format("\"{}\"", v.text());
     case JsonValue::Kind::kArray:

@@ -11,7 +11,9 @@
 #include "tasks/app/servo_text.h"
 #include "tasks/app/sim_run.h"
 #include "tasks/app/sim_view.h"
+#include "tasks/app/usage.h"
 #include "tasks/scene/builtin_scenes.h"
+#include "tasks/scene/scene_ranges.h"
 
 namespace pincer::tasks {
 namespace {
@@ -41,10 +43,10 @@ int watch(Simulation& simulation, const SimArguments& arguments, const std::atom
 }
 
 int runSim(const SimArguments& arguments) {
-  const std::atomic<bool>& interrupted = interruptFlag();
   Scene scene = readSceneOrBuiltin(arguments.scene);
   applyOptions(arguments.options, scene);
   Simulation simulation(std::move(scene));
+  const std::atomic<bool>& interrupted = interruptFlag();  // until now there was nothing to end cleanly: a signal ends the program at once
   if (arguments.view.view) return watch(simulation, arguments, interrupted);
   SimResult result = [&] {
     Progress progress("sim", simulation.scene().ticks());
@@ -62,9 +64,10 @@ void addSimCommand(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<SimArguments>();
   CLI::App* command = app.add_subcommand("sim", "Plain physics of a scene: states, records, expectations");
   command->add_option("scene", arguments->scene, "Scene file (JSON), or the name of a built-in scene")->required();
-  command->add_option("--duration", arguments->options.duration, "Simulated time in place of the scene's [s]")->check(CLI::PositiveNumber);
+  command->add_option("--duration", arguments->options.duration, "Simulated time in place of the scene's [s]")
+      ->check(within(ranges::kDuration));
   command->add_option("--every", arguments->options.every, "Time between recorded rows in place of the scene's [s]")
-      ->check(CLI::PositiveNumber);
+      ->check(within(ranges::kDuration));
   command->add_option("--out", arguments->options.csv, "Write the recorded quantities to this CSV file");
   command->add_flag("--grasp", arguments->options.grasp,
                     "Say how well the fingers hold each body at the end: slip margins, force closure, epsilon");

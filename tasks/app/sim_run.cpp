@@ -5,7 +5,8 @@
 #include <memory>
 
 #include "contact/error.h"
-#include "tasks/session/atomic_file.h"
+#include "contact/io/atomic_file.h"
+#include "tasks/app/usage.h"
 #include "tasks/session/csv.h"
 
 namespace pincer::tasks {
@@ -48,7 +49,7 @@ class CsvRecorder {
 std::int64_t ticksOf(const char* option, double seconds, double tick) {
   const std::int64_t ticks = wholeTicks(seconds, tick);
   if (ticks >= 1) return ticks;
-  throw InputError(fmt::format("{} = {} isn't a positive whole number of ticks of {} s, which this scene has.", option, seconds, tick));
+  refuseUsage(fmt::format("{} = {} isn't a positive whole number of ticks of {} s, which this scene has.", option, seconds, tick));
 }
 
 }  // namespace
@@ -61,7 +62,7 @@ void applyOptions(const SimOptions& options, Scene& scene) {
     scene.duration = *options.duration;
   }
   if (!options.csv.empty() && scene.record.quantities.empty()) {
-    throw InputError(
+    refuseUsage(
         fmt::format("{}: there is nothing to write to --out: the scene has no \"record\" with quantities (docs/scenes.md).", scene.file));
   }
 }

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "contact/io/counted.h"
+#include "contact/io/printable.h"
 #include "tasks/app/grasp_text.h"
 #include "tasks/app/sim_run.h"
 #include "tasks/app/terminal.h"
@@ -33,7 +35,8 @@ std::string expectationLine(const Expectation& expected, const Outcome& outcome)
   const std::string verdict = !outcome.reached ? "  -  " : outcome.holds() ? good(" ok  ") : bad("FAILS");
   std::string line = fmt::format("  {} {} {} {}: {}\n", verdict, expected.quantity.name, whenText(expected), boundText(expected),
                                  measuredText(expected, outcome));
-  if (outcome.reached && !outcome.holds() && !expected.because.empty()) line += fmt::format("        because {}\n", expected.because);
+  if (outcome.reached && !outcome.holds() && !expected.because.empty())
+    line += fmt::format("        because {}\n", printable(expected.because, kLongestMessage));
   return line;
 }
 
@@ -75,7 +78,7 @@ void appendExpectations(const SimResult& result, std::string& out) {
 void appendStatuses(const SimResult& result, std::string& out) {
   for (std::size_t i = 0; i < kStatusKinds.size(); ++i) {
     if (result.statuses.of(i) > 0)
-      out += fmt::format("\n{} in {} ticks {}\n", bad("Note:"), result.statuses.of(i), kStatusKinds[i].sentence);
+      out += fmt::format("\n{} in {} {}\n", bad("Note:"), counted(result.statuses.of(i), "tick"), kStatusKinds[i].sentence);
   }
 }
 
@@ -83,13 +86,15 @@ void appendStatuses(const SimResult& result, std::string& out) {
 
 std::string simText(const Simulation& simulation, const SimOptions& options, const SimResult& result) {
   const Scene& scene = simulation.scene();
-  std::string out = scene.description.empty() ? scene.file + "\n" : fmt::format("{}\n{}\n", scene.file, scene.description);
+  std::string out = scene.description.empty()
+                        ? printable(scene.file) + "\n"
+                        : fmt::format("{}\n{}\n", printable(scene.file), printable(scene.description, kLongestMessage));
   appendStates(simulation, out);
   if (options.grasp) out += graspText(simulation);
   appendRecorded(simulation, out);
   appendExpectations(result, out);
   appendStatuses(result, out);
-  out += fmt::format("\n{} ticks of {:g} ms, each: median {:.2f} us, p99.9 {:.2f} us, longest {:.1f} us\n", simulation.ticks(),
+  out += fmt::format("\n{} of {:g} ms, each: median {:.2f} us, p99.9 {:.2f} us, longest {:.1f} us\n", counted(simulation.ticks(), "tick"),
                      1e3 * scene.options.h, 1e6 * result.times.quantile(0.5), 1e6 * result.times.quantile(0.999),
                      1e6 * result.times.quantile(1));
   if (result.interrupted) out += fmt::format("Interrupted at {:g} s of {:g} s.\n", simulation.time(), scene.duration);

@@ -4,6 +4,8 @@
 #include "tasks/app/app.h"
 #include "tasks/app/commands.h"
 #include "tasks/app/measure_command.h"
+#include "tasks/app/run_options.h"
+#include "tasks/app/usage.h"
 #include "tasks/stress/stress.h"
 
 namespace pincer::tasks {
@@ -28,8 +30,8 @@ void addStressCommand(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<StressArguments>();
   CLI::App* command = app.add_subcommand("stress", "Random, hostile worlds by seed");
   addMeasureOptions(*command, arguments->measure);
-  command->add_option("--seeds", arguments->stress.seeds, "Worlds per class")->check(CLI::Range(1, 100'000'000))->capture_default_str();
-  command->add_option("--seed", arguments->stress.first_seed, "The first seed")->capture_default_str();
+  command->add_option("--seeds", arguments->stress.seeds, "Worlds per class")->check(wholeWithin(1, 100'000'000))->capture_default_str();
+  addSeedOption(*command, arguments->stress.first_seed, "The first seed; after the last, 18446744073709551615, comes 0");
   command->footer(kStressExample);
   command->callback(
       [arguments, &exit_code] { exit_code = runMeasurements(stressMeasurements(arguments->stress), arguments->measure, "stress"); });

@@ -5,6 +5,7 @@
 #include "tasks/app/observer_fields.h"
 #include "tasks/experiments/study_reader.h"
 #include "tasks/experiments/study_writer.h"
+#include "tasks/scene/file_limits.h"
 
 namespace pincer::tasks {
 namespace {
@@ -45,9 +46,9 @@ std::string peopleJson(const Limits& limits) {
 
 }  // namespace
 
-void readStudy(const std::string& path, ArcStudy& study) { readStudyText(readJson(path), study); }
-void readStudy(const std::string& path, LocalisationStudy& study) { readStudyText(readJson(path), study); }
-void readStudy(const std::string& path, ShapeStudy& study) { readStudyText(readJson(path), study); }
+void readStudy(const std::string& path, ArcStudy& study) { readStudyText(readJson(path, kStudyFile), study); }
+void readStudy(const std::string& path, LocalisationStudy& study) { readStudyText(readJson(path, kStudyFile), study); }
+void readStudy(const std::string& path, ShapeStudy& study) { readStudyText(readJson(path, kStudyFile), study); }
 void parseStudy(const std::string& text, const std::string& name, ShapeStudy& study) { readStudyText(parseJson(text, name), study); }
 void parseStudy(const std::string& text, const std::string& name, LocalisationStudy& study) { readStudyText(parseJson(text, name), study); }
 void parseStudy(const std::string& text, const std::string& name, ArcStudy& study) { readStudyText(parseJson(text, name), study); }

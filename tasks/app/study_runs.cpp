@@ -5,12 +5,12 @@
 #include <filesystem>
 #include <limits>
 
+#include "contact/io/atomic_file.h"
 #include "tasks/app/session_runs.h"
 #include "tasks/app/study_file.h"
 #include "tasks/app/study_session.h"
 #include "tasks/findings/findings.h"
 #include "tasks/participants/random.h"
-#include "tasks/session/atomic_file.h"
 
 namespace pincer::tasks {
 namespace {

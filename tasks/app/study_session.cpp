@@ -4,6 +4,7 @@
 
 #include "tasks/app/study_file.h"
 #include "tasks/scene/json_writer.h"
+#include "tasks/session/build_info.h"
 
 namespace pincer::tasks {
 namespace {
@@ -26,8 +27,7 @@ SessionInfo studySessionInfo(const std::string& task, std::uint64_t seed, const 
   SessionInfo info;
   info.task = task;
   info.seed = seed;
-  info.version = PINCER_VERSION;
-  info.build = "compiler " __VERSION__;
+  tellBuild(info);
   info.protocol_json = protocol_json;
   info.participants_json = participants_json;
   info.participants_hash = fingerprint(participants_json);
@@ -43,9 +43,9 @@ StudyOutcome runStudySession(Experiment& experiment, const StudySession& session
                              const std::function<void(const StudyProgress&)>& progress) {
   SessionOptions store;
   store.block_when_full = true;  // simulated participants wait for the disk
-  const std::vector<ResponseRecord> earlier = session.resume ? SessionReader(session.path).responses() : std::vector<ResponseRecord>();
   SessionWriter writer =
       session.resume ? SessionWriter::resume(session.path, store) : SessionWriter::create(session.path, session.info, store);
+  const std::vector<ResponseRecord> earlier = session.resume ? SessionReader(session.path).responses() : std::vector<ResponseRecord>();
   StudyFileSink sink(writer);
   try {
     StudyOutcome outcome = runStudy(experiment, session.info.seed, earlier, sink, interrupted, progress);

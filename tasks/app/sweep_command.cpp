@@ -10,6 +10,8 @@
 #include "tasks/app/interrupt.h"
 #include "tasks/app/print.h"
 #include "tasks/app/progress.h"
+#include "tasks/app/run_options.h"
+#include "tasks/app/usage.h"
 #include "tasks/report/study_summary.h"
 #include "tasks/sweep/one_finger_sweep.h"
 #include "tasks/sweep/scene_sweep.h"
@@ -41,8 +43,10 @@ struct SweepArguments {
 
 SweepTable sweepAny(const SweepArguments& arguments) {
   std::vector<Variation> variations;
-  for (const std::string& text : arguments.vary) variations.push_back(parseVariation(text));
-  if (variations.size() > 2) throw InputError("sweep: --vary is given more than twice. A table and a picture show one or two numbers.");
+  for (const std::string& text : arguments.vary) variations.push_back(asUsage([&] { return parseVariation(text); }));
+  if (variations.size() > 2) refuseUsage("sweep: --vary is given more than twice. A table and a picture show one or two numbers");
+  if (variations.size() == 2 && variations[0].path == variations[1].path)
+    refuseUsage(fmt::format("sweep: --vary {} is given twice. Name two numbers, or give all values at once: A,B,C", variations[0].path));
   std::unique_ptr<Progress> line;
   SweepOptions options = arguments.options;
   options.progress = [&](std::int64_t done, std::int64_t total) {
@@ -91,10 +95,10 @@ void addSweepCommand(CLI::App& app, int& exit_code) {
       ->take_all();
   command->add_option("--measure", arguments->scene.measures,
                       "Of a scene: a quantity at the end, or with :min, :max over the whole run (default: those that it records)");
-  command->add_option("--participants", arguments->study.participants, "Of a study")->check(CLI::Range(1, 1000))->capture_default_str();
-  command->add_option("--seed", arguments->study.seed, "Of a study")->capture_default_str();
+  command->add_option("--participants", arguments->study.participants, "Of a study")->check(wholeWithin(1, 1000))->capture_default_str();
+  addSeedOption(*command, arguments->study.seed, "Of a study");
   command->add_option("--threads", arguments->options.threads, "That work at once; the table is the same")
-      ->check(CLI::Range(1, 256))
+      ->check(wholeWithin(1, 256))
       ->capture_default_str();
   command->add_option("--out", arguments->out, "Directory for sweep.csv and its picture (PNG, SVG)");
   command->footer(kSweepExample);

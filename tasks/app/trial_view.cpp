@@ -5,6 +5,7 @@
 #include "contact/error.h"
 #include "devices/window/surface.h"
 #include "tasks/app/trial_capture.h"
+#include "tasks/app/usage.h"
 #include "tasks/experiments/mouse_hands.h"
 #include "tasks/measure/timing.h"
 
@@ -82,7 +83,7 @@ void addTrialViewOptions(CLI::App& command, ViewOptions& options) {
 std::unique_ptr<TrialStage> hostOf(const std::string& devices, const ViewOptions& view, const ServoOptions& servo,
                                    const std::atomic<bool>& interrupted) {
   if (devices == "mouse" && !view.view) {
-    throw InputError("run: --devices mouse moves the fingers in the window that --view opens. Add --view, or leave --devices out.");
+    refuseUsage("run: --devices mouse moves the fingers in the window that --view opens. Add --view, or leave --devices out.");
   }
   if (!view.view) return nullptr;
   return std::make_unique<WindowStage>(devices == "mouse", view, servo, interrupted);

@@ -5,10 +5,10 @@
 #include <chrono>
 #include <filesystem>
 
+#include "contact/io/atomic_file.h"
 #include "tasks/app/manipulation_session.h"
 #include "tasks/app/session_runs.h"
 #include "tasks/measure/timing.h"
-#include "tasks/session/atomic_file.h"
 
 namespace pincer::tasks {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 
 namespace pincer::tasks {
 namespace {

@@ -6,9 +6,9 @@
 #include <filesystem>
 
 #include "contact/error.h"
+#include "contact/io/atomic_file.h"
 #include "tasks/report/figures.h"
 #include "tasks/report/gnuplot.h"
-#include "tasks/session/atomic_file.h"
 #include "tasks/session/csv.h"
 
 namespace pincer::tasks {

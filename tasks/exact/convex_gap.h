@@ -13,7 +13,7 @@
 #include <array>
 #include <vector>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "contact/math.h"
 #include "contact/polytope.h"
 #include "contact/shape.h"

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <vector>
 
-#include "contact/functions/elementary.h"
-#include "contact/invariants.h"
+#include "contact/elementary.h"
+#include "contact/functions/invariants.h"
 
 namespace pincer::exact {
 namespace {

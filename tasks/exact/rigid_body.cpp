@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "tasks/exact/runge_kutta.h"
 
 namespace pincer::exact {

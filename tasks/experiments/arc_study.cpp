@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "contact/error.h"
+#include "contact/io/printable.h"
 #include "tasks/experiments/study_parameters.h"
 #include "tasks/participants/random.h"
 #include "tasks/study/counterbalance.h"
@@ -65,15 +66,19 @@ std::shared_ptr<const contact::Curve> sharedCurve(const contact::Polyline& polyl
 }
 
 // What a condition's levels may be.
-void validate(const ArcStudy& study, const ArcCondition& c) {
-  const std::string of = fmt::format("{}: condition {}", study.task, c.name);
-  visitParameters(c, RangeCheck(of));
+void validate(const ArcStudy& study, std::size_t index) {
+  const ArcCondition& c = study.conditions[index];
+  const std::string of = fmt::format("{}: condition {}", study.task, printable(c.name)), path = fmt::format("conditions[{}]", index);
+  const std::string of_staircase = of + ": staircase", staircase = path + ".staircase";
+  visitParameters(c, RangeCheck(of, path));
+  visitParameters(c.staircase, RangeCheck(of_staircase, staircase));
   const std::string problem = problemWith(c.staircase);
-  if (!problem.empty()) throw InputError(fmt::format("{}: staircase: {}.", of, problem));
+  if (!problem.empty()) throw ParameterError(staircase, fmt::format("{}: {}.", of_staircase, problem));
   const bool turns = study.quantity == ArcQuantity::kTurn;
   const double most = turns ? kLargestTurn : study.quantity == ArcQuantity::kDelay ? 0.512 : 0.05;
   if (c.staircase.highest <= most && c.staircase.lowest >= (turns ? 1e-5 : 0)) return;
-  throw InputError(
+  throw ParameterError(
+      staircase,
       fmt::format("{}: staircase: levels from {} to {} can't all be shown: a turn in [0.00001, 0.5] rad, a backlash in [0, 0.05] m, a "
                   "delay in [0, 0.512] s.",
                   of, c.staircase.lowest, c.staircase.highest));
@@ -122,13 +127,14 @@ void validate(const ArcStudy& study) {
   const RangeCheck check(study.task);
   visitParameters(study, check);
   if (study.tactor_reach > study.finger_radius)
-    throw InputError(fmt::format("{}: tactor_reach = {} is out of range (0, finger_radius]: a radian of stroke either way. {}", study.task,
-                                 study.tactor_reach, kAsPublished));
+    throw ParameterError("tactor_reach",
+                         fmt::format("{}: tactor_reach = {} is out of range (0, finger_radius]: a radian of stroke either way. {}",
+                                     study.task, study.tactor_reach, kAsPublished));
   if (study.strokes % 2 != 0)
-    throw InputError(
-        fmt::format("{}: strokes = {} is odd, but every stroke has its way back. {}", study.task, study.strokes, kAsPublished));
-  if (study.conditions.empty()) throw InputError(study.task + ": conditions is empty. Give at least one.");
-  for (const ArcCondition& c : study.conditions) validate(study, c);
+    throw ParameterError(
+        "strokes", fmt::format("{}: strokes = {} is odd, but every stroke has its way back. {}", study.task, study.strokes, kAsPublished));
+  if (study.conditions.empty()) throw ParameterError("conditions", study.task + ": conditions is empty. Give at least one.");
+  for (std::size_t i = 0; i < study.conditions.size(); ++i) validate(study, i);
 }
 
 ArcExperiment::ArcExperiment(const ArcStudy& study, const ServoOptions& servo, int stride) : study_(study), servo_(servo), stride_(stride) {

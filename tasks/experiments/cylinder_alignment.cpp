@@ -32,11 +32,11 @@ engine::WorldBuilder cylinderWorld(const CylinderAlignmentOptions& o, int& objec
 double flatDistance(const CylinderAlignmentOptions& options) { return options.radius * math::cos(options.flat_half_angle); }
 
 void validate(const CylinderAlignmentOptions& o) {
-  const RangeCheck check("cylinder-alignment");
+  const RangeCheck check("cylinder-alignment", "cylinder_alignment");
   visitParameters(o, check);
   check("participants", o.participants, Parameter{"", {1, 1000, false, "The published study had 12."}});
   check("start_max", o.start_max, Parameter{"", {o.start_min, 3.1416, false, "It is in radians, at least start_min; 3.1416 is usual."}});
-  if (o.conditions.empty()) throw InputError("cylinder-alignment: conditions is empty. Give force, cld+force, or both.");
+  if (o.conditions.empty()) throw ParameterError("conditions", "cylinder-alignment: conditions is empty. Give force, cld+force, or both.");
 }
 
 double wrapAngle(double angle) {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "tasks/experiments/cylinder_alignment.h"
 
 namespace pincer::tasks {

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "engine/state.h"
+#include "tasks/session/columns.h"
 
 namespace pincer::tasks {
 namespace {
@@ -103,6 +104,7 @@ FingerInputs samplesOf(const FingerInputRecord& record) {
 
 HandIntent intentOf(const InputRecord& record) {
   HandIntent intent;
+  static_assert(columns::kLastPhase == kHandPhases - 1 && columns::kLastTrip == static_cast<double>(devices::Trip::kOperator));
   intent.phase = static_cast<HandPhase>(record.phase);
   intent.wants_lift = (record.flags & InputRecord::kWantsLift) != 0;
   intent.answers = (record.flags & InputRecord::kAnswers) != 0;

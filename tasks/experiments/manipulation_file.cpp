@@ -1,10 +1,8 @@
 #include "tasks/experiments/manipulation_file.h"
 
-#include <fstream>
-#include <sstream>
-
 #include "tasks/experiments/study_reader.h"
 #include "tasks/experiments/study_writer.h"
+#include "tasks/scene/file_limits.h"
 
 namespace pincer::tasks {
 
@@ -15,17 +13,9 @@ ManipulationStudy parseStudyFile(std::string_view text, const std::string& name)
 ManipulationStudy studyOfJson(const JsonValue& file) {
   ManipulationStudy study;
   readStudyText(file, study);
-  validate(study);
   return study;
 }
 
-ManipulationStudy readStudyFile(const std::string& path) {
-  const std::ifstream file(path);
-  if (!file)
-    throw InputError(path + ": can't be read. Give the path of a study file; `pincer run manipulation --write-study FILE` makes one.");
-  std::ostringstream text;
-  text << file.rdbuf();
-  return parseStudyFile(text.str(), path);
-}
+ManipulationStudy readStudyFile(const std::string& path) { return studyOfJson(readJson(path, kStudyFile)); }
 
 }  // namespace pincer::tasks

@@ -87,9 +87,9 @@ class TrialList {
 
 void validate(const ManipulationStudy& study) {
   visitParameters(study, RangeCheck("study"));
-  visitParameters(study.training, RangeCheck("study: training"));
-  visitParameters(study.people, RangeCheck("study: people"));
-  if (study.tasks.empty()) throw InputError("study: tasks is empty. Give sphere-pickup, cylinder-alignment, or both.");
+  visitParameters(study.training, RangeCheck("study: training", "training"));
+  visitParameters(study.people, RangeCheck("study: people", "people"));
+  if (study.tasks.empty()) throw ParameterError("tasks", "study: tasks is empty. Give sphere-pickup, cylinder-alignment, or both.");
   validate(pickupOf(study, false));
   CylinderAlignmentOptions alignment = study.alignment;
   alignment.conditions = study.conditions;

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "tasks/experiments/hand_records.h"
 
 namespace pincer::tasks {

@@ -32,10 +32,11 @@ std::vector<ShapeCondition> ShapeStudy::published() {
 void validate(const ShapeStudy& s) {
   const RangeCheck check("shape-identification");
   visitParameters(s, check);
-  visitParameters(s.sizes, check);
+  visitParameters(s.sizes, RangeCheck("shape-identification: sizes", "sizes"));
   if (s.sizes.sides % 2 != 0)
-    throw InputError(fmt::format("shape-identification: sides = {} is odd, but an even number is needed. {}", s.sizes.sides, kAsPublished));
-  if (s.conditions.empty()) throw InputError("shape-identification: conditions is empty. Give at least one.");
+    throw ParameterError("sizes.sides", fmt::format("shape-identification: sides = {} is odd, but an even number is needed. {}",
+                                                    s.sizes.sides, kAsPublished));
+  if (s.conditions.empty()) throw ParameterError("conditions", "shape-identification: conditions is empty. Give at least one.");
 }
 
 ShapeExperiment::ShapeExperiment(const ShapeStudy& study, const ServoOptions& servo, int stride)

@@ -1,6 +1,6 @@
 #include "tasks/experiments/simulated_hands.h"
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 
 namespace pincer::tasks {
 

@@ -45,11 +45,13 @@ PickupCondition pickupConditionOf(const std::string& name) {
 }
 
 void validate(const SpherePickupOptions& options) {
-  const RangeCheck check("sphere-pickup");
+  const RangeCheck check("sphere-pickup", "sphere_pickup");
   visitParameters(options, check);
-  if (options.object) visitParameters(*options.object, check);
+  if (options.object) visitParameters(*options.object, RangeCheck("sphere-pickup: object", "sphere_pickup.object"));
   check("participants", options.participants, Parameter{"", {1, 1000, false, "The published study had 12."}});
-  if (options.frictions.empty()) throw InputError("sphere-pickup: frictions is empty. Give at least one static friction, for example 0.6.");
+  if (options.frictions.empty())
+    throw ParameterError("sphere_pickup.frictions",
+                         "sphere-pickup: frictions is empty. Give at least one static friction, for example 0.6.");
   checkConditions(options);
 }
 

@@ -39,8 +39,9 @@ const std::string& conditionOf(const StudyTrial& trial) {
 void requireSameTrial(const ResponseRecord& earlier, const StudyTrial& trial) {
   const StudyRun& run = *trial.run;
   const std::string& condition = conditionOf(trial);
-  if (earlier.participant == run.participant && earlier.run == run.run && earlier.index == trial.index && earlier.condition == condition &&
-      earlier.stimulus == trial.stimulus.name && (earlier.level == trial.stimulus.level || earlier.level != earlier.level))
+  if (earlier.trial == trial.trial && earlier.participant == run.participant && earlier.run == run.run && earlier.index == trial.index &&
+      earlier.condition == condition && earlier.stimulus == trial.stimulus.name &&
+      (earlier.level == trial.stimulus.level || earlier.level != earlier.level))
     return;
   throw InputError(
       fmt::format("trial {} of the session isn't the one that this study would show: participant {}, {}, level {}. Resume with "

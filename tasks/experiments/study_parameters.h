@@ -3,6 +3,8 @@
 // has a list of its own. What two parameters demand of each other is in the studies' validate().
 #pragma once
 #include <array>
+#include <cstdint>
+#include <limits>
 
 #include "tasks/experiments/arc_study.h"
 #include "tasks/experiments/localisation.h"
@@ -13,13 +15,17 @@
 namespace pincer::tasks {
 
 inline constexpr std::string_view kAsPublished = "Leave it out for the published design.";
-inline constexpr double kLargestSeed = 9007199254740992;  // 2^53: larger ones are no exact numbers in JSON
+inline constexpr std::uint64_t kLargestSeed = std::numeric_limits<std::uint64_t>::max();  // all 64 bits are read, kept and written
 
 inline constexpr std::array<std::string_view, 2> kPickupConditionNames = {"force", "cld+force"};
 inline constexpr std::array<std::string_view, 2> kHandTaskNames = {"sphere-pickup", "cylinder-alignment"};
 inline constexpr std::array<std::string_view, 2> kStrategyNames = {"rational", "simple"};
 inline constexpr std::array<std::string_view, 3> kTactorUseNames = {"place", "slip", "nothing"};
 inline constexpr std::span<const std::string_view> kCurveVariantNames = std::span(contact::kSurfaceVariantNames).first(3);
+
+// What a condition can show lies within half a radian, 50 mm, half a second (arc_study.cpp asks that of each).
+inline constexpr NumberRule kLevel = {0, 1, false, kAsPublished};
+inline constexpr NumberRule kStep = {1e-9, 1, false, kAsPublished};
 
 template <class T, class Of>
 concept FieldsOf = std::same_as<std::remove_const_t<T>, Of>;
@@ -28,28 +34,28 @@ template <FieldsOf<StaircaseRule> Rule, class Visit>
 void visitParameters(Rule& r, Visit&& visit) {
   visit("up", r.up, Parameter{"wrong answers in a row until the level rises", {1, 100}});
   visit("down", r.down, Parameter{"right answers in a row until it falls", {1, 100}});
-  visit("start", r.start, Parameter{"first level, in the condition's unit [rad, m or s], as all levels"});
-  visit("large_step", r.large_step, Parameter{"step at first", {.min = 0, .min_open = true}});
-  visit("small_step", r.small_step, Parameter{"step after `large_reversals`", {.min = 0, .min_open = true}});
+  visit("start", r.start, Parameter{"first level, in the condition's unit [rad, m or s], as all levels", kLevel});
+  visit("large_step", r.large_step, Parameter{"step at first", kStep});
+  visit("small_step", r.small_step, Parameter{"step after `large_reversals`", kStep});
   visit("steps_are_ratios", r.steps_are_ratios, Parameter{"true: the level is multiplied or divided by 1 + step"});
   visit("large_reversals", r.large_reversals, Parameter{"reversals until steps are small", {0, 1000}});
   visit("reversals", r.reversals, Parameter{"then the staircase is over", {1, 1000}});
   visit("averaged", r.averaged, Parameter{"of them, the last, whose mean is the threshold; at most `reversals`", {1, 1000}});
-  visit("lowest", r.lowest, Parameter{"level; below `highest`"});
-  visit("highest", r.highest, Parameter{"level"});
+  visit("lowest", r.lowest, Parameter{"level; below `highest`", kLevel});
+  visit("highest", r.highest, Parameter{"level", kLevel});
   visit("most_trials", r.most_trials, Parameter{"then it is over in any case", {1, 100'000}});
 }
 
 template <FieldsOf<ArcCondition> Condition, class Visit>
 void visitParameters(Condition& c, Visit&& visit) {
-  visit("name", c.name, Parameter{"one of the published design begins with its values"});
+  visit("name", c.name, Parameter{"one of the published design begins with its values, a new one with those of the first"});
   visit("label", c.label, Parameter{"in the report"});
   visit("force", c.force, Parameter{"how the force feels the polygon", {}, kCurveVariantNames});
   visit("tactile", c.tactile, Parameter{"how the tactor does; null: it is parked", {}, kCurveVariantNames});
   visit("edge", c.edge, Parameter{"true: the edge in place of the arc"});
   visit("travel_share", c.travel_share, Parameter{"of the tactor's travel that is shown", {0, 1, true}});
   visit("staircase", c.staircase, Parameter{"that chooses the levels"});
-  visit("published", c.published, Parameter{"threshold, beside which the measured one is shown; null: none", {}, {}, true});
+  visit("published", c.published, Parameter{"threshold, beside which the measured one is shown; null: none", kLevel, {}, true});
 }
 
 template <FieldsOf<ArcStudy> Study, class Visit>
@@ -79,7 +85,8 @@ void visitParameters(Study& s, Visit&& visit) {
   visit("radius_max", s.radius_max, Parameter{"[m]", {0.02, 0.2, false, kAsPublished}});
   visit("finger_radius", s.finger_radius, Parameter{"[m]", {8e-3, 0.05, false, kAsPublished}});
   visit("stiffness", s.stiffness, Parameter{"of the surface [N/m]", {0, 3500, true, kAsPublished}});
-  visit("published_error", s.published_error, Parameter{"mean absolute error, beside which the measured one is shown [m]"});
+  visit("published_error", s.published_error,
+        Parameter{"mean absolute error, beside which the measured one is shown [m]", {0, 0.1, false, kAsPublished}});
 }
 
 template <FieldsOf<SolidSizes> Sizes, class Visit>
@@ -92,11 +99,12 @@ void visitParameters(Sizes& s, Visit&& visit) {
 
 template <FieldsOf<ShapeCondition> Condition, class Visit>
 void visitParameters(Condition& c, Visit&& visit) {
-  visit("name", c.name, Parameter{"one of the published design begins with its values"});
+  visit("name", c.name, Parameter{"one of the published design begins with its values, a new one with those of the first"});
   visit("label", c.label, Parameter{"in the report"});
   visit("shaded", c.shaded, Parameter{"false: flat facets"});
   visit("display_tactile", c.display_tactile, Parameter{"false: the tactor is parked"});
-  visit("published", c.published, Parameter{"share of right answers, beside which the measured one is shown; null: none", {}, {}, true});
+  visit("published", c.published,
+        Parameter{"share of right answers, beside which the measured one is shown; null: none", {0, 1}, {}, true});
 }
 
 template <FieldsOf<ShapeStudy> Study, class Visit>

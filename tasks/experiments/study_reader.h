@@ -5,6 +5,8 @@
 #include <initializer_list>
 
 #include "tasks/experiments/study_parameters.h"
+#include "tasks/scene/file_limits.h"
+#include "tasks/scene/json_change.h"
 
 namespace pincer::tasks {
 
@@ -19,11 +21,7 @@ inline void readField(const JsonValue& v, int& field, const Parameter& parameter
   if (value != std::floor(value) || std::abs(value) > 1e9) v.reject("isn't a whole number.");
   field = static_cast<int>(value);
 }
-inline void readField(const JsonValue& v, std::uint64_t& field, const Parameter&) {
-  const double value = v.number({0, kLargestSeed, false, "A whole number up to 2^53."});
-  if (value != std::floor(value)) v.reject("isn't a whole number.");
-  field = static_cast<std::uint64_t>(value);
-}
+inline void readField(const JsonValue& v, std::uint64_t& field, const Parameter&) { field = v.whole(); }
 inline void readField(const JsonValue& v, bool& field, const Parameter&) { field = v.boolean(); }
 inline void readField(const JsonValue& v, std::string& field, const Parameter&) { field = v.text(); }
 
@@ -42,17 +40,28 @@ void readField(const JsonValue& v, std::optional<Field>& field, const Parameter&
   if (v.kind() != JsonValue::Kind::kNull) readField(v, field.emplace(), parameter);
 }
 
-// A list in place of the one that was there; an item with the name of one of those begins as that.
+// An item of a list: one with the name of a published one begins as that; one with a new name as the first, but for what is said of that one
+// alone: it is labelled by its name, and nothing was published of it.
+template <class Item>
+Item namedItem(const JsonValue& json, const std::vector<Item>& known) {
+  const std::string& name = json.at("name", "Each condition has one.").text();
+  for (const Item& item : known)
+    if (item.name == name) return item;
+  Item item = known.empty() ? Item{} : known.front();
+  item.label = name;
+  item.published = std::nan("");
+  return item;
+}
+
+// A list in place of the one that was there.
 template <class Item>
 void readField(const JsonValue& v, std::vector<Item>& field, const Parameter& parameter) {
   std::vector<Item> list;
+  if (v.array().size() > kMostInStudyList)
+    v.reject(fmt::format("has {} elements; at most {} are allowed.", v.array().size(), kMostInStudyList));
   for (const JsonValue& json : v.array()) {
     Item item{};
-    if constexpr (requires { item.name; }) {
-      const std::string& name = json.at("name", "Each condition has one.").text();
-      for (const Item& known : field)
-        if (known.name == name) item = known;
-    }
+    if constexpr (requires { item.name; }) item = namedItem(json, field);
     readField(json, item, parameter);
     list.push_back(std::move(item));
   }
@@ -69,12 +78,17 @@ void readParameters(const JsonValue& json, Object& object, std::initializer_list
   json.allowOnly(keys);
 }
 
-// The whole file. "version" may be left out.
+// The whole file. "version" may be left out. What two parameters demand of each other is asked here as well.
 template <HasParameters Study>
 void readStudyText(const JsonValue& file, Study& study) {
   if (const JsonValue* version = file.find("version"); version && version->number() != 1)
     version->reject("is unknown. This pincer reads version 1.");
   readParameters(file, study, {"version"});
+  try {
+    validate(study);
+  } catch (const ParameterError& error) {
+    throw InputError(fmt::format("{}: {}", nearestTo(file, error.path()).place(), error.what()));
+  }
 }
 
 }  // namespace pincer::tasks

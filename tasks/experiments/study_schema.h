@@ -59,7 +59,7 @@ class SchemaWriter {
   }
   void describe(std::uint64_t field, const Parameter&) {
     json_.key("type").value("integer").key("minimum").value(0).key("maximum").value(kLargestSeed);
-    standard(static_cast<std::int64_t>(field));
+    standard(field);
   }
   void describe(bool field, const Parameter&) {
     json_.key("type").value("boolean");

@@ -4,10 +4,10 @@
 
 #include <cmath>
 
+#include "contact/io/atomic_file.h"
 #include "tasks/experiments/manipulation_file.h"
 #include "tasks/report/figures.h"
 #include "tasks/report/html_page.h"
-#include "tasks/session/atomic_file.h"
 #include "tasks/session/csv.h"
 
 namespace pincer::tasks {
@@ -79,7 +79,7 @@ Figure forestFigure(const FindingsResult& r) {
       "left: tries, pickup time, alignment error, alignment time. Intervals of few experiments go on beyond the borders.";
   figure.width = 2000;
   figure.height = 260 + 90 * static_cast<int>(r.variants.size());
-  CsvTable table{"measure", "variant", "row", "share", "low", "high"};
+  PlotTable table{"measure", "variant", "row", "share", "low", "high"};
   std::string tics, bare_tics;
   for (std::size_t v = 0; v < r.variants.size(); ++v) {
     const std::size_t row = r.variants.size() - 1 - v;

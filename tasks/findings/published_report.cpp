@@ -95,7 +95,7 @@ Figure publishedForest(const PublishedFindings& findings) {
       "published range. Open: the staircases ended before they had found a threshold.";
   figure.width = 2000;
   figure.height = 240 + 60 * static_cast<int>(findings.figures.size());
-  CsvTable table{"figure", "row", "ratio", "low", "high", "range_low", "range_high", "unsettled"};
+  PlotTable table{"figure", "row", "ratio", "low", "high", "range_low", "range_high", "unsettled"};
   std::string tics;
   for (std::size_t i = 0; i < findings.figures.size(); ++i) {
     const PublishedFigure& f = findings.figures[i];

@@ -6,7 +6,7 @@
 #include <ctime>
 #include <limits>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 
 namespace pincer::tasks {
 namespace {

@@ -15,6 +15,7 @@ namespace {
 constexpr double kPlaceLimit = 1.3e-3, kBacklashLimit = 0.46e-3, kEdgeLimit = 0.93e-3;  // [m]
 constexpr double kDelayLimit = 0.061, kFrontLimit = 0.132;                              // [s]
 constexpr double kLongestLag = 0.2;                                                     // [s]
+constexpr double kMostLags = 200;  // at 1 kHz; samples of a damaged session may stand closer
 constexpr std::int32_t kTouchingFlag = 1, kParkedFlag = 8;
 
 // A run of kept samples of one finger in which its tactor was in use.
@@ -25,7 +26,8 @@ class LagSearch {
     if (!wanted_.empty() && step_ == 0) step_ = time - last_;
     last_ = time;
     wanted_.push_back(finger.place_wanted_L);
-    const std::size_t lags = step_ > 0 ? static_cast<std::size_t>(std::lround(kLongestLag / step_)) + 1 : 1;
+    const double lags_wanted = step_ > 0 ? std::min(kMostLags, std::round(kLongestLag / step_)) : 0;
+    const std::size_t lags = static_cast<std::size_t>(lags_wanted) + 1;
     if (squares_.size() < lags) squares_.resize(lags), counts_.resize(lags);
     if (wanted_.size() < lags || step_ == 0) return;  // every lag sees the same samples
     for (std::size_t k = 0; k < lags; ++k) {

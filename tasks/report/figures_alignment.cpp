@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "contact/functions/elementary.h"
-#include "contact/invariants.h"
+#include "contact/elementary.h"
+#include "contact/functions/invariants.h"
 #include "tasks/report/figures.h"
 #include "tasks/session/csv.h"
 
@@ -31,13 +31,13 @@ Figure alignmentFigure(const SessionSummary& summary, const std::vector<TrialRec
   figure.caption =
       "Each dot a trial: left, how far from the monitor the flat was when the participant answered; right, the time until then. "
       "Bars: means over all trials. Open circles: time-outs.";
-  CsvTable table{"trial", "participant", "condition", "position", "error_deg", "time_s", "timeout"},
+  PlotTable table{"trial", "participant", "condition", "position", "error_deg", "time_s", "timeout"},
       means{"position", "error_deg", "time_s"};
   std::string tics;
   for (std::size_t c = 0; c < summary.conditions.size(); ++c) {
     double error = 0, time = 0;
     int n = 0, answered = 0;
-    tics += fmt::format("{}{} {}", c ? ", " : "", gnuplotString(conditionLabel(summary.conditions[c])), c);
+    tics += fmt::format("{}{} {}", c ? ", " : "", gnuplotTic(conditionLabel(summary.conditions[c])), c);
     for (const TrialRecord& t : trials) {
       if (t.condition != summary.conditions[c] || t.outcome == "fault") continue;
       const bool timeout = t.outcome == "timeout";
@@ -74,7 +74,7 @@ Figure turnFigure(const TrialTrace& trace) {
   figure.caption =
       fmt::format("Trial {}, participant {}. Top: direction of the flat from the monitor; bottom: normal forces of both fingers.",
                   trace.trial.trial, trace.trial.participant);
-  CsvTable table{"time_s", "flat_deg", "f0_normal_N", "f1_normal_N"};
+  PlotTable table{"time_s", "flat_deg", "f0_normal_N", "f1_normal_N"};
   const double start = trace.samples.front().time;
   for (const SampleRecord& s : trace.samples) {
     table.row(s.time - start, flatErrorOf(s), s.fingers[0].normal_force, s.fingers[1].normal_force);

@@ -28,7 +28,7 @@ std::size_t placeOf(const SessionSummary& s, const std::string& condition) {
 }
 
 std::string meansCsv(const SessionSummary& s, std::size_t m) {
-  CsvTable table{"condition", "condition_index", "mu_s", "position", "trials", "mean", "ci95_low", "ci95_high", "lower_bound"};
+  PlotTable table{"condition", "condition_index", "mu_s", "position", "trials", "mean", "ci95_low", "ci95_high", "lower_bound"};
   for (const CellSummary& c : s.cells) {
     if (c.allFrictions()) continue;
     const Estimate& e = c.measures[m];
@@ -41,7 +41,7 @@ std::string meansCsv(const SessionSummary& s, std::size_t m) {
 
 // The dots of a cell stand side by side in the order of the trials, so that equal counts don't hide each other.
 std::string trialsCsv(const SessionSummary& s, const std::vector<TrialRecord>& trials, std::size_t m) {
-  CsvTable table{"trial", "participant", "condition", "condition_index", "mu_s", "position", "outcome", "value"};
+  PlotTable table{"trial", "participant", "condition", "condition_index", "mu_s", "position", "outcome", "value"};
   std::map<std::pair<std::size_t, double>, std::vector<TrialRecord>> cells;
   for (const TrialRecord& t : trials) cells[{placeOf(s, t.condition), t.mu_s}].push_back(t);
   for (const auto& [cell, of_cell] : cells) {

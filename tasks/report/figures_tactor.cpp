@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "tasks/report/figures.h"
 #include "tasks/session/csv.h"
 
@@ -15,15 +15,15 @@ constexpr int kParked = 8;
 constexpr double kSmallestReach = 3;  // [mm] so that a tactor that stands still looks still
 
 std::string placesCsv(const TrialTrace& trace) {
-  CsvTable table{"time_s",
-                 "f0_wanted_distal_mm",
-                 "f0_wanted_radial_mm",
-                 "f0_shown_distal_mm",
-                 "f0_shown_radial_mm",
-                 "f1_wanted_distal_mm",
-                 "f1_wanted_radial_mm",
-                 "f1_shown_distal_mm",
-                 "f1_shown_radial_mm"};
+  PlotTable table{"time_s",
+                  "f0_wanted_distal_mm",
+                  "f0_wanted_radial_mm",
+                  "f0_shown_distal_mm",
+                  "f0_shown_radial_mm",
+                  "f1_wanted_distal_mm",
+                  "f1_wanted_radial_mm",
+                  "f1_shown_distal_mm",
+                  "f1_shown_radial_mm"};
   for (const SampleRecord& s : trace.samples) {
     table.add(s.time - trace.samples.front().time);
     for (const FingerRecord& f : s.fingers) {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "contact/functions/elementary.h"
+#include "contact/elementary.h"
 #include "tasks/report/figures.h"
 #include "tasks/session/csv.h"
 
@@ -25,7 +25,7 @@ std::vector<double> tickTimes(const SessionReader& session) {
 std::string histogramCsv(const std::vector<double>& times) {
   std::map<long, long> bins;
   for (const double t : times) ++bins[std::lround(std::floor(kBinsPerDecade * math::log10(t)))];
-  CsvTable table{"from_us", "to_us", "ticks", "share_percent"};
+  PlotTable table{"from_us", "to_us", "ticks", "share_percent"};
   const auto edge = [](long bin) { return math::pow(10, static_cast<double>(bin) / kBinsPerDecade); };
   for (const auto& [bin, ticks] : bins) {
     table.row(edge(bin), edge(bin + 1), ticks, 100 * static_cast<double>(ticks) / static_cast<double>(times.size()));
@@ -67,7 +67,7 @@ std::string timeTics(double least, double most) {
 }
 
 std::string percentilesCsv(const std::vector<double>& times) {
-  CsvTable table{"share", "tick_us"};
+  PlotTable table{"share", "tick_us"};
   for (const Percentile& p : kPercentiles) table.row(p.share, percentile(times, p.share));
   return table.take();
 }

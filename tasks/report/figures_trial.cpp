@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "tasks/report/figures.h"
 #include "tasks/session/csv.h"
 
@@ -26,8 +26,8 @@ constexpr EventStyle kEventStyles[] = {
 };
 
 std::string samplesCsv(const TrialTrace& trace) {
-  CsvTable table{"time_s",     "height_mm",   "f0_normal_N",     "f0_tangential_N", "f0_limit_N",
-                 "f0_sliding", "f1_normal_N", "f1_tangential_N", "f1_limit_N",      "f1_sliding"};
+  PlotTable table{"time_s",     "height_mm",   "f0_normal_N",     "f0_tangential_N", "f0_limit_N",
+                  "f0_sliding", "f1_normal_N", "f1_tangential_N", "f1_limit_N",      "f1_sliding"};
   const SampleRecord& first = trace.samples.front();
   for (const SampleRecord& s : trace.samples) {
     table.add(s.time - first.time);
@@ -55,7 +55,7 @@ std::vector<EventStyle> stylesOf(const TrialTrace& trace) {
 }
 
 std::string eventsCsv(const TrialTrace& trace, const std::vector<EventStyle>& styles) {
-  CsvTable table{"time_s", "kind", "detail", "row"};
+  PlotTable table{"time_s", "kind", "detail", "row"};
   for (const EventRecord& e : trace.events) {
     const auto style = std::find_if(styles.begin(), styles.end(), [&](const EventStyle& s) { return e.kind == s.kind; });
     if (style != styles.end()) table.row(e.time - trace.samples.front().time, e.kind, e.detail, style - styles.begin());

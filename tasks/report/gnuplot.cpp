@@ -8,11 +8,12 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 #include <system_error>
 
 #include "contact/error.h"
+#include "contact/io/atomic_file.h"
 #include "tasks/measure/child_process.h"
-#include "tasks/session/atomic_file.h"
 
 namespace pincer::tasks {
 
@@ -30,15 +31,34 @@ std::string makeTemporaryDirectory() {
       fmt::format("{}: can't make a temporary directory: {}. Set TMPDIR to one that you may write.", path, std::strerror(errno)));
 }
 
+// The lines of a log that say what is wrong: those with a place in a script. Between them gnuplot repeats the script.
+std::string complaintOf(const std::string& log) {
+  std::string complaint;
+  std::istringstream lines(log);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.find("\" line ") != std::string::npos) complaint += (complaint.empty() ? "" : "; ") + line;
+  }
+  return complaint.empty() ? "it said nothing." : complaint + ".";
+}
+
 }  // namespace
 
 std::string gnuplotString(const std::string& text) {
   std::string quoted = "'";
   for (const char c : text) {
-    if (c == '\'') quoted += '\'';
-    quoted += c == '\n' || c == '\r' ? ' ' : c;
+    if (c == '\'') {
+      quoted += "'.\"'\".'";
+    } else {
+      quoted += (c >= 0 && c < ' ') || c == 0x7f ? ' ' : c;
+    }
   }
   return quoted + "'";
+}
+
+std::string gnuplotTic(const std::string& text) {
+  std::string label;
+  for (const char c : text) label.append(c == '%' ? 2 : 1, c);
+  return gnuplotString(label);
 }
 
 // The child runs elsewhere, so a relative path must be made absolute; a bare name is looked up in PATH.
@@ -76,10 +96,20 @@ std::string Gnuplot::draw(const Figure& figure, const std::string& terminal, con
   const int status = run(script);
   std::string drawn = read(directory_ + "/" + picture);
   if (status == 0 && !drawn.empty()) return drawn;
+  fail(figure, status, read(directory_ + "/log"));
+}
+
+void Gnuplot::fail(const Figure& figure, int status, const std::string& log) const {
+  for (const char* empty : {"no valid points", "undefined!", "range is invalid", "must be > 0", "greater than 0 for log"}) {
+    if (log.find(empty) != std::string::npos) throw NothingToDraw(fmt::format("figure {}: nothing can be drawn.", figure.name));
+  }
+  if (log.find("terminal type") != std::string::npos) {
+    throw InputError(
+        fmt::format("{}: lacks the pngcairo or svg terminal. Install one that has both (Debian: apt-get install gnuplot-nox).", program_));
+  }
   throw InputError(
-      fmt::format("{}: figure {} failed (status {}): {}. Check that it is gnuplot 5.4 or newer with the pngcairo and svg terminals "
-                  "(Debian: apt-get install gnuplot-nox).",
-                  program_, figure.name, status, read(directory_ + "/log")));
+      fmt::format("{}: figure {} can't be drawn (status {}): {} The session itself is unharmed; `pincer export` has its tables.", program_,
+                  figure.name, status, complaintOf(log)));
 }
 
 int Gnuplot::run(const std::string& script_name) {

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "contact/error.h"
+
 namespace pincer::tasks {
 
 // One picture: what a gnuplot script draws from data files that lie beside it.
@@ -18,8 +20,18 @@ struct Figure {
   std::vector<std::pair<std::string, std::string>> data;  // file name (.csv) and content
 };
 
-// Text as gnuplot's single-quoted string; line ends become spaces.
+// Text as a string of gnuplot's: in single quotes, in which nothing is expanded; a single quote in it stands in double ones, joined by dots,
+// since gnuplot 5.4 mistakes two in a row for the end. Control characters become blanks.
 std::string gnuplotString(const std::string& text);
+
+// The same for the label of a tic, which gnuplot takes for a format of its number.
+std::string gnuplotTic(const std::string& text);
+
+// A figure none of whose numbers can be drawn: no trial was finished yet, or none measured what it shows.
+class NothingToDraw : public InputError {
+ public:
+  using InputError::InputError;
+};
 
 class Gnuplot {
  public:
@@ -27,12 +39,14 @@ class Gnuplot {
   explicit Gnuplot(std::string program = "gnuplot", const std::atomic<bool>* interrupted = nullptr);
   Gnuplot(Gnuplot&&) = delete;
   ~Gnuplot();
+  // Throws NothingToDraw, or InputError with gnuplot's own complaint.
   std::string plot(const Figure& figure);  // the PNG's bytes
   std::string svg(const Figure& figure);   // the same picture, scalable
 
  private:
   std::string draw(const Figure& figure, const std::string& terminal, const char* ending);
   int run(const std::string& script_name);
+  [[noreturn]] void fail(const Figure& figure, int status, const std::string& log) const;
   std::string program_, directory_;
   const std::atomic<bool>* interrupted_;
 };

@@ -17,7 +17,7 @@ std::string facts(const SessionSummary& s) {
                                                               {"participants", std::to_string(s.participants)},
                                                               {"finished trials", std::to_string(s.trials)},
                                                               {"pincer", s.info.version},
-                                                              {"build", s.info.build},
+                                                              {"build", buildFacts(s.info)},
                                                               {"participants' parameters", s.info.participants_hash},
                                                               {"session file", s.path}};
   return htmlFacts(rows);

@@ -38,6 +38,9 @@ std::string base64(const std::string& bytes) {
   return text;
 }
 
+// Apart from tabs and line ends, which pages may hold.
+bool isControl(char c) { return (c >= 0 && c < ' ' && c != '\t' && c != '\n' && c != '\r') || c == 0x7f; }
+
 }  // namespace
 
 std::string escaped(const std::string& text) {
@@ -57,7 +60,7 @@ std::string escaped(const std::string& text) {
         html += "&quot;";
         break;
       default:
-        html += c;
+        html += isControl(c) ? ' ' : c;
     }
   }
   return html;
@@ -84,6 +87,20 @@ std::string htmlFigure(const Picture& p, const std::string& figures_name) {
       "<figcaption>{} <span class=\"note\">({})</span></figcaption>\n</figure>\n",
       escaped(p.figure.title), p.figure.name, escaped(p.figure.title), p.figure.width / 2, p.figure.height / 2, base64(p.png),
       escaped(p.figure.caption), links);
+}
+
+std::string buildFacts(const SessionInfo& info) {
+  std::string facts = info.build;
+  for (const std::string* more : {&info.flags, &info.c_library, &info.processor, &info.commit}) {
+    if (!more->empty()) facts += (more == &info.commit ? "; commit " : "; ") + *more;
+  }
+  return facts;
+}
+
+std::string htmlNotDrawn(const std::vector<std::string>& titles) {
+  if (titles.empty()) return "";
+  return fmt::format("<p class=\"note\">Not drawn, since no finished trial has numbers for it: {}.</p>\n",
+                     escaped(fmt::format("{}", fmt::join(titles, "; "))));
 }
 
 std::string htmlDetails(const char* title, const std::string& json) {

@@ -19,6 +19,12 @@ std::string htmlFacts(const std::vector<std::pair<std::string, std::string>>& ro
 // The picture inside the page, its caption, and links to its files in `figures_name`.
 std::string htmlFigure(const Picture& picture, const std::string& figures_name);
 
+// Compiler, flags, C library and processor, as far as the session tells.
+std::string buildFacts(const SessionInfo& info);
+
+// Says which figures are missing; nothing if none is.
+std::string htmlNotDrawn(const std::vector<std::string>& titles);
+
 // Something long, folded away; nothing if `json` is empty.
 std::string htmlDetails(const char* title, const std::string& json);
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numeric>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 
 namespace pincer::tasks {
 namespace {

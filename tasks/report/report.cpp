@@ -2,9 +2,10 @@
 
 #include <filesystem>
 
+#include "contact/io/atomic_file.h"
 #include "tasks/report/device_errors.h"
 #include "tasks/report/figures.h"
-#include "tasks/session/atomic_file.h"
+#include "tasks/report/html_page.h"
 
 namespace pincer::tasks {
 
@@ -38,6 +39,16 @@ std::vector<Picture> wantedPictures(const SessionReader& session, const SessionS
   return pictures;
 }
 
+bool isDrawn(Gnuplot& gnuplot, Picture& picture) {
+  try {
+    picture.png = gnuplot.plot(picture.figure);
+    picture.svg = gnuplot.svg(picture.figure);
+    return true;
+  } catch (const NothingToDraw&) {
+    return false;
+  }
+}
+
 std::string writeFigure(const std::string& directory, const Picture& picture) {
   const std::string png = directory + "/" + picture.figure.name + ".png";
   for (const auto& [name, content] : picture.figure.data) writeAtomically(directory + "/" + name, content);
@@ -51,12 +62,13 @@ std::string writeFigure(const std::string& directory, const Picture& picture) {
 std::string plotAndWrite(std::vector<Picture>& pictures, const std::string& html_path, const ReportOptions& options, ReportFiles& files) {
   const std::filesystem::path path(html_path);
   const std::string figures_name = path.stem().string() + "_figures";
-  files = {html_path, (path.parent_path() / figures_name).string(), {}};
+  files = {html_path, (path.parent_path() / figures_name).string(), {}, {}};
   Gnuplot gnuplot(options.gnuplot, options.interrupted);
-  for (Picture& picture : pictures) {
-    picture.png = gnuplot.plot(picture.figure);
-    picture.svg = gnuplot.svg(picture.figure);
-  }
+  std::erase_if(pictures, [&](Picture& picture) {
+    const bool drawn = isDrawn(gnuplot, picture);
+    if (!drawn) files.not_drawn.push_back(picture.figure.title);
+    return !drawn;
+  });
   makeDirectory(files.figures_directory);
   for (const Picture& picture : pictures) files.figures.push_back(writeFigure(files.figures_directory, picture));
   return figures_name;
@@ -68,7 +80,8 @@ ReportFiles writeReport(const SessionReader& session, const std::string& html_pa
   std::vector<Picture> pictures = wantedPictures(session, summary, trials);
   ReportFiles files;
   const std::string figures_name = plotAndWrite(pictures, html_path, options, files);
-  writeAtomically(html_path, reportHtml(summary, trials, pictures, figures_name, deviceErrorsHtml(deviceErrors(session))));
+  const std::string more = htmlNotDrawn(files.not_drawn) + deviceErrorsHtml(deviceErrors(session));
+  writeAtomically(html_path, reportHtml(summary, trials, pictures, figures_name, more));
   return files;
 }
 

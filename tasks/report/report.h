@@ -21,7 +21,8 @@ struct ReportOptions {
 
 struct ReportFiles {
   std::string html, figures_directory;
-  std::vector<std::string> figures;  // paths of the PNG files
+  std::vector<std::string> figures;    // paths of the PNG files
+  std::vector<std::string> not_drawn;  // titles of figures that no trial has numbers for yet
 };
 
 ReportFiles writeReport(const SessionReader& session, const std::string& html_path, const ReportOptions& options = {});
@@ -35,7 +36,7 @@ struct Picture {
 };
 
 // Plots the pictures and writes them, as PNG, SVG and CSV, to the directory that belongs to the page at `html_path`. Returns that directory's
-// name relative to the page and fills in `files`.
+// name relative to the page and fills in `files`. Pictures that have nothing to draw are taken out; the page says which.
 std::string plotAndWrite(std::vector<Picture>& pictures, const std::string& html_path, const ReportOptions& options, ReportFiles& files);
 
 // The page itself. `figures_name`: the figures' directory relative to the page; `devices`: HTML of what the devices did.

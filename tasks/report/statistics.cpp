@@ -5,8 +5,8 @@
 #include <limits>
 #include <numbers>
 
-#include "contact/functions/elementary.h"
-#include "contact/invariants.h"
+#include "contact/elementary.h"
+#include "contact/functions/invariants.h"
 
 namespace pincer::tasks {
 

@@ -18,8 +18,7 @@ constexpr double kPublishedAside = 0.22;               // and the published figu
 
 std::string conditionTics(const StudySummary& s) {
   std::string tics;
-  for (std::size_t i = 0; i < s.conditions.size(); ++i)
-    tics += fmt::format("{}{} {}", i ? ", " : "", gnuplotString(s.conditions[i].name), i);
+  for (std::size_t i = 0; i < s.conditions.size(); ++i) tics += fmt::format("{}{} {}", i ? ", " : "", gnuplotTic(s.conditions[i].name), i);
   return fmt::format("set xtics ({}) scale 0\nset xrange [-0.6:{}]\n", tics, static_cast<double>(s.conditions.size()) - 0.4);
 }
 
@@ -36,8 +35,8 @@ constexpr std::array<SpeedKind, 2> kSpeeds{{{"finger", palette::kBlue, &StudyCon
 }  // namespace
 
 Figure headlineFigure(const StudySummary& s) {
-  CsvTable means{"condition", "position", "mean", "ci95_low", "ci95_high", "published"};
-  CsvTable people{"condition", "participant", "position", "value"};
+  PlotTable means{"condition", "position", "mean", "ci95_low", "ci95_high", "published"};
+  PlotTable people{"condition", "participant", "position", "value"};
   for (std::size_t k = 0; k < s.conditions.size(); ++k) {
     const StudyCondition& c = s.conditions[k];
     const double x = static_cast<double>(k), scale = s.headline.scale, half = halfOf(c.headline);
@@ -67,7 +66,7 @@ Figure headlineFigure(const StudySummary& s) {
 }
 
 Figure staircaseFigure(const StudySummary& s, const std::vector<ResponseRecord>& responses) {
-  CsvTable table{"condition", "condition_index", "participant", "trial_in_run", "level", "correct", "reversal"};
+  PlotTable table{"condition", "condition_index", "participant", "trial_in_run", "level", "correct", "reversal"};
   for (std::size_t k = 0; k < s.conditions.size(); ++k) {
     std::map<std::int64_t, std::vector<const ResponseRecord*>> people;
     for (const ResponseRecord& r : responses)
@@ -111,7 +110,7 @@ Figure staircaseFigure(const StudySummary& s, const std::vector<ResponseRecord>&
 }
 
 Figure placesFigure(const std::vector<ResponseRecord>& responses) {
-  CsvTable answers{"participant", "true_mm", "named_mm"},
+  PlotTable answers{"participant", "true_mm", "named_mm"},
       means{"true_mm", "mean_named_mm", "ci95_low", "ci95_high", "mean_absolute_error_mm"};
   std::map<double, std::map<std::int64_t, std::vector<double>>> places;
   for (const ResponseRecord& r : responses) {
@@ -158,10 +157,10 @@ Figure confusionFigure(const std::vector<ResponseRecord>& responses) {
     ++shown[r.stimulus];
   }
   const std::vector<std::string> names(set.begin(), set.end());
-  CsvTable table{"shown", "named", "column", "row", "percent"};
+  PlotTable table{"shown", "named", "column", "row", "percent"};
   std::string tics;
   for (std::size_t i = 0; i < names.size(); ++i) {
-    tics += fmt::format("{}{} {}", i ? ", " : "", gnuplotString(names[i]), i);
+    tics += fmt::format("{}{} {}", i ? ", " : "", gnuplotTic(names[i]), i);
     for (std::size_t j = 0; j < names.size(); ++j)
       table.row(names[i], names[j], j, i, 100.0 * counts[{names[i], names[j]}] / shown[names[i]]);
   }
@@ -186,7 +185,7 @@ Figure confusionFigure(const std::vector<ResponseRecord>& responses) {
 }
 
 Figure speedFigure(const StudySummary& s) {
-  CsvTable table{"condition", "what", "position", "mean_mm_per_s", "ci95_low", "ci95_high"};
+  PlotTable table{"condition", "what", "position", "mean_mm_per_s", "ci95_low", "ci95_high"};
   for (std::size_t k = 0; k < s.conditions.size(); ++k) {
     for (std::size_t i = 0; i < kSpeeds.size(); ++i) {
       const Estimate& e = s.conditions[k].*kSpeeds[i].of;
@@ -221,7 +220,7 @@ Figure speedFigure(const StudySummary& s) {
 }
 
 Figure timeFigure(const StudySummary& s) {
-  CsvTable table{"condition", "position", "shown_s", "ci95_low", "ci95_high", "answer_after_s"};
+  PlotTable table{"condition", "position", "shown_s", "ci95_low", "ci95_high", "answer_after_s"};
   for (std::size_t k = 0; k < s.conditions.size(); ++k) {
     const StudyCondition& c = s.conditions[k];
     const double half = halfOf(c.duration);

@@ -7,7 +7,7 @@
 #include <map>
 #include <optional>
 
-#include "contact/functions/elementary.h"
+#include "contact/elementary.h"
 #include "tasks/report/figures.h"
 #include "tasks/report/study_report.h"
 #include "tasks/session/csv.h"
@@ -40,7 +40,7 @@ std::vector<LevelCount> countsOf(const StudyCondition& condition, const std::vec
   return list;
 }
 
-void addCurve(CsvTable& curve, const std::string& name, std::size_t k, const PsychometricFit& fit, const std::vector<LevelCount>& counts,
+void addCurve(PlotTable& curve, const std::string& name, std::size_t k, const PsychometricFit& fit, const std::vector<LevelCount>& counts,
               const LevelAxis& axis, double scale) {
   for (int i = 0; i <= kCurvePoints; ++i) {
     const double x = counts.front().level + (counts.back().level - counts.front().level) * i / kCurvePoints;
@@ -68,9 +68,9 @@ std::string levelPanel(const StudySummary& s, std::size_t k, const std::optional
 
 Figure psychometricFigure(const StudySummary& s, const std::vector<ResponseRecord>& responses) {
   const LevelAxis axis{s.info.task == "smoothness-discrimination"};
-  CsvTable points{"condition", "condition_index", "level", "right_share", "trials"},
+  PlotTable points{"condition", "condition_index", "level", "right_share", "trials"},
       curves{"condition", "condition_index", "level", "right_share"};
-  CsvTable fits{"condition", "threshold_at_70.7_percent", "ci95_low", "ci95_high", "spread", "lapse_rate"};
+  PlotTable fits{"condition", "threshold_at_70.7_percent", "ci95_low", "ci95_high", "spread", "lapse_rate"};
   const std::size_t columns = std::min<std::size_t>(3, s.conditions.size()), rows = (s.conditions.size() + columns - 1) / columns;
   Figure figure;
   std::string panels, words;

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
+#include "contact/io/atomic_file.h"
 #include "tasks/report/device_errors.h"
 #include "tasks/report/figures.h"
 #include "tasks/report/html_page.h"
-#include "tasks/session/atomic_file.h"
 
 namespace pincer::tasks {
 namespace {
@@ -39,7 +39,7 @@ std::string studyHtml(const StudySummary& s, const std::vector<Picture>& picture
                      {"finished trials", std::to_string(s.trials)},
                      {"fingerprint of the participants' parameters", s.fingerprint},
                      {"pincer", s.info.version},
-                     {"build", s.info.build},
+                     {"build", buildFacts(s.info)},
                      {"session file", s.path}});
   html += "<h2>Per condition</h2>\n<div class=\"wide\"><table>\n" + htmlRow(studyTableHeads(s), "th");
   for (const StudyCondition& c : s.conditions) html += htmlRow(studyTableRow(s, c), "td");
@@ -56,7 +56,8 @@ ReportFiles writeStudyReport(const SessionReader& session, const std::string& ht
   std::vector<Picture> pictures = studyPictures(session, summary, responses);
   ReportFiles files;
   const std::string figures_name = plotAndWrite(pictures, html_path, options, files);
-  writeAtomically(html_path, studyHtml(summary, pictures, figures_name, deviceErrorsHtml(deviceErrors(session))));
+  const std::string more = htmlNotDrawn(files.not_drawn) + deviceErrorsHtml(deviceErrors(session));
+  writeAtomically(html_path, studyHtml(summary, pictures, figures_name, more));
   return files;
 }
 

@@ -8,6 +8,8 @@
 #include <map>
 #include <set>
 
+#include "contact/io/counted.h"
+#include "contact/io/printable.h"
 #include "tasks/scene/json_writer.h"
 #include "tasks/scene/strict_json.h"
 
@@ -37,6 +39,11 @@ double numberOr(const JsonValue& object, std::string_view key, double otherwise)
   return value && value->kind() == JsonValue::Kind::kNumber ? value->number() : otherwise;
 }
 
+int averagedOf(const JsonValue& staircase) {
+  const JsonValue* value = staircase.find("averaged");
+  return value ? value->integer(1, 1000, "") : 0;
+}
+
 // The conditions of the protocol, then any that only the answers know.
 std::vector<StudyCondition> conditionsOf(const JsonValue& study, const std::vector<ResponseRecord>& responses) {
   std::vector<StudyCondition> conditions;
@@ -46,7 +53,7 @@ std::vector<StudyCondition> conditionsOf(const JsonValue& study, const std::vect
       conditions.push_back({c.at("name").text(),
                             c.at("label").text(),
                             numberOr(c, "published", kNoFigure),
-                            rule ? static_cast<int>(numberOr(*rule, "averaged", 0)) : 0,
+                            rule ? averagedOf(*rule) : 0,
                             0,
                             0,
                             {},
@@ -228,18 +235,22 @@ std::string studyNote(const StudySummary& s) {
         " ≥ marks conditions with fewer than {:.0f} % right answers: their staircases ended before they had risen to a threshold.",
         100 * kSettled);
   }
-  if (lost > 0) note += fmt::format(" {} staircases found no threshold and are left out.", lost);
-  if (unanswered > 0) note += fmt::format(" {} trials ended without an answer.", unanswered);
+  if (lost > 0) note += fmt::format(" {} found no threshold and {} left out.", counted(lost, "staircase"), lost == 1 ? "is" : "are");
+  if (unanswered > 0) note += fmt::format(" {} ended without an answer.", counted(unanswered, "trial"));
   return note;
 }
 
 std::string formatStudyTable(const StudySummary& s) {
   std::vector<std::vector<std::string>> rows{studyTableHeads(s)};
   for (const StudyCondition& c : s.conditions) rows.push_back(studyTableRow(s, c));
+  for (auto& row : rows) {
+    for (std::string& field : row) field = printable(field);  // names in a session may be another's
+  }
   std::vector<std::size_t> widths(rows[0].size());
   for (const auto& row : rows)
     for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], characters(row[i]));
-  std::string text = fmt::format("{}, seed {}: {} participants, {} trials\n\n", s.info.task, s.info.seed, s.participants, s.trials);
+  std::string text = fmt::format("{}, seed {}: {}, {}\n\n", printable(s.info.task), s.info.seed, counted(s.participants, "participant"),
+                                 counted(s.trials, "trial"));
   for (const auto& row : rows) {
     for (std::size_t i = 0; i < row.size(); ++i) {
       const std::string gap(widths[i] - characters(row[i]), ' ');
@@ -252,7 +263,7 @@ std::string formatStudyTable(const StudySummary& s) {
 
 std::string studySummaryJson(const StudySummary& s) {
   JsonWriter json;
-  json.beginObject().key("task").value(s.info.task).key("seed").value(static_cast<std::int64_t>(s.info.seed));
+  json.beginObject().key("task").value(s.info.task).key("seed").value(s.info.seed);
   json.key("state").value(s.state).key("fingerprint").value(s.fingerprint);
   json.key("participants").value(s.participants).key("trials").value(s.trials).key("headline").value(s.headline.name);
   json.key("conditions").beginArray();

@@ -7,6 +7,8 @@
 #include <map>
 #include <set>
 
+#include "contact/io/printable.h"
+
 namespace pincer::tasks {
 
 namespace {
@@ -81,7 +83,10 @@ std::string alignedRow(const std::vector<std::string>& fields, const std::vector
   return line + "\n";
 }
 
-std::string alignedRows(const std::vector<std::vector<std::string>>& rows) {
+std::string alignedRows(std::vector<std::vector<std::string>> rows) {
+  for (auto& row : rows) {
+    for (std::string& field : row) field = printable(field);  // names in a session may be another's
+  }
   std::vector<std::size_t> widths(rows[0].size(), 0);
   for (const auto& row : rows) {
     for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], width(row[c]));

@@ -23,10 +23,21 @@ Json asJson(const CellSummary& cell) {
 }  // namespace
 
 std::string summaryJson(const SessionSummary& s) {
-  Json json{{"session", s.path},         {"task", s.info.task},          {"seed", s.info.seed},
-            {"version", s.info.version}, {"build", s.info.build},        {"state", s.state},
-            {"warning", s.warning},      {"started_utc", s.started_utc}, {"participants", s.participants},
-            {"trials", s.trials},        {"cells", Json::array()}};
+  Json json{{"session", s.path},
+            {"task", s.info.task},
+            {"seed", s.info.seed},
+            {"version", s.info.version},
+            {"build", s.info.build},
+            {"commit", s.info.commit},
+            {"processor", s.info.processor},
+            {"c_library", s.info.c_library},
+            {"flags", s.info.flags},
+            {"state", s.state},
+            {"warning", s.warning},
+            {"started_utc", s.started_utc},
+            {"participants", s.participants},
+            {"trials", s.trials},
+            {"cells", Json::array()}};
   for (const CellSummary& cell : s.cells) json["cells"].push_back(asJson(cell));
   json["pairs"] = Json::array();
   for (const PairedRow& row : s.pairs) {

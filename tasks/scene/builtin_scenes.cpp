@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "contact/error.h"
+#include "tasks/scene/file_limits.h"
 #include "tasks/scene/spelling.h"
 
 namespace pincer::tasks {
@@ -40,7 +41,7 @@ Scene readBuiltinScene(std::string_view name) {
 
 NamedJson parseSceneOrBuiltin(const std::string& path_or_name) {
   const bool is_word = path_or_name.find_first_of("/.") == std::string::npos;
-  if (!is_word || std::filesystem::exists(path_or_name)) return {path_or_name, readJson(path_or_name)};
+  if (!is_word || std::filesystem::exists(path_or_name)) return {path_or_name, readJson(path_or_name, kSceneFile)};
   return parseBuiltin(path_or_name);
 }
 

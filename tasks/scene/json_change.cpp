@@ -63,6 +63,7 @@ class JsonChange {
     if (!is_new && at->kind_ != JsonValue::Kind::kNumber) at->reject("is no number: nothing else can be varied.");
     at->kind_ = JsonValue::Kind::kNumber;
     at->number_ = value;
+    at->exact_.reset();
   }
 
  private:
@@ -85,6 +86,18 @@ class JsonChange {
 };
 
 void setNumber(JsonValue& file, std::string_view path, double value) { JsonChange::set(file, path, value); }
+
+const JsonValue& nearestTo(const JsonValue& file, std::string_view path) {
+  const JsonValue* at = &file;
+  for (const PathStep& step : stepsOf(path)) {
+    const JsonValue* next = nullptr;
+    if (step.index && at->kind() == JsonValue::Kind::kArray && *step.index < at->array().size()) next = &at->array()[*step.index];
+    if (!step.index && at->kind() == JsonValue::Kind::kObject) next = at->find(step.key);
+    if (!next) break;
+    at = next;
+  }
+  return *at;
+}
 
 std::string scenePath(const JsonValue& scene, std::string_view path) {
   const std::string first = stepsOf(path).front().key;

@@ -15,6 +15,9 @@ namespace pincer::tasks {
 // something that is no number.
 void setNumber(JsonValue& file, std::string_view path, double value);
 
+// The value at `path`, or as far along it as the file goes. `path` is one of ours.
+const JsonValue& nearestTo(const JsonValue& file, std::string_view path);
+
 // The path in a scene: one that begins with the name of a body, joint or finger becomes that of its object ("sphere.mass" -> "bodies[2].mass").
 // Throws InputError, with a did-you-mean, where there is neither such a key nor such a name.
 std::string scenePath(const JsonValue& scene, std::string_view path);

@@ -2,21 +2,46 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace pincer::tasks {
 
+namespace {
+
+// Bytes of the UTF-8 character that `text` begins with; 0: none does. Table 3-7 of the Unicode standard.
+std::size_t lengthOfCharacter(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
+  const unsigned first = byte(0), second = byte(1);
+  const auto follows = [&](std::size_t i) { return (byte(i) & 0xc0) == 0x80; };
+  if (first < 0x80) return 1;
+  if (first >= 0xc2 && first <= 0xdf) return follows(1) ? 2 : 0;
+  if (first >= 0xe0 && first <= 0xef) {
+    const bool possible = (first != 0xe0 || second >= 0xa0) && (first != 0xed || second <= 0x9f);
+    return possible && follows(1) && follows(2) ? 3 : 0;
+  }
+  if (first < 0xf0 || first > 0xf4) return 0;
+  const bool possible = (first != 0xf0 || second >= 0x90) && (first != 0xf4 || second <= 0x8f);
+  return possible && follows(1) && follows(2) && follows(3) ? 4 : 0;
+}
+
+}  // namespace
+
 std::string quotedJson(std::string_view text) {
+  constexpr std::string_view kNoCharacter = "\uFFFD";
   std::string out = "\"";
-  for (const char c : text) {
+  while (!text.empty()) {
+    const char c = text.front();
+    const std::size_t length = lengthOfCharacter(text);
     if (c == '"' || c == '\\') {
       out += '\\';
       out += c;
     } else if (static_cast<unsigned char>(c) < 0x20) {
       out += fmt::format("\\u{:04x}", static_cast<int>(c));
     } else {
-      out += c;
+      out += length > 0 ? text.substr(0, length) : kNoCharacter;
     }
+    text.remove_prefix(std::max<std::size_t>(1, length));
   }
   return out + '"';
 }
@@ -41,6 +66,12 @@ JsonWriter& JsonWriter::value(double number) {
 }
 
 JsonWriter& JsonWriter::value(std::int64_t number) {
+  separate();
+  text_ += fmt::format("{}", number);
+  return *this;
+}
+
+JsonWriter& JsonWriter::value(std::uint64_t number) {
   separate();
   text_ += fmt::format("{}", number);
   return *this;

@@ -13,7 +13,7 @@
 
 namespace pincer::tasks {
 
-std::string quotedJson(std::string_view text);  // in quotes, escaped
+std::string quotedJson(std::string_view text);  // in quotes, escaped; bytes that are no UTF-8 become U+FFFD
 
 class JsonWriter {
  public:
@@ -26,6 +26,7 @@ class JsonWriter {
   JsonWriter& value(const char* text) { return value(std::string_view(text)); }
   JsonWriter& value(double number);
   JsonWriter& value(std::int64_t number);
+  JsonWriter& value(std::uint64_t number);
   JsonWriter& value(int number) { return value(static_cast<std::int64_t>(number)); }
   JsonWriter& value(bool truth);
   JsonWriter& value(const Vec3& v);  // [x, y, z]

@@ -55,6 +55,7 @@ struct Scene {
   std::vector<SceneFinger> fingers;
   Recording record;
   std::vector<Expectation> expectations;
+  std::vector<int> body_lines, joint_lines, pair_lines;  // in the file, for messages; empty where there is none
 
   std::int64_t ticks() const;  // in `duration`
 };

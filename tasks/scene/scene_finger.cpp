@@ -8,15 +8,6 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr NumberRule kProxyMass = {.min = 0, .max = 100, .remedy = "In kilograms; 0 gives a massless tip behind its spring."};
-constexpr NumberRule kStiffness = {.min = 0, .max = 1e6, .remedy = "In N/m; typical: 200 to 2000."};
-constexpr NumberRule kDamping = {.min = 0, .max = 1e5, .remedy = "In N s/m; typical: 2 to 5."};
-constexpr NumberRule kTwist = {.min = 0, .max = 1e3, .remedy = "In N m/rad or N m s/rad; a fingertip has about 0.3 and 0.001."};
-constexpr NumberRule kPatch = {.min = 0, .max = 0.1, .min_open = true, .remedy = "In metres; a fingertip's patch has 0.004 to 0.006."};
-constexpr NumberRule kModulus = {.min = 0, .max = 1e12, .min_open = true, .remedy = "In pascals; a fingertip has about 1e5."};
-constexpr NumberRule kArmMass = {.min = 1e-4, .max = 100, .remedy = "In kilograms, at the tip."};
-constexpr NumberRule kFingerTurn = {.min = -100, .max = 100, .remedy = "An axis times an angle in radians."};
-constexpr NumberRule kForce = {.min = -1e4, .max = 1e4, .remedy = "In newtons."};
 constexpr std::array<std::string_view, 3> kAxes = {"x", "y", "z"};
 
 // One number for all axes, or [x, y, z].
@@ -61,14 +52,14 @@ void requireOneKindOfAxes(const JsonValue& json) {
 void readCoupling(const JsonValue& json, grasp::FingerModel& finger) {
   engine::DrivenPointModel& coupling = finger.coupling;
   requireOneKindOfAxes(json);
-  if (const JsonValue* v = json.find("mass")) coupling.mass = v->number(kProxyMass);
-  if (const JsonValue* v = json.find("stiffness")) readDirections(*v, kStiffness, coupling.stiffness, finger.along_normal);
-  if (const JsonValue* v = json.find("damping")) readDirections(*v, kDamping, coupling.damping, finger.along_normal);
+  if (const JsonValue* v = json.find("mass")) coupling.mass = v->number(ranges::kProxyMass);
+  if (const JsonValue* v = json.find("stiffness")) readDirections(*v, ranges::kStiffness, coupling.stiffness, finger.along_normal);
+  if (const JsonValue* v = json.find("damping")) readDirections(*v, ranges::kDamping, coupling.damping, finger.along_normal);
   if (const JsonValue* v = json.find("locked")) {
     for (const JsonValue& axis : v->array()) coupling.locked[static_cast<Eigen::Index>(axis.oneOf(kAxes))] = true;
   }
-  if (const JsonValue* v = json.find("twist_stiffness")) coupling.twist_stiffness = v->number(kTwist);
-  if (const JsonValue* v = json.find("twist_damping")) coupling.twist_damping = v->number(kTwist);
+  if (const JsonValue* v = json.find("twist_stiffness")) coupling.twist_stiffness = v->number(ranges::kTwist);
+  if (const JsonValue* v = json.find("twist_damping")) coupling.twist_damping = v->number(ranges::kTwist);
   coupling.name = finger.name;
   requireHeldAxes(json, coupling);
 }
@@ -77,21 +68,21 @@ void readCoupling(const JsonValue& json, grasp::FingerModel& finger) {
 void readTipOf(const JsonValue& json, const Scene& scene, grasp::FingerModel& finger) {
   const JsonValue *shape = json.find("shape"), *radius = json.find("radius");
   if (shape && radius) radius->reject("says again how large the tip is, which \"shape\" does. Keep one of the two.");
-  if (radius) finger.radius = radius->number(kLength);
+  if (radius) finger.radius = radius->number(ranges::kTipLength);
   if (shape) finger.shape = readFingerShape(*shape, scene.file);
   if (shape) finger.radius = contact::boundingRadiusOf(*finger.shape);
   const JsonValue *patch = json.find("patch_radius"), *modulus = json.find("modulus");
   if (patch && modulus) patch->reject("and \"modulus\" both say how large the patch is. Keep one of the two.");
-  if (patch) finger.pad.patch_radius = patch->number(kPatch);
-  if (modulus) finger.pad.modulus = modulus->number(kModulus);
-  if (const JsonValue* v = json.find("effective_radius")) finger.pad.effective_radius = v->number(kLength);
+  if (patch) finger.pad.patch_radius = patch->number(ranges::kPatch);
+  if (modulus) finger.pad.modulus = modulus->number(ranges::kModulus);
+  if (const JsonValue* v = json.find("effective_radius")) finger.pad.effective_radius = v->number(ranges::kEffectiveRadius);
 }
 
 grasp::ArmPort readArm(const JsonValue& json) {
   json.allowOnly(keys::kArm);
   grasp::ArmPort arm;
-  if (const JsonValue* v = json.find("mass")) arm.mass = v->number(kArmMass);
-  if (const JsonValue* v = json.find("damping")) arm.damping = v->number(kDamping);
+  if (const JsonValue* v = json.find("mass")) arm.mass = v->number(ranges::kArmMass);
+  if (const JsonValue* v = json.find("damping")) arm.damping = v->number(ranges::kDamping);
   return arm;
 }
 
@@ -102,16 +93,15 @@ struct FingerPath {
 FingerPath readKeyframes(const JsonValue& json, const Vec3& rotation) {
   std::vector<TimedPoint> places, turns;
   Vec3 turn = rotation;
-  double last = -1;
   for (const JsonValue& keyframe : json.array()) {
     keyframe.allowOnly(keys::kKeyframe);
     const JsonValue& time = keyframe.at("time", "In seconds.");
-    const double t = time.number({.min = 0, .max = 1e6, .remedy = "In seconds from the start."});
-    if (t <= last) time.reject(fmt::format("doesn't come after {}. Keyframes go forward in time.", last));
-    last = t;
-    if (const JsonValue* v = keyframe.find("rotation")) turn = v->vector(kFingerTurn);
-    places.push_back({t, keyframe.at("position", "Where the finger is then [m].").vector(kCoordinate), Vec3::Zero()});
+    const double t = time.number(ranges::kTime);
+    if (const JsonValue* v = keyframe.find("rotation")) turn = v->vector(ranges::kRotation);
+    places.push_back({t, keyframe.at("position", "Where the finger is then [m].").vector(ranges::kCoordinate), Vec3::Zero()});
     turns.push_back({t, turn, Vec3::Zero()});
+    requireOnward(places, ranges::kFastest, time);
+    requireOnward(turns, ranges::kFastestSpin, time);
   }
   if (places.empty()) json.reject("is empty. For a finger that rests, use \"position\".");
   return {Trajectory::throughKeyframes(std::move(places)), Trajectory::throughKeyframes(std::move(turns))};
@@ -137,18 +127,18 @@ FingerPath readMotion(const JsonValue& json, const std::string& scene_file) {
   const JsonValue* trajectory = json.find("trajectory");
   if (position && trajectory) position->reject("says again where the trajectory starts. Keep one of the two.");
   const JsonValue* turn = json.find("rotation");
-  const Vec3 rotation = turn ? turn->vector(kFingerTurn) : Vec3::Zero();
+  const Vec3 rotation = turn ? turn->vector(ranges::kRotation) : Vec3::Zero();
   if (trajectory) return readTrajectory(*trajectory, scene_file, rotation);
   if (!position) json.reject("needs \"position\" [m] for a finger that rests, or \"trajectory\".");
-  return {Trajectory::throughKeyframes({{0, position->vector(kCoordinate), Vec3::Zero()}}), constantTurn(rotation)};
+  return {Trajectory::throughKeyframes({{0, position->vector(ranges::kCoordinate), Vec3::Zero()}}), constantTurn(rotation)};
 }
 
 }  // namespace
 
-SceneFinger readFinger(const JsonValue& json, const Scene& scene) {
+SceneFinger readFinger(const JsonValue& json, SceneNames& names, const Scene& scene) {
   json.allowOnly(keys::kFinger);
   SceneFinger finger;
-  finger.model.name = readName(json, scene, fmt::format("finger{}", scene.fingers.size()));
+  finger.model.name = names.readNext(json, fmt::format("finger{}", scene.fingers.size()));
   readTipOf(json, scene, finger.model);
   readCoupling(json, finger.model);
   if (const JsonValue* v = json.find("method")) finger.method = static_cast<grasp::FingerMethod>(v->oneOf(grasp::kFingerMethodNames));
@@ -156,7 +146,7 @@ SceneFinger readFinger(const JsonValue& json, const Scene& scene) {
   const FingerPath path = readMotion(json, scene.file);
   finger.trajectory = path.place;
   finger.turn = path.turn;
-  if (const JsonValue* v = json.find("force")) finger.f_W = v->vector(kForce);
+  if (const JsonValue* v = json.find("force")) finger.f_W = v->vector(ranges::kForce);
   return finger;
 }
 

@@ -7,46 +7,37 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr NumberRule kJointDamping = {.min = 0, .max = 1e6, .remedy = "In N m s/rad for a pivot, N s/m for a slider."};
-constexpr NumberRule kAxis = {.min = -1e6, .max = 1e6, .remedy = "A direction, of any length but 0."};
-
-int bodyNamed(const JsonValue& json, const Scene& scene) {
-  std::vector<std::string_view> names;
-  for (const engine::BodySpec& body : scene.bodies) names.push_back(body.name);
-  return static_cast<int>(json.oneOf(names));
-}
-
 Quat readAxis(const JsonValue& json) {
   const JsonValue* axis = json.find("axis");
   if (!axis) return Quat::Identity();
-  const Vec3 n = axis->vector(kAxis);
-  if (!(n.norm() > 0)) axis->reject("has no length, so no direction. For example [0, 0, 1].");
+  const Vec3 n = axis->vector(ranges::kDirection);
+  if (!(n.norm() > ranges::kShortestDirection)) axis->reject("has no length, so no direction. For example [0, 0, 1].");
   return Quat(frameFromNormal(n.normalized())).normalized();
 }
 
 }  // namespace
 
-engine::JointModel readJoint(const JsonValue& json, const Scene& scene) {
+engine::JointModel readJoint(const JsonValue& json, const SceneNames& names, const Scene& scene) {
   json.allowOnly(keys::kJoint);
   engine::JointModel joint;
   joint.kind =
       static_cast<engine::JointKind>(json.at("type", "What the joint leaves free: pivot, slider, ball or weld.").oneOf(keys::kJointTypes));
   const JsonValue& body = json.at("body", "The body that it holds.");
-  joint.a = bodyNamed(body, scene);
+  joint.a = names.bodyNamed(body, scene);
   const auto start = [&](int i) { return scene.starts[static_cast<std::size_t>(i)].X_WB; };
   if (!scene.bodies[static_cast<std::size_t>(joint.a)].dynamic)
     body.reject("never moves by itself: a joint has nothing to hold. Name the moving body here, this one under \"to\".");
   Pose X_WJ{readAxis(json), start(joint.a).p};
-  if (const JsonValue* v = json.find("point")) X_WJ.p = v->vector(kCoordinate);
+  if (const JsonValue* v = json.find("point")) X_WJ.p = v->vector(ranges::kCoordinate);
   joint.X_AJ = start(joint.a).inverse() * X_WJ;
   joint.X_BJ = X_WJ;
   if (const JsonValue* v = json.find("to")) {
-    joint.b = bodyNamed(*v, scene);
+    joint.b = names.bodyNamed(*v, scene);
     if (joint.b == joint.a) v->reject("is the body itself. Name another, or leave the key out for the world.");
     joint.X_BJ = start(joint.b).inverse() * X_WJ;
   }
   if (const JsonValue* v = json.find("damping")) {
-    joint.damping = v->number(kJointDamping);
+    joint.damping = v->number(ranges::kJointDamping);
     const bool has_axis = joint.kind == engine::JointKind::kPivot || joint.kind == engine::JointKind::kSlider;
     if (!has_axis) v->reject("doesn't go with this type: only pivots and sliders have a free axis to damp. Remove the key.");
   }

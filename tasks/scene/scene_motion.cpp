@@ -7,8 +7,6 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr NumberRule kTurn = {.min = -100, .max = 100, .remedy = "An axis times an angle in radians."};
-
 Vec3 vectorOr(const JsonValue& json, std::string_view key, const NumberRule& rule, const Vec3& otherwise) {
   const JsonValue* value = json.find(key);
   return value ? value->vector(rule) : otherwise;
@@ -27,6 +25,12 @@ Vec3 angularVelocityOf(const Vec3& a, const Vec3& rate) {
 
 }  // namespace
 
+void requireOnward(const std::vector<TimedPoint>& points, double fastest, const JsonValue& time) {
+  const std::size_t n = points.size();
+  const std::string problem = n > 1 ? problemBetween(points[n - 2], points[n - 1], fastest) : "";
+  if (!problem.empty()) time.reject(fmt::format("can't be: {}", problem));
+}
+
 SceneMotion readBodyTrajectory(const JsonValue& json, engine::BodyStart& start, const Vec3& start_rotation) {
   json.allowOnly(keys::kBodyTrajectory);
   std::vector<TimedPoint> places, turns;
@@ -34,12 +38,13 @@ SceneMotion readBodyTrajectory(const JsonValue& json, engine::BodyStart& start, 
   for (const JsonValue& keyframe : json.at("keyframes", "Where the body is at which time.").array()) {
     keyframe.allowOnly(keys::kBodyKeyframe);
     const JsonValue& time = keyframe.at("time", "In seconds.");
-    const double t = time.number({.min = 0, .max = 1e6, .remedy = "In seconds from the start."});
-    if (t <= place.time) time.reject(fmt::format("doesn't come after {}. Keyframes go forward in time.", place.time));
-    place = {t, vectorOr(keyframe, "position", kCoordinate, place.p_W), Vec3::Zero()};
-    turn = {t, vectorOr(keyframe, "rotation", kTurn, turn.p_W), Vec3::Zero()};
+    const double t = time.number(ranges::kTime);
+    place = {t, vectorOr(keyframe, "position", ranges::kCoordinate, place.p_W), Vec3::Zero()};
+    turn = {t, vectorOr(keyframe, "rotation", ranges::kRotation, turn.p_W), Vec3::Zero()};
     places.push_back(place);
     turns.push_back(turn);
+    requireOnward(places, ranges::kFastest, time);
+    requireOnward(turns, ranges::kFastestSpin, time);
   }
   if (places.empty()) json.reject("has no keyframe. For a body that rests, use \"static\": true.");
   const SceneMotion motion{Trajectory::throughKeyframes(places), Trajectory::throughKeyframes(turns)};

@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <functional>
 
+#include "tasks/scene/file_limits.h"
 #include "tasks/scene/scene_keys.h"
 #include "tasks/scene/scene_parts.h"
 #include "tasks/scene/spelling.h"
@@ -76,13 +76,11 @@ void readWhen(const JsonValue& json, const Scene& scene, Expectation& expectatio
 void readTolerance(const JsonValue& json, Expectation& expectation) {
   const JsonValue* tolerance = json.find("tolerance");
   if (tolerance) {
-    expectation.tolerance = tolerance->number({.min = 0, .remedy = "In the quantity's own unit."});
+    expectation.tolerance = tolerance->number(ranges::kExpectedTolerance);
   } else if (expectation.relation == Relation::kEqual) {
     json.reject("lacks the key \"tolerance\": how far the measured value may lie from \"value\", in its unit.");
   }
 }
-
-bool isNameLetter(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-'; }
 
 }  // namespace
 
@@ -96,7 +94,11 @@ Recording readRecording(const JsonValue& json, const Scene& scene) {
   if (const JsonValue* interval = json.find("interval")) {
     record.every = readTicks(*interval, scene, {.min = scene.options.h, .max = scene.duration, .remedy = "At least one tick."});
   }
-  for (const JsonValue& quantity : json.at("quantities", "What to record: [\"object.p_z\", \"energy\"].").array()) {
+  const JsonValue& quantities = json.at("quantities", "What to record: [\"object.p_z\", \"energy\"].");
+  if (quantities.array().size() > kMostQuantities)
+    quantities.reject(
+        fmt::format("has {} elements; a scene records at most {}. Leave some out.", quantities.array().size(), kMostQuantities));
+  for (const JsonValue& quantity : quantities.array()) {
     record.quantities.push_back(readQuantity(quantity, scene));
   }
   return record;
@@ -108,22 +110,10 @@ Expectation readExpectation(const JsonValue& json, const Scene& scene) {
   expectation.quantity = readQuantity(json.at("quantity", "What is measured: \"object.p_z\"."), scene);
   if (const JsonValue* relation = json.find("relation")) expectation.relation = static_cast<Relation>(relation->oneOf(kRelationNames));
   readWhen(json, scene, expectation);
-  expectation.value = json.at("value", "What it is compared with, in the quantity's unit.").number();
+  expectation.value = json.at("value", "What it is compared with, in the quantity's unit.").number(ranges::kExpected);
   readTolerance(json, expectation);
   if (const JsonValue* because = json.find("because")) expectation.because = because->text();
   return expectation;
-}
-
-std::string readName(const JsonValue& json, const Scene& scene, const std::string& otherwise) {
-  const JsonValue* value = json.find("name");
-  const std::string name = value ? value->text() : otherwise;
-  const JsonValue& place = value ? *value : json;
-  if (name.empty() || !std::all_of(name.begin(), name.end(), isNameLetter)) place.reject("isn't a name: letters, digits, - and _ only.");
-  const std::vector<std::string_view> taken = ownersOf(scene);
-  if (std::find(taken.begin(), taken.end(), name) != taken.end()) {
-    place.reject(fmt::format("can't be called \"{}\": another body or finger is. Names tell them apart in quantities.", name));
-  }
-  return name;
 }
 
 }  // namespace pincer::tasks

@@ -1,51 +1,58 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "contact/mesh/lathe.h"
 #include "contact/mesh_reader.h"
 #include "contact/mesh_report.h"
 #include "contact/polytope.h"
 #include "contact/smooth_mesh.h"
+#include "tasks/scene/file_limits.h"
 #include "tasks/scene/scene_keys.h"
 #include "tasks/scene/scene_parts.h"
 
 namespace pincer::tasks {
 namespace {
 
-constexpr NumberRule kCreaseAngle = {.min = 0, .max = std::numbers::pi, .min_open = true, .remedy = "In radians; 40 degrees are 0.698."};
-constexpr NumberRule kScale = {
-    .min = 0, .max = 1e6, .min_open = true, .remedy = "The shape is made this many times larger; 1 keeps its size."};
-
-double length(const JsonValue& json, std::string_view key) { return json.at(key, "In metres.").number(kLength); }
+double length(const JsonValue& json, std::string_view key) { return json.at(key, "In metres.").number(ranges::kLength); }
 
 contact::Shape readCapsule(const JsonValue& json) {
-  constexpr NumberRule straight = {
-      .min = 0, .max = kLongestLength, .remedy = "Of the straight part between the caps, in metres; 0 gives a sphere."};
-  return contact::Capsule{length(json, "radius"), json.at("length", "In metres.").number(straight) / 2};
+  return contact::Capsule{length(json, "radius"), json.at("length", "In metres.").number(ranges::kStraightLength) / 2};
 }
 
 contact::Shape readCylinderWithFlat(const JsonValue& json) {
   const double radius = length(json, "radius");
   const JsonValue& flat = json.at("flat_distance", "From the axis to the flat, in metres.");
-  const double distance = flat.number(kLength);
+  const double distance = flat.number(ranges::kLength);
   if (distance >= radius)
     flat.reject(fmt::format("isn't smaller than the radius {}: nothing would be cut off. Use the type \"cylinder\".", radius));
   return contact::CylinderWithFlat{radius, length(json, "length") / 2, distance};
+}
+
+// Of all points together, along the longest axis.
+void requireSize(const std::vector<Vec3>& points, const JsonValue& json) {
+  if (points.empty()) return;
+  Vec3 low = points.front(), high = points.front();
+  for (const Vec3& p : points) low = low.cwiseMin(p), high = high.cwiseMax(p);
+  const double size = (high - low).maxCoeff(), farthest = std::max(high.maxCoeff(), -low.minCoeff());
+  if (!isWithin(size, ranges::kLength))
+    json.reject(fmt::format("has a shape of {:g} m, which {} Are the units right?", size, outOfRange(ranges::kLength)));
+  if (!isWithin(farthest, ranges::kCoordinate))
+    json.reject(
+        fmt::format("has a point {:g} m from the origin, which {} Are the units right?", farthest, outOfRange(ranges::kCoordinate)));
 }
 
 contact::TriangleMesh readTriangles(const JsonValue& json, const std::string& scene_file) {
   const std::string& units = json.at("units", "The unit of the file's coordinates: \"m\", \"cm\", \"mm\" or \"in\".").text();
   const std::string path = besideScene(scene_file, json.at("file", "An OBJ, STL, PLY or OFF file, relative to the scene's folder.").text());
   const JsonValue* scale = json.find("scale");
-  return contact::readMesh(path, {.metres_per_unit = contact::metresPerUnit(units) * (scale ? scale->number(kScale) : 1)});
+  return contact::readMesh(path, {.metres_per_unit = contact::metresPerUnit(units) * (scale ? scale->number(ranges::kScale) : 1)});
 }
 
 Vec2 readProfilePoint(const JsonValue& json) {
   const std::vector<JsonValue>& numbers = json.array();
   if (numbers.size() != 2) json.reject("must be two numbers: the distance from the axis and the height, in metres.");
-  return {numbers[0].number(kCoordinate), numbers[1].number(kCoordinate)};
+  return {numbers[0].number(ranges::kCoordinate), numbers[1].number(ranges::kCoordinate)};
 }
 
 contact::TriangleMesh readLathe(const JsonValue& json, const JsonValue& profile) {
@@ -53,6 +60,8 @@ contact::TriangleMesh readLathe(const JsonValue& json, const JsonValue& profile)
     if (const JsonValue* other = json.find(key)) other->reject("goes with \"file\" only: a \"lathe\" is in metres.");
   }
   std::vector<Vec2> points;
+  if (profile.array().size() > kMostProfilePoints)
+    profile.reject(fmt::format("has {} points; a profile has at most {}.", profile.array().size(), kMostProfilePoints));
   for (const JsonValue& point : profile.array()) points.push_back(readProfilePoint(point));
   const JsonValue* segments = json.find("segments");
   return contact::lathe(points, segments ? segments->integer(3, 1000, "Facets around the axis; 48 is the default.") : 48);
@@ -71,7 +80,7 @@ contact::TriangleMesh readClosedTriangles(const JsonValue& json, const std::stri
 contact::SurfaceOptions readSurfaceOptions(const JsonValue& json) {
   contact::SurfaceOptions options;
   if (const JsonValue* angle = json.find("crease_angle")) {
-    options.crease_angle = angle->number(kCreaseAngle);
+    options.crease_angle = angle->number(ranges::kCreaseAngle);
     options.use_file_normals = false;
   }
   if (const JsonValue* normals = json.find("file_normals")) options.use_file_normals = normals->boolean();
@@ -85,6 +94,7 @@ contact::Shape readMesh(const JsonValue& json, const std::string& scene_file) {
   const contact::SurfaceOptions options = readSurfaceOptions(json);
   try {
     contact::TriangleMesh triangles = readClosedTriangles(json, scene_file);
+    requireSize(triangles.vertices, json);
     contact::requireClosed(triangles);
     return contact::Mesh{contact::SmoothMesh::build(std::move(triangles), options)};
   } catch (const InputError& error) {
@@ -94,7 +104,9 @@ contact::Shape readMesh(const JsonValue& json, const std::string& scene_file) {
 
 }  // namespace
 
-std::vector<Vec3> readPoints(const JsonValue& json, const std::string& scene_file) {
+namespace {
+
+std::vector<Vec3> readAnyPoints(const JsonValue& json, const std::string& scene_file) {
   const JsonValue* points = json.find("points");
   if ((points != nullptr) == (json.find("file") != nullptr))
     json.reject("needs either \"points\" or \"file\": the corners of the solid, in metres, or a file that holds them.");
@@ -103,8 +115,19 @@ std::vector<Vec3> readPoints(const JsonValue& json, const std::string& scene_fil
     if (const JsonValue* other = json.find(key)) other->reject("goes with \"file\" only: \"points\" are in metres.");
   }
   std::vector<Vec3> corners;
-  for (const JsonValue& point : points->array()) corners.push_back(point.vector(kCoordinate));
+  for (const JsonValue& point : points->array()) corners.push_back(point.vector(ranges::kCoordinate));
   return corners;
+}
+
+}  // namespace
+
+std::vector<Vec3> readPoints(const JsonValue& json, const std::string& scene_file) {
+  std::vector<Vec3> points = readAnyPoints(json, scene_file);
+  if (points.size() > kMostHullPoints)
+    json.reject(fmt::format("has {} points; a hull is made of at most {}. Leave out those inside, or simplify the mesh.", points.size(),
+                            kMostHullPoints));
+  requireSize(points, json);
+  return points;
 }
 
 namespace {
@@ -131,7 +154,7 @@ contact::Shape readShape(const JsonValue& json, const std::string& file) {
   json.allowOnly(keysOf(type));
   const std::string_view name = keys::kShapeTypes[type];
   if (name == "sphere") return contact::Sphere{length(json, "radius")};
-  if (name == "box") return contact::Box{json.at("size", "Edge lengths [x, y, z] in metres.").vector(kLength) / 2};
+  if (name == "box") return contact::Box{json.at("size", "Edge lengths [x, y, z] in metres.").vector(ranges::kLength) / 2};
   if (name == "capsule") return readCapsule(json);
   if (name == "cylinder") return contact::Cylinder{length(json, "radius"), length(json, "length") / 2};
   if (name == "cylinder_with_flat") return readCylinderWithFlat(json);
@@ -143,11 +166,12 @@ contact::Shape readShape(const JsonValue& json, const std::string& file) {
 
 Pose readHalfSpacePose(const JsonValue& shape) {
   Pose X_WB;
-  if (const JsonValue* point = shape.find("point")) X_WB.p = point->vector(kCoordinate);
+  if (const JsonValue* point = shape.find("point")) X_WB.p = point->vector(ranges::kCoordinate);
   const JsonValue* normal = shape.find("normal");
   if (!normal) return X_WB;
-  const Vec3 n = normal->vector({.min = -1e6, .max = 1e6});
-  if (!(n.norm() > 1e-6)) normal->reject("has no length, so it has no direction. It points out of the solid: [0, 0, 1] for a floor.");
+  const Vec3 n = normal->vector(ranges::kDirection);
+  if (!(n.norm() > ranges::kShortestDirection))
+    normal->reject("has no length, so it has no direction. It points out of the solid: [0, 0, 1] for a floor.");
   X_WB.q = Quat(frameFromNormal(n.normalized())).normalized();
   return X_WB;
 }

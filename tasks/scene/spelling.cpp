@@ -24,10 +24,14 @@ int editDistance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
+constexpr std::size_t kLongestWord = 64;  // a longer one is no slip of the hand, and the table of distances grows with its square
+
 std::string_view closestWord(std::string_view word, std::span<const std::string_view> candidates) {
   int best = std::clamp(static_cast<int>(word.size()) / 3, 1, 3) + 1;
   std::string_view closest;
   for (const std::string_view candidate : candidates) {
+    const std::size_t apart = std::max(word.size(), candidate.size()) - std::min(word.size(), candidate.size());
+    if (apart >= static_cast<std::size_t>(best) || word.size() > kLongestWord) continue;  // the distance is at least this
     const int distance = editDistance(word, candidate);
     if (distance < best) {
       best = distance;
@@ -40,7 +44,10 @@ std::string_view closestWord(std::string_view word, std::span<const std::string_
 std::string suggestion(std::string_view word, std::span<const std::string_view> candidates) {
   const std::string_view closest = closestWord(word, candidates);
   if (!closest.empty()) return fmt::format(" Did you mean \"{}\"?", closest);
-  return fmt::format(" Known here: {}.", fmt::join(candidates, ", "));
+  constexpr std::size_t kMost = 30;  // names in a scene may be thousands
+  const auto shown = candidates.first(std::min(kMost, candidates.size()));
+  const std::string more = shown.size() < candidates.size() ? fmt::format(" and {} more", candidates.size() - shown.size()) : "";
+  return fmt::format(" Known here: {}{}.", fmt::join(shown, ", "), more);
 }
 
 }  // namespace pincer::tasks

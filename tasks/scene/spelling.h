@@ -10,10 +10,11 @@ namespace pincer::tasks {
 // Source: V. I. Levenshtein, Soviet Physics Doklady 10(8) (1966) 707-710; table by rows after R. Wagner, M. Fischer, J. ACM 21(1) (1974).
 int editDistance(std::string_view a, std::string_view b);
 
-// The closest of `candidates`, empty if none is within a third of the word's length (at least 1, at most 3 edits).
+// The closest of `candidates`, empty if none is within a third of the word's length (at least 1, at most 3 edits). Looks only at candidates
+// whose length is that close: their number, not the word's length, says how long it takes.
 std::string_view closestWord(std::string_view word, std::span<const std::string_view> candidates);
 
-// " Did you mean "mass"?", or the list of candidates when none is close.
+// " Did you mean "mass"?", or the list of candidates (the first 30) when none is close.
 std::string suggestion(std::string_view word, std::span<const std::string_view> candidates);
 
 }  // namespace pincer::tasks

@@ -4,25 +4,28 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <sstream>
 
+#include "contact/io/printable.h"
 #include "tasks/scene/spelling.h"
 
 namespace pincer::tasks {
 namespace {
 
-std::string rangeText(const NumberRule& rule) {
-  const bool unbounded = std::isinf(rule.max);
-  const bool unbounded_below = std::isinf(rule.min);
-  return fmt::format("{}{}, {}{}", rule.min_open || unbounded_below ? '(' : '[', rule.min, rule.max, unbounded ? ')' : ']');
-}
-
 std::string withSpace(std::string_view sentence) { return sentence.empty() ? std::string() : fmt::format(" {}", sentence); }
 
 }  // namespace
 
-bool isWithin(double value, const NumberRule& rule) { return (rule.min_open ? value > rule.min : value >= rule.min) && value <= rule.max; }
+std::string rangeText(const NumberRule& rule) {
+  const bool unbounded = std::isinf(rule.max);
+  const bool unbounded_below = std::isinf(rule.min);
+  return fmt::format("{}{}{}, {}{}", rule.or_zero ? "0 or " : "", rule.min_open || unbounded_below ? '(' : '[', rule.min, rule.max,
+                     unbounded ? ')' : ']');
+}
+
+bool isWithin(double value, const NumberRule& rule) {
+  if (rule.or_zero && value == 0) return true;
+  return (rule.min_open ? value > rule.min : value >= rule.min) && value <= rule.max;
+}
 
 std::string outOfRange(const NumberRule& rule) { return fmt::format("is out of range {}.{}", rangeText(rule), withSpace(rule.remedy)); }
 
@@ -41,6 +44,14 @@ int JsonValue::integer(int min, int max, std::string_view remedy) const {
   const double value = number({.min = static_cast<double>(min), .max = static_cast<double>(max), .remedy = remedy});
   if (value != std::floor(value)) reject(fmt::format("isn't a whole number.{}", withSpace(remedy)));
   return static_cast<int>(value);
+}
+
+std::uint64_t JsonValue::whole() const {
+  constexpr double kExactBelow = 9007199254740992;  // 2^53: so far 1e3 is the same as 1000
+  const double value = number();
+  if (exact_) return *exact_;
+  if (value >= 0 && value <= kExactBelow && value == std::floor(value)) return static_cast<std::uint64_t>(value);
+  reject("isn't a whole number in [0, 18446744073709551615]. Take for example 1.");
 }
 
 const std::string& JsonValue::text() const {
@@ -80,7 +91,7 @@ void JsonValue::allowOnly(std::span<const std::string_view> keys) const {
   require(Kind::kObject, "an object in braces");
   for (std::size_t i = 0; i < keys_.size(); ++i) {
     if (std::find(keys.begin(), keys.end(), keys_[i]) != keys.end()) continue;
-    throw InputError(fmt::format("{}:{}: {} isn't a known key.{}", *file_, items_[i].line_, items_[i].path_, suggestion(keys_[i], keys)));
+    throw InputError(fmt::format("{}: {} isn't a known key.{}", items_[i].place(), items_[i].path_, suggestion(keys_[i], keys)));
   }
 }
 
@@ -90,10 +101,12 @@ std::size_t JsonValue::oneOf(std::span<const std::string_view> words) const {
   return static_cast<std::size_t>(it - words.begin());
 }
 
+std::string JsonValue::place() const { return fmt::format("{}:{}", *file_, line_); }
+
 void JsonValue::reject(std::string_view problem) const {
   const std::string subject = path_.empty() ? "the whole file" : path_;
   const std::string value = shown();
-  throw InputError(fmt::format("{}:{}: {}{}{} {}", *file_, line_, subject, value.empty() ? "" : " = ", value, problem));
+  throw InputError(fmt::format("{}: {}{}{} {}", place(), subject, value.empty() ? "" : " = ", value, problem));
 }
 
 void JsonValue::require(Kind kind, std::string_view what) const {
@@ -107,9 +120,9 @@ std::string JsonValue::shown() const {
     case Kind::kBoolean:
       return boolean_ ? "true" : "false";
     case Kind::kNumber:
-      return fmt::format("{}", number_);
+      return exact_ ? std::to_string(*exact_) : fmt::format("{}", number_);
     case Kind::kString:
-      return fmt::format("\"{}\"", text_);
+      return fmt::format("\"{}\"", printable(text_));
     case Kind::kArray:
     case Kind::kObject:
       return "";
@@ -117,14 +130,10 @@ std::string JsonValue::shown() const {
   return "";
 }
 
-JsonValue readJson(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw InputError(fmt::format("{}: can't be opened. Check the name, and that you may read it.", path));
-  std::ostringstream content;
-  content << in.rdbuf();
-  if (!in || content.str().empty())
-    throw InputError(fmt::format("{}: is empty or can't be read. A scene is a JSON file (docs/scenes.md).", path));
-  return parseJson(content.str(), path);
+JsonValue readJson(const std::string& path, const InputKind& kind) {
+  const std::string content = readInputFile(path, kind);
+  if (content.empty()) throw InputError(fmt::format("{}: the file is empty; {} is needed here.", path, kind.name));
+  return parseJson(content, path);
 }
 
 }  // namespace pincer::tasks

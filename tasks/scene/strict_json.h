@@ -4,14 +4,17 @@
 //
 // Duplicate keys are errors. A number is finite; "NaN" and numbers beyond the range of doubles don't parse.
 #pragma once
+#include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "contact/error.h"
+#include "contact/io/input_file.h"
 #include "contact/math.h"
 
 namespace pincer::tasks {
@@ -22,8 +25,10 @@ struct NumberRule {
   double max = std::numeric_limits<double>::infinity();
   bool min_open = false;  // min itself is excluded
   std::string_view remedy = "";
+  bool or_zero = false;  // 0 is allowed although it lies below min
 };
 bool isWithin(double value, const NumberRule& rule);  // false for NaN
+std::string rangeText(const NumberRule& rule);        // "[0, inf)"
 // "is out of range [0, inf). <remedy>"
 std::string outOfRange(const NumberRule& rule);
 
@@ -34,11 +39,14 @@ class JsonValue {
   Kind kind() const { return kind_; }
   const std::string& path() const { return path_; }
   int line() const { return line_; }
+  std::string place() const;  // "file:line"
 
   // The value as what it must be; each throws InputError when it is something else.
   bool boolean() const;
   double number(const NumberRule& rule = {}) const;
   int integer(int min, int max, std::string_view remedy) const;
+  std::uint64_t whole() const;                         // in [0, 2^64 - 1], all bits as they are written
+  bool isWhole() const { return exact_.has_value(); }  // written as a whole number of that range
   const std::string& text() const;
   Vec3 vector(const NumberRule& each = {}) const;  // [x, y, z]
   const std::vector<JsonValue>& array() const;
@@ -66,16 +74,18 @@ class JsonValue {
   Kind kind_ = Kind::kNull;
   bool boolean_ = false;
   double number_ = 0;
+  std::optional<std::uint64_t> exact_;  // the same, of a whole number: above 2^53 doubles have gaps
   std::string text_;
   std::vector<JsonValue> items_;   // of an array or object
   std::vector<std::string> keys_;  // of an object, one per item
-  std::string path_;               // "bodies[0].material.mu_s", empty for the whole file
+  std::string path_;               // "bodies[0].material.mu_s", printable; empty for the whole file
   int line_ = 1;
   std::shared_ptr<const std::string> file_;
 };
 
-// Reads the file at `path`, or parses `content` with `name` standing for the file in messages. Throws InputError.
-JsonValue readJson(const std::string& path);
+// Reads the file at `path`, or parses `content` with `name` standing for the file in messages. Throws InputError. Values, keys and paths of the
+// file stand in messages as printable() shows them, cut.
+JsonValue readJson(const std::string& path, const InputKind& kind);
 JsonValue parseJson(std::string_view content, const std::string& name);
 
 }  // namespace pincer::tasks

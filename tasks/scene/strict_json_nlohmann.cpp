@@ -5,7 +5,10 @@
 #include <cstddef>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <unordered_set>
 
+#include "contact/io/printable.h"
+#include "tasks/scene/file_limits.h"
 #include "tasks/scene/strict_json.h"
 
 namespace pincer::tasks {
@@ -76,24 +79,25 @@ class JsonTreeBuilder {
   bool null() { return add(JsonValue::Kind::kNull), true; }
   bool boolean(bool value) { return add(JsonValue::Kind::kBoolean).boolean_ = value, true; }
   bool number_integer(number_integer_t value) { return addNumber(static_cast<double>(value)); }
-  bool number_unsigned(number_unsigned_t value) { return addNumber(static_cast<double>(value)); }
+  bool number_unsigned(number_unsigned_t value) { return addNumber(static_cast<double>(value), value); }
   bool number_float(number_float_t value, const string_t&) { return addNumber(value); }
   bool string(string_t& value) { return add(JsonValue::Kind::kString).text_ = value, true; }
   bool binary(binary_t&) { return false; }  // a JSON text holds none
   bool start_object(std::size_t) { return open(JsonValue::Kind::kObject); }
   bool start_array(std::size_t) { return open(JsonValue::Kind::kArray); }
-  bool end_object() { return open_.pop_back(), true; }
-  bool end_array() { return open_.pop_back(), true; }
+  bool end_object() { return close(); }
+  bool end_array() { return close(); }
 
   bool key(string_t& name) {
-    JsonValue& object = *open_.back();
-    if (object.find(name)) fail(fmt::format("the key \"{}\" is there twice. Remove one of them.", name));
-    object.keys_.push_back(name);
+    if (!keys_.back().insert(name).second) fail(fmt::format("the key \"{}\" is there twice. Remove one of them.", printable(name)));
+    open_.back()->keys_.push_back(name);
     return true;
   }
 
   bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception& error) {
-    fail(fmt::format("this isn't JSON: {}. Look for a missing comma, quote or bracket there or just before.", reasonOf(error.what())));
+    constexpr std::size_t kLongestReason = 240;  // it repeats the file's last word
+    fail(fmt::format("this isn't JSON: {}. Look for a missing comma, quote or bracket there or just before.",
+                     printable(reasonOf(error.what()), kLongestReason)));
   }
 
  private:
@@ -102,6 +106,10 @@ class JsonTreeBuilder {
   }
 
   JsonValue& add(JsonValue::Kind kind) {
+    if (++count_ > kMostJsonValues) {
+      fail(fmt::format("there are more than {} values. Long lists go into files of their own: trajectories (CSV), meshes.",
+                       kMostJsonValues));
+    }
     JsonValue& value = open_.empty() ? root_ : open_.back()->items_.emplace_back();
     value.kind_ = kind;
     value.line_ = cursor_.token_line;
@@ -110,29 +118,47 @@ class JsonTreeBuilder {
     return value;
   }
 
-  bool addNumber(double number) { return add(JsonValue::Kind::kNumber).number_ = number, true; }
+  bool addNumber(double number, std::optional<std::uint64_t> exact = {}) {
+    JsonValue& value = add(JsonValue::Kind::kNumber);
+    value.number_ = number;
+    value.exact_ = exact;
+    return true;
+  }
 
   bool open(JsonValue::Kind kind) {
     constexpr std::size_t kDeepest =
         32;  // scenes need 6; without a bound a file of brackets would exhaust the stack when the tree is freed
     if (open_.size() >= kDeepest) fail("brackets are nested more than 32 deep. No scene needs that.");
     open_.push_back(&add(kind));
+    keys_.emplace_back();
     return true;
   }
 
-  // Of the value that was just appended to `parent`.
+  bool close() {
+    open_.pop_back();
+    keys_.pop_back();
+    return true;
+  }
+
+  // Of the value that was just appended to `parent`. Every value has its path, so a file of long keys must not make long ones.
   static std::string pathInside(const JsonValue& parent) {
-    if (parent.kind_ == JsonValue::Kind::kArray) return fmt::format("{}[{}]", parent.path_, parent.items_.size() - 1);
-    return parent.path_.empty() ? parent.keys_.back() : fmt::format("{}.{}", parent.path_, parent.keys_.back());
+    constexpr std::size_t kLongestKey = 40, kLongestPath = 160;
+    const std::string& before = parent.path_;
+    if (before.size() > kLongestPath) return before;
+    if (parent.kind_ == JsonValue::Kind::kArray) return fmt::format("{}[{}]", before, parent.items_.size() - 1);
+    return fmt::format("{}{}{}", before, before.empty() ? "" : ".", printable(parent.keys_.back(), kLongestKey));
   }
 
   std::shared_ptr<const std::string> file_;
   const Cursor& cursor_;
   JsonValue root_;
-  std::vector<JsonValue*> open_;  // from the root to the innermost open bracket
+  std::vector<JsonValue*> open_;                       // from the root to the innermost open bracket
+  std::vector<std::unordered_set<std::string>> keys_;  // of each of these, so far
+  std::size_t count_ = 0;                              // of all values
 };
 
 JsonValue parseJson(std::string_view content, const std::string& name) {
+  refuseNul(content, name);  // the parser takes it for the end
   Cursor cursor;
   JsonTreeBuilder builder(name, cursor);
   const char* begin = content.data();

@@ -6,9 +6,12 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
+#include "contact/io/input_file.h"
+#include "contact/io/printable.h"
+#include "tasks/scene/file_limits.h"
+#include "tasks/scene/scene_ranges.h"
 
 namespace pincer::tasks {
 namespace {
@@ -49,6 +52,9 @@ void setVelocities(std::vector<TimedPoint>& points) {
   points[last].v_W = slopeBetween(points[last - 1], points[last]);
 }
 
+// A recorded motion may have begun before the scene.
+constexpr NumberRule kSampleTime = {.min = -ranges::kLongestDuration, .max = ranges::kLongestDuration, .remedy = "Times are in seconds."};
+
 struct CsvPlace {
   const std::string& path;
   int line;
@@ -56,12 +62,13 @@ struct CsvPlace {
   [[noreturn]] void reject(const std::string& problem) const { throw InputError(fmt::format("{}:{}: {}", path, line, problem)); }
 };
 
-double parseField(std::string_view field, const CsvPlace& place) {
+double parseField(std::string_view field, const CsvPlace& place, const NumberRule& rule) {
   double value = 0;
   const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
   if (error != std::errc() || end != field.data() + field.size() || !std::isfinite(value)) {
-    place.reject(fmt::format("\"{}\" isn't a finite number. Each row is time,x,y,z in seconds and metres.", field));
+    place.reject(fmt::format("\"{}\" isn't a finite number. Each row is time,x,y,z in seconds and metres.", printable(field)));
   }
+  if (!isWithin(value, rule)) place.reject(fmt::format("{} {}", printable(field), outOfRange(rule)));
   return value;
 }
 
@@ -70,17 +77,12 @@ TimedPoint parseRow(std::string_view row, const CsvPlace& place) {
   std::size_t count = 0;
   for (std::size_t begin = 0; begin <= row.size(); ++count) {
     const std::size_t end = std::min(row.find(',', begin), row.size());
-    if (count < values.size()) values[count] = parseField(row.substr(begin, end - begin), place);
+    if (count < values.size())
+      values[count] = parseField(row.substr(begin, end - begin), place, count == 0 ? kSampleTime : ranges::kCoordinate);
     begin = end + 1;
   }
   if (count != values.size()) place.reject(fmt::format("has {} columns, but four are needed: time,x,y,z.", count));
   return {values[0], {values[1], values[2], values[3]}, Vec3::Zero()};
-}
-
-bool readLine(std::istream& in, std::string& line) {
-  if (!std::getline(in, line)) return false;
-  if (!line.empty() && line.back() == '\r') line.pop_back();
-  return true;
 }
 
 }  // namespace
@@ -110,21 +112,31 @@ TimedPoint Trajectory::at(double time) const {
   return minimum_jerk_ ? minimumJerk(*(after - 1), *after, time) : cubic(*(after - 1), *after, time);
 }
 
+std::string problemBetween(const TimedPoint& from, const TimedPoint& to, double fastest) {
+  const double span = to.time - from.time, way = (to.p_W - from.p_W).norm();
+  constexpr double kShortestSpan = 1e-6;  // [s]: a tenth of the shortest tick
+  if (!(span > 0)) return fmt::format("time {} doesn't follow {}. Times must increase from one point to the next.", to.time, from.time);
+  if (span < kShortestSpan)
+    return fmt::format("time {} follows {} by {:g} s; at least {:g} s are needed.", to.time, from.time, span, kShortestSpan);
+  if (way <= fastest * span) return "";
+  return fmt::format(
+      "from time {} to {} it would go {:g} in {:g} s, faster than {:g} per second. Are time and place in seconds, metres and radians?",
+      from.time, to.time, way, span, fastest);
+}
+
 Trajectory readTrajectoryCsv(const std::string& path) {
-  std::ifstream in(path);
-  if (!in) throw InputError(fmt::format("{}: can't be opened. The file's name is relative to the scene's folder.", path));
+  InputFile file(path, kTrajectoryFile);
   CsvPlace place{path, 1};
-  std::string line;
-  if (!readLine(in, line) || line != "time,x,y,z") place.reject(fmt::format("the header is \"{}\", but must be \"time,x,y,z\".", line));
+  std::string_view line;
+  if (!file.nextLine(line) || line != "time,x,y,z")
+    place.reject(fmt::format("the header is \"{}\", but must be \"time,x,y,z\".", printable(line)));
   std::vector<TimedPoint> samples;
-  while (readLine(in, line)) {
+  while (file.nextLine(line)) {
     ++place.line;
     samples.push_back(parseRow(line, place));
     const std::size_t n = samples.size();
-    if (n > 1 && samples[n - 1].time <= samples[n - 2].time) {
-      place.reject(
-          fmt::format("time {} doesn't follow {}. Times must increase from row to row.", samples[n - 1].time, samples[n - 2].time));
-    }
+    const std::string problem = n > 1 ? problemBetween(samples[n - 2], samples[n - 1], ranges::kFastest) : "";
+    if (!problem.empty()) place.reject(problem);
   }
   if (samples.empty()) place.reject("there is no row below the header.");
   return Trajectory::throughSamples(std::move(samples));

@@ -25,7 +25,7 @@ struct TimedPoint {
 class Trajectory {
  public:
   Trajectory() = default;
-  // Points need strictly increasing times; a single one is a finger at rest.
+  // Points need strictly increasing times (problemBetween says more); a single one is a finger at rest.
   static Trajectory throughKeyframes(std::vector<TimedPoint> keyframes);
   static Trajectory throughSamples(std::vector<TimedPoint> samples);
 
@@ -37,6 +37,10 @@ class Trajectory {
   std::vector<TimedPoint> points_{TimedPoint{}};
   bool minimum_jerk_ = true;
 };
+
+// Says why nothing can go from one point to the next: it doesn't come later, or would go faster than `fastest` [m/s or rad/s], or is out of the
+// range of places or times. Empty if all is well.
+std::string problemBetween(const TimedPoint& from, const TimedPoint& to, double fastest);
 
 // Reads rows `time,x,y,z` [s, m] under exactly that header. Throws InputError naming file, line and value.
 Trajectory readTrajectoryCsv(const std::string& path);

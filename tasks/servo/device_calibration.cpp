@@ -5,8 +5,9 @@
 #include <array>
 #include <cmath>
 
+#include "contact/io/atomic_file.h"
+#include "tasks/scene/file_limits.h"
 #include "tasks/scene/strict_json.h"
-#include "tasks/session/atomic_file.h"
 
 namespace pincer::tasks {
 namespace {
@@ -24,12 +25,15 @@ ArmBase armBaseIn(const DeviceCalibration& calibration) {
 }
 
 DeviceCalibration readCalibration(const std::string& path) {
-  const JsonValue json = readJson(path);
+  const JsonValue json = readJson(path, kCalibrationFile);
   constexpr std::array<std::string_view, 2> kKeys{"device", "values"};
   json.allowOnly(kKeys);
   DeviceCalibration calibration;
   calibration.serial = json.at("device", "The serial number: pincer devices list").text();
   const JsonValue& values = json.at("values", "By name.");
+  constexpr std::size_t kMostValues = 64;  // an arm has some 20
+  if (values.keys().size() > kMostValues)
+    values.reject(fmt::format("has {} values; no device has more than {}.", values.keys().size(), kMostValues));
   for (const std::string& name : values.keys()) {
     if (name.empty() || name.size() > 20) values.at(name).reject("has a name that isn't 1 to 20 characters long.");
     calibration.values[name] = values.at(name).number(kCalibrationRule);

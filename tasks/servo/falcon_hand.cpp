@@ -2,11 +2,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 
 #include "contact/error.h"
 #include "devices/falcon/falcon_arm.h"
+#include "tasks/scene/file_limits.h"
 #include "tasks/servo/hand_devices_parts.h"
 
 namespace pincer::tasks {
@@ -17,9 +16,8 @@ using devices::falcon::FalconPlace;
 
 std::vector<std::uint8_t> imageIn(const std::string& path) {
   if (path.empty()) return {};
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw InputError(path + ": there is no such file. --firmware is the Falcon's image, out of its maker's driver.");
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  const std::string image = readInputFile(path, kFirmwareFile);
+  return {image.begin(), image.end()};
 }
 
 std::string nameOf(const FalconPlace& place) {

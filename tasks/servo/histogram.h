@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "contact/assert.h"
-#include "contact/functions/elementary.h"
+#include "contact/elementary.h"
 
 namespace pincer::tasks {
 

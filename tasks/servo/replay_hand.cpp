@@ -8,7 +8,11 @@
 #include <string_view>
 
 #include "contact/error.h"
+#include "contact/io/printable.h"
 #include "devices/arm/replay_arm.h"
+#include "tasks/scene/file_limits.h"
+#include "tasks/scene/scene_ranges.h"
+#include "tasks/scene/trajectory.h"
 #include "tasks/servo/hand_devices_parts.h"
 #include "tasks/session/session_store.h"
 
@@ -18,12 +22,11 @@ namespace {
 using devices::ReplayArm;
 using devices::ReplayPoint;
 
-std::vector<std::string> csvCells(const std::string& line) {
+std::vector<std::string> csvCells(std::string_view line) {
   std::vector<std::string> cells;
-  std::stringstream stream(line);
+  std::stringstream stream{std::string(line)};
   stream.exceptions(std::ios::badbit);  // else it takes a lack of memory for the end
   for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
-  if (!cells.empty() && cells.back().ends_with('\r')) cells.back().pop_back();  // as other systems end a line
   return cells;
 }
 
@@ -60,13 +63,14 @@ double numberIn(const std::string& path, int line, const std::vector<std::string
   char* end = nullptr;
   const std::string text = column < row.size() ? row[column] : "";
   const double value = std::strtod(text.c_str(), &end);
-  if (text.empty() || *end != '\0' || !std::isfinite(value)) {
-    throw InputError(fmt::format("{}:{}: \"{}\" in column {} isn't a number.", path, line, text, column + 1));
+  if (text.empty() || end != text.c_str() + text.size() || !std::isfinite(value)) {
+    throw InputError(fmt::format("{}:{}: \"{}\" in column {} isn't a number.", path, line, printable(text), column + 1));
   }
   return value;
 }
 
 bool isStore(const std::string& path) {
+  requireRegularFile(path, kRecordingFile.name);
   std::ifstream file(path, std::ios::binary);
   std::array<char, 15> head{};
   return file.read(head.data(), head.size()) && std::string_view(head.data(), head.size()) == "SQLite format 3";
@@ -91,28 +95,45 @@ class ReplayRecording {
       if (sample.trial != *first) return;
       for (std::size_t i = 0; i < places_.size(); ++i) {
         const auto& p = sample.fingers.at(i).p_WF;
-        places_[i].push_back({sample.time, Vec3(p[0], p[1], p[2])});
+        add(i, {sample.time, Vec3(p[0], p[1], p[2])}, path);
       }
     });
     if (!first) throw InputError(path + ": the session holds no samples. Record one with `pincer run` first.");
   }
+  // `place`: in the file, for messages.
+  void add(std::size_t finger, const ReplayPoint& point, const std::string& place) {
+    std::vector<ReplayPoint>& points = places_[finger];
+    for (int k = 0; k < 3; ++k) {
+      if (!isWithin(point.p_DF[k], ranges::kCoordinate))
+        throw InputError(
+            fmt::format("{}: finger {} is at {:g} m, which {}", place, finger, point.p_DF[k], outOfRange(ranges::kCoordinate)));
+    }
+    if (!points.empty()) {
+      const ReplayPoint& last = points.back();
+      const std::string problem =
+          problemBetween({last.time, last.p_DF, Vec3::Zero()}, {point.time, point.p_DF, Vec3::Zero()}, ranges::kFastest);
+      if (!problem.empty()) throw InputError(fmt::format("{}: finger {}: {}", place, finger, problem));
+    }
+    points.push_back(point);
+  }
   void readTable(const std::string& path, int fingers) {
-    std::ifstream file(path);
-    std::string line;
-    if (!std::getline(file, line)) throw InputError(path + ": there is no such file, or it is empty. Give a CSV file of samples.");
+    constexpr InputKind kTable = {"a CSV file of samples", kRecordingFile.most_bytes, true, kRecordingFile.remedy};
+    InputFile file(path, kTable);
+    std::string_view line;
+    if (!file.nextLine(line)) throw InputError(path + ": the file is empty. Give a CSV file of samples.");
     const auto header = csvCells(line);
     const auto time = columnOf(header, "time_s"), trial = columnOf(header, "trial");
     if (!time) throw InputError(path + ":1: column time_s is missing. `pincer export` writes it.");
     for (int i = 0; i < fingers; ++i) columns_.push_back(columnsOf(path, header, i));
     const auto trialOf = [&](const std::vector<std::string>& row) { return trial && *trial < row.size() ? row[*trial] : ""; };
     std::optional<std::string> first_trial;
-    for (int number = 2; std::getline(file, line); ++number) {
+    for (int number = 2; file.nextLine(line); ++number) {
       const auto row = csvCells(line);
       if (!first_trial) first_trial = trialOf(row);
       if (trialOf(row) != *first_trial) break;
       for (std::size_t i = 0; i < places_.size(); ++i) {
         const auto at = [&](std::size_t k) { return numberIn(path, number, row, columns_[i].at[k]); };
-        places_[i].push_back({numberIn(path, number, row, *time), Vec3(at(0), at(1), at(2))});
+        add(i, {numberIn(path, number, row, *time), Vec3(at(0), at(1), at(2))}, fmt::format("{}:{}", path, number));
       }
     }
   }

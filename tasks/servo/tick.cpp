@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 #include "grasp/energy_ledger.h"
 
 namespace pincer::tasks {

@@ -7,32 +7,56 @@
 #include <map>
 #include <type_traits>
 
-#include "tasks/session/atomic_file.h"
+#include "contact/io/atomic_file.h"
+#include "tasks/scene/json_writer.h"
 #include "tasks/session/columns.h"
+#include "tasks/session/csv.h"
 
 namespace pincer::tasks {
 namespace {
 
-// BIDS labels hold letters and digits only.
+// BIDS labels hold letters and digits only, and at least one; 60 leave room for the rest of a file's name.
 std::string bidsLabel(const std::string& text) {
   std::string label;
   for (const char c : text) {
-    if (std::isalnum(static_cast<unsigned char>(c))) label += c;
+    if (std::isalnum(static_cast<unsigned char>(c)) && label.size() < 60) label += c;
   }
-  return label;
+  return label.empty() ? "unnamed" : label;
 }
 
 std::string subjectOf(std::int64_t participant) { return fmt::format("sub-{:02}", participant + 1); }
+
+// BIDS knows no quotes: a tab or line end in a text is written \\t, \\n or \\r, a backslash twice. Spreadsheets read these files too.
+std::string tsvText(const std::string& text) {
+  if (text.empty()) return "n/a";
+  std::string field;
+  for (const char c : spreadsheetText(text)) {
+    switch (c) {
+      case '\t':
+        field += "\\t";
+        break;
+      case '\n':
+        field += "\\n";
+        break;
+      case '\r':
+        field += "\\r";
+        break;
+      case '\\':
+        field += "\\\\";
+        break;
+      default:
+        field += c;
+    }
+  }
+  return field;
+}
 
 template <class Field>
 std::string tsvField(const Field& field) {
   if constexpr (std::is_floating_point_v<Field>) {
     return field != field ? "n/a" : fmt::format("{}", field);
   } else if constexpr (std::is_same_v<Field, std::string>) {
-    std::string text = field.empty() ? "n/a" : field;
-    std::replace_if(
-        text.begin(), text.end(), [](char c) { return c == '\t' || c == '\n' || c == '\r'; }, ' ');
-    return text;
+    return tsvText(field);
   } else {
     return fmt::format("{}", field);
   }
@@ -93,7 +117,7 @@ class DataSet {
 
   void writeParticipants() {
     std::string people = "participant_id\tfirst_condition\n";
-    for (const auto& [person, condition] : first_conditions_) people += fmt::format("{}\t{}\n", subjectOf(person), condition);
+    for (const auto& [person, condition] : first_conditions_) people += fmt::format("{}\t{}\n", subjectOf(person), tsvText(condition));
     write("participants.tsv", people);
     write("participants.json", "{\n  \"first_condition\": {\"Description\": \"condition that the participant did first\"}\n}\n");
   }
@@ -107,15 +131,17 @@ class DataSet {
 
 std::string descriptionOf(const SessionInfo& info) {
   return fmt::format(
-      "{{\n  \"Name\": \"{}, seed {}\",\n  \"BIDSVersion\": \"1.9.0\",\n  \"DatasetType\": \"raw\",\n"
-      "  \"GeneratedBy\": [{{\"Name\": \"pincer\", \"Version\": \"{}\"}}]\n}}\n",
-      info.task, info.seed, info.version);
+      "{{\n  \"Name\": {},\n  \"BIDSVersion\": \"1.9.0\",\n  \"DatasetType\": \"raw\",\n"
+      "  \"GeneratedBy\": [{{\"Name\": \"pincer\", \"Version\": {}}}]\n}}\n",
+      quotedJson(fmt::format("{}, seed {}", info.task, info.seed)), quotedJson(info.version));
 }
 
 std::string readmeOf(const SessionReader& session) {
   const SessionInfo& info = session.info();
   return fmt::format(
-      "# {}\n\nA session of pincer {}, seed {}, begun {}. One row per trial, in the order of doing.\n\nDevices:\n\n```json\n{}\n```\n\n"
+      "# {}\n\nA session of pincer {}, seed {}, begun {}. One row per trial, in the order of doing. In a text, \\t, \\n, \\r and "
+      "\\\\ stand for tab, line feed, carriage return and backslash; an apostrophe before = + - @ keeps spreadsheets from running "
+      "it.\n\nDevices:\n\n```json\n{}\n```\n\n"
       "Protocol:\n\n```json\n{}\n```\n\nParticipants (of simulated ones every parameter):\n\n```json\n{}\n```\n",
       info.task, info.version, info.seed, session.startedUtc(), info.devices_json, info.protocol_json, info.participants_json);
 }

@@ -5,18 +5,62 @@
 //
 // A name is [finger_]quantity[_axis][_unit]: `f0_normal_N`, `f1_place_shown_L_x_m`, `duration_s`. Units are SI, as in records.h; frames and
 // symbols too. Fields are std::int64_t, std::int32_t, std::uint32_t, std::uint64_t, double, std::string or Bytes.
+//
+// A column has a range, and a reader refuses what lies outside (table.h): integers count something, so that they begin at 0; times, frictions
+// and levels are sorted, compared and divided by. A measured number may be anything, NaN and infinity too: a session keeps what happened.
 #pragma once
 #include <array>
 #include <concepts>
+#include <cstdint>
+#include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 
 #include "tasks/session/records.h"
 
 namespace pincer::tasks {
 
+// Which values a column may hold, both ends included.
+struct ColumnRange {
+  double min, max;
+  bool may_be_none = false;  // NaN, for what wasn't measured
+  constexpr bool holds(double value) const { return value != value ? may_be_none : value >= min && value <= max; }
+};
+
+namespace columns {
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kLargestCount = 9007199254740992;  // 2^53, up to which doubles count exactly; 285,000 years of ticks
+constexpr ColumnRange kAny{-kInfinity, kInfinity, true};
+constexpr ColumnRange kCount{0, kLargestCount};
+constexpr ColumnRange kYesNo{0, 1};
+constexpr ColumnRange kTime{0, 1e9};                 // [s]; 30 years
+constexpr ColumnRange kMeasuredTime{0, 1e12, true};  // [s] or [us], where it was measured
+constexpr ColumnRange kClock{-1e12, 1e12};           // [s]; a session's clock begins at 0, a device's where it likes
+constexpr ColumnRange kFriction{0, 1e6};
+constexpr ColumnRange kLevel{-1e12, 1e12, true};
+constexpr ColumnRange kLength{1, kLargestCount};
+constexpr ColumnRange kPlace{-1e6, 1e6};    // [m]
+constexpr ColumnRange kCapability{0, 1e6};  // of an arm
+constexpr ColumnRange kCapabilityOrNone{0, 1e6, true};
+constexpr double kLastPhase = 9, kLastTrip = 8;  // of HandPhase and devices::Trip (experiments/hand_records.cpp compares them)
+}  // namespace columns
+
 struct ColumnName {
   std::string_view finger, quantity, axis, unit;  // empty parts are left out
+  std::optional<ColumnRange> range{};             // nothing: that of the field's type
+  std::int64_t since = 2;                         // the session format that added it
+
+  template <class Field>
+  constexpr ColumnRange rangeOf() const {
+    if (range) return *range;
+    if constexpr (std::is_integral_v<Field>) {
+      return sizeof(Field) < 8 ? ColumnRange{0, static_cast<double>(std::numeric_limits<Field>::max())} : columns::kCount;
+    } else {
+      return columns::kAny;
+    }
+  }
   std::string text() const {
     std::string name;
     for (const std::string_view part : {finger, quantity, axis, unit}) {
@@ -36,8 +80,9 @@ constexpr std::array<std::string_view, 4> kAxes{"x", "y", "z", ""};
 constexpr std::array<std::string_view, 4> kQuaternion{"w", "x", "y", "z"};
 
 template <class Visit, class Array>
-constexpr void axes(Visit& visit, std::string_view finger, std::string_view quantity, std::string_view unit, Array& values) {
-  for (std::size_t i = 0; i < values.size(); ++i) visit(ColumnName{finger, quantity, kAxes[i], unit}, values[i]);
+constexpr void axes(Visit& visit, std::string_view finger, std::string_view quantity, std::string_view unit, Array& values,
+                    const ColumnRange& range = kAny) {
+  for (std::size_t i = 0; i < values.size(); ++i) visit(ColumnName{finger, quantity, kAxes[i], unit, range}, values[i]);
 }
 
 template <RecordOf<FingerRecord> R, class Visit>
@@ -60,12 +105,12 @@ void forEachColumn(R& r, Visit&& visit) {
   constexpr std::array<std::string_view, kRecordedFingers> kFingers{"f0", "f1"};
   visit(ColumnName{"", "trial", "", ""}, r.trial);
   visit(ColumnName{"", "tick", "", ""}, r.tick);
-  visit(ColumnName{"", "time", "", "s"}, r.time);
+  visit(ColumnName{"", "time", "", "s", columns::kClock}, r.time);
   columns::axes(visit, "", "p_WB", "m", r.p_WB);
   for (std::size_t i = 0; i < r.q_WB.size(); ++i) visit(ColumnName{"", "q_WB", columns::kQuaternion[i], ""}, r.q_WB[i]);
   columns::axes(visit, "", "v_WB", "m_per_s", r.v_WB);
   for (std::size_t i = 0; i < r.fingers.size(); ++i) columns::finger(kFingers[i], r.fingers[i], visit);
-  visit(ColumnName{"", "tick", "", "us"}, r.tick_us);
+  visit(ColumnName{"", "tick", "", "us", columns::kMeasuredTime}, r.tick_us);
   visit(ColumnName{"", "status", "", ""}, r.status);
 }
 
@@ -75,16 +120,16 @@ void forEachColumn(R& r, Visit&& visit) {
   visit(ColumnName{"", "trial", "", ""}, r.trial);
   for (std::size_t i = 0; i < r.fingers.size(); ++i) {
     auto& finger = r.fingers[i];
-    columns::axes(visit, kFingers[i], "base_offset_W", "m", finger.base_offset_W);
-    visit(ColumnName{kFingers[i], "base_turn", "", "rad"}, finger.base_turn);
-    visit(ColumnName{kFingers[i], "peak_force", "", "N"}, finger.peak_force);
-    visit(ColumnName{kFingers[i], "continuous_force", "", "N"}, finger.continuous_force);
-    columns::axes(visit, kFingers[i], "peak_torque", "Nm", finger.peak_torque);
-    visit(ColumnName{kFingers[i], "tip_mass", "", "kg"}, finger.tip_mass);
-    visit(ColumnName{kFingers[i], "tip_damping", "", "Ns_per_m"}, finger.tip_damping);
+    columns::axes(visit, kFingers[i], "base_offset_W", "m", finger.base_offset_W, columns::kPlace);
+    visit(ColumnName{kFingers[i], "base_turn", "", "rad", columns::kLevel}, finger.base_turn);
+    visit(ColumnName{kFingers[i], "peak_force", "", "N", columns::kCapability}, finger.peak_force);
+    visit(ColumnName{kFingers[i], "continuous_force", "", "N", columns::kCapability}, finger.continuous_force);
+    columns::axes(visit, kFingers[i], "peak_torque", "Nm", finger.peak_torque, columns::kCapabilityOrNone);
+    visit(ColumnName{kFingers[i], "tip_mass", "", "kg", columns::kCapabilityOrNone, 4}, finger.tip_mass);
+    visit(ColumnName{kFingers[i], "tip_damping", "", "Ns_per_m", columns::kCapabilityOrNone, 4}, finger.tip_damping);
   }
-  visit(ColumnName{"", "oldest_sample", "", "s"}, r.oldest_sample);
-  visit(ColumnName{"", "passive", "", ""}, r.passive);
+  visit(ColumnName{"", "oldest_sample", "", "s", columns::kCapabilityOrNone}, r.oldest_sample);
+  visit(ColumnName{"", "passive", "", "", columns::kYesNo}, r.passive);
 }
 
 namespace columns {
@@ -110,9 +155,9 @@ constexpr void forEachColumn(R& r, Visit&& visit) {
   constexpr std::array<std::string_view, kRecordedFingers> kFingers{"f0", "f1"};
   visit(ColumnName{"", "trial", "", ""}, r.trial);
   visit(ColumnName{"", "tick", "", ""}, r.tick);
-  visit(ColumnName{"", "time", "", "s"}, r.time);
-  visit(ColumnName{"", "cut", "", ""}, r.cut);
-  visit(ColumnName{"", "phase", "", ""}, r.phase);
+  visit(ColumnName{"", "time", "", "s", columns::kClock}, r.time);
+  visit(ColumnName{"", "cut", "", "", ColumnRange{0, columns::kLastTrip}}, r.cut);
+  visit(ColumnName{"", "phase", "", "", ColumnRange{0, columns::kLastPhase}}, r.phase);
   visit(ColumnName{"", "flags", "", ""}, r.flags);
   for (std::size_t i = 0; i < r.fingers.size(); ++i) columns::fingerInput(kFingers[i], r.fingers[i], visit);
   columns::axes(visit, "", "p_WB", "m", r.p_WB);
@@ -125,15 +170,15 @@ template <RecordOf<InputChunk> R, class Visit>
 void forEachColumn(R& r, Visit&& visit) {
   visit(ColumnName{"", "trial", "", ""}, r.trial);
   visit(ColumnName{"", "first_tick", "", ""}, r.first_tick);
-  visit(ColumnName{"", "ticks", "", ""}, r.ticks);
-  visit(ColumnName{"", "check", "", ""}, r.check);
+  visit(ColumnName{"", "ticks", "", "", columns::kLength}, r.ticks);
+  visit(ColumnName{"", "check", "", "", columns::kAny}, r.check);
   visit(ColumnName{"", "data", "", ""}, r.data);
 }
 
 template <RecordOf<EventRecord> R, class Visit>
 void forEachColumn(R& r, Visit&& visit) {
   visit(ColumnName{"", "trial", "", ""}, r.trial);
-  visit(ColumnName{"", "time", "", "s"}, r.time);
+  visit(ColumnName{"", "time", "", "s", columns::kClock}, r.time);
   visit(ColumnName{"", "kind", "", ""}, r.kind);
   visit(ColumnName{"", "detail", "", ""}, r.detail);
 }
@@ -141,7 +186,7 @@ void forEachColumn(R& r, Visit&& visit) {
 template <RecordOf<ReadingRecord> R, class Visit>
 void forEachColumn(R& r, Visit&& visit) {
   visit(ColumnName{"", "trial", "", ""}, r.trial);
-  visit(ColumnName{"", "time", "", "s"}, r.time);
+  visit(ColumnName{"", "time", "", "s", columns::kClock}, r.time);
   visit(ColumnName{"", "kind", "", ""}, r.kind);
   columns::axes(visit, "", "truth", "", r.truth);
   columns::axes(visit, "", "percept", "", r.percept);
@@ -155,12 +200,12 @@ void forEachColumn(R& r, Visit&& visit) {
   visit(ColumnName{"", "task", "", ""}, r.task);
   visit(ColumnName{"", "participant", "", ""}, r.participant);
   visit(ColumnName{"", "condition", "", ""}, r.condition);
-  visit(ColumnName{"", "training", "", ""}, r.training);
+  visit(ColumnName{"", "training", "", "", columns::kYesNo}, r.training);
   visit(ColumnName{"", "place_in_order", "", ""}, r.index);
-  visit(ColumnName{"", "mu_s", "", ""}, r.mu_s);
-  visit(ColumnName{"", "mu_d", "", ""}, r.mu_d);
+  visit(ColumnName{"", "mu_s", "", "", columns::kFriction}, r.mu_s);
+  visit(ColumnName{"", "mu_d", "", "", columns::kFriction}, r.mu_d);
   visit(ColumnName{"", "outcome", "", ""}, r.outcome);
-  visit(ColumnName{"", "duration", "", "s"}, r.duration);
+  visit(ColumnName{"", "duration", "", "s", columns::kTime}, r.duration);
   visit(ColumnName{"", "squeezes", "", ""}, r.squeezes);
   visit(ColumnName{"", "lifts", "", ""}, r.lifts);
   visit(ColumnName{"", "tries_5mm", "", ""}, r.tries_5mm);
@@ -189,14 +234,14 @@ void forEachColumn(R& r, Visit&& visit) {
   visit(ColumnName{"", "run", "", ""}, r.run);
   visit(ColumnName{"", "place_in_run", "", ""}, r.index);
   visit(ColumnName{"", "stimulus", "", ""}, r.stimulus);
-  visit(ColumnName{"", "level", "", "si"}, r.level);
-  visit(ColumnName{"", "interval", "", ""}, r.interval);
+  visit(ColumnName{"", "level", "", "si", columns::kLevel}, r.level);
+  visit(ColumnName{"", "interval", "", "", ColumnRange{0, 2}}, r.interval);
   visit(ColumnName{"", "answer", "", ""}, r.answer);
-  visit(ColumnName{"", "answer_value", "", "si"}, r.answer_value);
-  visit(ColumnName{"", "correct", "", ""}, r.correct);
-  visit(ColumnName{"", "reversal", "", ""}, r.reversal);
+  visit(ColumnName{"", "answer_value", "", "si", columns::kLevel}, r.answer_value);
+  visit(ColumnName{"", "correct", "", "", columns::kYesNo}, r.correct);
+  visit(ColumnName{"", "reversal", "", "", columns::kYesNo}, r.reversal);
   visit(ColumnName{"", "outcome", "", ""}, r.outcome);
-  visit(ColumnName{"", "duration", "", "s"}, r.duration);
+  visit(ColumnName{"", "duration", "", "s", columns::kTime}, r.duration);
   visit(ColumnName{"", "response_time", "", "s"}, r.response_time);
   visit(ColumnName{"", "contact_share", "", ""}, r.contact_share);
   visit(ColumnName{"", "finger_speed", "", "m_per_s"}, r.finger_speed);
@@ -214,6 +259,18 @@ void forEachColumn(R& r, Visit&& visit) {
   visit(ColumnName{"", "devices_json", "", ""}, r.devices_json);
   visit(ColumnName{"", "participants_json", "", ""}, r.participants_json);
   visit(ColumnName{"", "participants_hash", "", ""}, r.participants_hash);
+  visit(ColumnName{"", "commit_id", "", "", {}, 5}, r.commit);
+  visit(ColumnName{"", "sources", "", "", {}, 5}, r.sources);
+  visit(ColumnName{"", "flags", "", "", {}, 5}, r.flags);
+  visit(ColumnName{"", "c_library", "", "", {}, 5}, r.c_library);
+  visit(ColumnName{"", "processor", "", "", {}, 5}, r.processor);
+}
+
+template <RecordOf<SessionProgress> R, class Visit>
+void forEachColumn(R& r, Visit&& visit) {
+  visit(ColumnName{"", "started_utc", "", ""}, r.started_utc);
+  visit(ColumnName{"", "state", "", ""}, r.state);
+  visit(ColumnName{"", "samples_dropped", "", ""}, r.samples_dropped);
 }
 
 }  // namespace pincer::tasks

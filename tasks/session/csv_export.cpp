@@ -1,6 +1,6 @@
 #include "tasks/session/csv_export.h"
 
-#include "tasks/session/atomic_file.h"
+#include "contact/io/atomic_file.h"
 #include "tasks/session/columns.h"
 #include "tasks/session/csv.h"
 
@@ -34,9 +34,11 @@ std::string asCsv(const std::vector<Record>& records) {
 std::string sessionCsv(const SessionReader& session) {
   CsvTable table;
   addNames<SessionInfo>(table);
-  table.row("started_utc", "state", "samples_dropped");
+  addNames<SessionProgress>(table);
+  table.endRow();
   addValues(table, session.info());
-  table.row(session.startedUtc(), session.state(), session.samplesDropped());
+  addValues(table, session.progress());
+  table.endRow();
   return table.take();
 }
 

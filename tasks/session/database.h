@@ -17,6 +17,8 @@ namespace pincer::tasks {
 
 class Database;
 
+enum class CellType { kInteger, kReal, kText, kBytes, kNull };
+
 // A prepared statement. Parameters and columns count from 0.
 class Statement {
  public:
@@ -30,10 +32,12 @@ class Statement {
   void bind(int parameter, std::string_view value);  // copied
   void bindBytes(int parameter, std::string_view value);
 
-  bool step();  // true: a row is there; false: done, and ready to run again. Throws Interrupted (Database::heed)
+  bool step();                      // true: a row is there; false: done, and ready to run again. Throws Interrupted (Database::heed)
+  CellType type(int column) const;  // that is stored, before any conversion
   double real(int column) const;
   std::int64_t integer(int column) const;
   std::string text(int column) const;  // or bytes
+  const Database& database() const { return *database_; }
 
  private:
   struct Finalize {
@@ -55,8 +59,11 @@ class LastWords {
   LastWords& operator=(const LastWords&) = delete;
 };
 
+// The file may be anybody's: views and triggers in it don't run, names in quotes are columns or errors and never texts, pages are checked as
+// they are read, and no value is longer than kLongestValue.
 class Database {
  public:
+  static constexpr int kLongestValue = 100'000'000;  // [bytes]; a protocol has 20,000, a second of inputs 200,000
   enum class Mode { kRead, kWrite };
   Database(std::string path, Mode mode);  // the file must exist
   Database(Database&&) = delete;

@@ -31,6 +31,10 @@ constexpr Remedy kRemedies[] = {
     {SQLITE_BUSY, "Another program holds the file. Close it and try again."},
     {SQLITE_LOCKED, "Another program holds the file. Close it and try again."},
     {SQLITE_CORRUPT, "The file is damaged; `sqlite3 FILE .recover` may save rows."},
+    {SQLITE_NOMEM, "There is too little memory. Close other programs and try again."},
+    {SQLITE_TOOBIG, "A value in the file is longer than any that pincer writes: the file is damaged, or no session."},
+    {SQLITE_CONSTRAINT, "A trial of that number is there already, so something else wrote this session. Go on with a copy of before."},
+    {SQLITE_ERROR, "The file lacks a table or column, so it was changed by something else or is damaged. Take a copy of before."},
     {SQLITE_NOTADB, "The file is no SQLite database, so no session. Give the path of a session that `pincer run` wrote."},
 };
 
@@ -96,6 +100,18 @@ const char* remedyFor(int code) {
   return "Run `sqlite3 FILE 'PRAGMA integrity_check'` on the file.";
 }
 
+// For a file that may be anybody's: https://www.sqlite.org/security.html.
+void distrust(sqlite3* d) {
+  sqlite3_db_config(d, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
+  sqlite3_db_config(d, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
+  sqlite3_db_config(d, SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, nullptr);
+  sqlite3_db_config(d, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
+  sqlite3_db_config(d, SQLITE_DBCONFIG_DQS_DML, 0, nullptr);  // a column that is missing isn't read as its own name
+  sqlite3_db_config(d, SQLITE_DBCONFIG_DQS_DDL, 0, nullptr);
+  sqlite3_limit(d, SQLITE_LIMIT_LENGTH, Database::kLongestValue);
+  sqlite3_exec(d, "PRAGMA cell_size_check = ON; PRAGMA mmap_size = 0", nullptr, nullptr, nullptr);
+}
+
 }  // namespace
 
 void Database::Close::operator()(sqlite3* d) const noexcept { sqlite3_close_v2(d); }
@@ -123,6 +139,7 @@ Database::Database(std::string path, Mode mode) : path_(std::move(path)) {
   if (code != SQLITE_OK) fail(code, "opening the session");
   sqlite3_extended_result_codes(raw, 1);
   sqlite3_busy_timeout(raw, kBusyTimeout);
+  distrust(raw);
 }
 
 void Database::run(const char* sql) {
@@ -180,6 +197,21 @@ bool Statement::step() {
   sqlite3_reset(statement_.get());
   if (code != SQLITE_DONE) database_->fail(code, sqlite3_stmt_readonly(statement_.get()) ? "reading the session" : "writing the session");
   return false;
+}
+
+CellType Statement::type(int column) const {
+  switch (sqlite3_column_type(statement_.get(), column)) {
+    case SQLITE_INTEGER:
+      return CellType::kInteger;
+    case SQLITE_FLOAT:
+      return CellType::kReal;
+    case SQLITE_TEXT:
+      return CellType::kText;
+    case SQLITE_BLOB:
+      return CellType::kBytes;
+    default:
+      return CellType::kNull;
+  }
 }
 
 double Statement::real(int column) const {

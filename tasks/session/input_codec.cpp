@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "contact/error.h"
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 
 namespace pincer::tasks {
 namespace {

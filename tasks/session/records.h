@@ -176,9 +176,18 @@ struct ResponseRecord {
 struct SessionInfo {
   std::string task;  // "sphere-pickup", "manipulation", ...
   std::uint64_t seed = 0;
-  std::string version, build;  // program version; compiler and flags
+  std::string version, build;  // of the program; compiler
   std::string scene_json, protocol_json, devices_json;
   std::string participants_json, participants_hash;  // every parameter of simulated participants, frozen before the first trial
+  // What else bits may depend on (build_info.h); empty in sessions of before format 5.
+  std::string commit{}, sources{}, flags{}, c_library{}, processor{};
+};
+
+// How far a session has come.
+struct SessionProgress {
+  std::string started_utc;  // ISO 8601
+  std::string state;        // "running", "complete", "aborted: <why>"
+  std::int64_t samples_dropped = 0;
 };
 
 }  // namespace pincer::tasks

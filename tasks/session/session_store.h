@@ -5,7 +5,7 @@
 // A finished trial is committed and synchronised to the disk before finishTrial() returns; samples, inputs and events reach the file within 50 ms
 // and so survive a kill of the process (after a power cut the last ones may be missing). The column `state` of table `session` reads
 // "running" until close() writes "complete" or a failure "aborted: <why>"; a killed session therefore stays "running", and a reader says
-// so.
+// so. A session appears whole, its tables made and its first row written; one program writes it at a time (session_lock.h), any number read.
 //
 // Errors: InputError with path, cause and remedy; std::bad_alloc. What fails in the writer thread is thrown by the next call and by close().
 #pragma once
@@ -34,7 +34,8 @@ class SessionWriter {
  public:
   // Makes a new file; refuses to overwrite one. Leaves nothing behind if it throws.
   static SessionWriter create(const std::string& path, const SessionInfo& info, const SessionOptions& options = {});
-  // Goes on with a session that was killed or aborted: its finished trials stay, what it holds of an unfinished one is removed.
+  // Goes on with a session that was killed or aborted: its finished trials stay, what it holds of an unfinished one is removed. Refuses one that
+  // is complete, that another program writes, or that holds a trial twice. What is finished must be read after this, not before.
   static SessionWriter resume(const std::string& path, const SessionOptions& options = {});
   SessionWriter(SessionWriter&&) noexcept;
   SessionWriter& operator=(SessionWriter&&) = delete;
@@ -79,12 +80,16 @@ class SessionReader {
 
   const std::string& path() const;
   const SessionInfo& info() const { return info_; }
-  const std::string& state() const { return state_; }             // "running", "complete", "aborted: <why>"
-  const std::string& startedUtc() const { return started_utc_; }  // ISO 8601
-  std::int64_t samplesDropped() const { return samples_dropped_; }
+  const std::string& state() const { return progress_.state; }             // "running", "complete", "aborted: <why>"
+  const std::string& startedUtc() const { return progress_.started_utc; }  // ISO 8601
+  std::int64_t samplesDropped() const { return progress_.samples_dropped; }
+  const SessionProgress& progress() const { return progress_; }
   bool complete() const;
-  std::string warning() const;  // a sentence for a person if the session isn't complete or lost samples; else empty
+  std::string warning() const;  // sentences for a person if the session isn't complete, lost samples or holds trials twice; else empty
+  std::string doubledTrials() const;  // the last of these; else empty
 
+  // A value that a column can't hold is an InputError with its place (cells.h), wherever records are read. Of trials that are there twice,
+  // the first.
   std::vector<TrialRecord> trials() const;        // in order of time
   std::vector<ResponseRecord> responses() const;  // in order of time
   std::vector<EventRecord> events(std::optional<std::int64_t> trial = {}) const;
@@ -99,8 +104,8 @@ class SessionReader {
  private:
   std::unique_ptr<Database> database_;
   SessionInfo info_;
-  std::string state_, started_utc_;
-  std::int64_t samples_dropped_ = 0, format_ = 0;
+  SessionProgress progress_;
+  std::int64_t format_ = 0;
 };
 
 }  // namespace pincer::tasks

@@ -1,5 +1,4 @@
-#include <fcntl.h>
-#include <fmt/chrono.h>
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <array>
@@ -7,8 +6,8 @@
 #include <cerrno>
 #include <chrono>
 #include <condition_variable>
-#include <cstring>
 #include <exception>
+#include <filesystem>
 #include <mutex>
 #include <new>
 #include <stdexcept>
@@ -17,8 +16,11 @@
 #include <variant>
 
 #include "contact/error.h"
+#include "contact/io/part_file.h"
 #include "tasks/session/input_codec.h"
 #include "tasks/session/ring.h"
+#include "tasks/session/session_file.h"
+#include "tasks/session/session_lock.h"
 #include "tasks/session/session_store.h"
 #include "tasks/session/table.h"
 
@@ -29,70 +31,16 @@ namespace {
 constexpr auto kBatchPeriod = std::chrono::milliseconds(20);  // leaves 30 of the promised 50 ms for the transaction itself
 constexpr int kCheckpointPages = 16384;  // 64 MB of log: a trial never gets there, so the log is folded in between trials
 
-const char* remedyForCreating(int error) {
-  switch (error) {
-    case EEXIST:
-      return "A session is never overwritten. Choose another name, or move the old file away.";
-    case ENOENT:
-      return "Make its directory first, or choose another one.";
-    case EACCES:
-    case EPERM:
-      return "Choose a directory that you may write, or change its permissions.";
-    case EROFS:
-      return "The file system is read-only. Choose another directory.";
-    case ENOSPC:
-    case EDQUOT:
-      return "Free some space or choose another disk.";
-    default:
-      return "Choose another path.";
-  }
-}
-
-// O_EXCL decides between two programs that want the same name.
-void createEmptyFile(const std::string& path) {
-  const int file = ::open(path.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0644);
-  if (file < 0) {
-    const int error = errno;
-    throw InputError(fmt::format("{}: can't create the session: {}. {}", path, std::strerror(error), remedyForCreating(error)));
-  }
-  ::close(file);
-}
-
 // All that a session may consist of.
 std::array<std::string, 4> filesOfSession(const std::string& path) { return {path, path + "-wal", path + "-shm", path + "-journal"}; }
 
-// Those that format 3 added, and their columns that format 4 added.
-void makeInputTables(Database& d) {
-  d.run(fmt::format("CREATE TABLE IF NOT EXISTS hands ({})", columnList<HandsRecord>(true)));
-  if (d.integer("PRAGMA user_version") == 3) {
-    for (const std::string& column : columnsSinceFormat4()) d.run(fmt::format("ALTER TABLE hands ADD COLUMN \"{}\" REAL", column));
-  }
-  d.run(fmt::format("CREATE TABLE IF NOT EXISTS input ({})", columnList<InputChunk>(true)));
-  d.run("CREATE INDEX IF NOT EXISTS input_of_trial ON input (trial)");
-  d.run(fmt::format("PRAGMA user_version = {}", kFormat));
-}
-
-void makeTables(Database& d, const SessionOptions& options) {
-  if (options.max_pages > 0) d.text(fmt::format("PRAGMA max_page_count = {}", options.max_pages));
-  d.run(fmt::format("PRAGMA application_id = {}", kApplicationId));
-  if (d.text("PRAGMA journal_mode = WAL") != "wal") {
-    throw InputError(d.path() + ": this file system has no shared memory for SQLite's log. Keep sessions on a local disk.");
-  }
-  d.run(fmt::format("PRAGMA wal_autocheckpoint = {}; PRAGMA synchronous = NORMAL", kCheckpointPages));
-  d.run("BEGIN");
-  d.run(fmt::format("CREATE TABLE session ({}, started_utc TEXT, state TEXT, samples_dropped INTEGER)", columnList<SessionInfo>(true)));
-  d.run(fmt::format("CREATE TABLE trial ({})", columnList<TrialRecord>(true)));
-  d.run(fmt::format("CREATE TABLE sample ({})", columnList<SampleRecord>(true)));
-  d.run(fmt::format("CREATE TABLE event ({})", columnList<EventRecord>(true)));
-  d.run(fmt::format("CREATE TABLE response ({})", columnList<ResponseRecord>(true)));
-  d.run(fmt::format("CREATE TABLE reading ({})", columnList<ReadingRecord>(true)));
-  d.run("CREATE INDEX sample_of_trial ON sample (trial)");
-  makeInputTables(d);
-}
-
-std::string nowUtc() {
-  const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
-  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::to_time_t(now)));
+// What the file says of the session. Throws InputError, which says what is wrong with one that can't be gone on with.
+SessionInfo infoOfUnfinished(const std::string& path) {
+  const SessionReader session(path);
+  if (session.complete()) throw InputError(path + ": the session is complete; there is nothing to go on with.");
+  const std::string doubled = session.doubledTrials();
+  if (!doubled.empty()) throw InputError(path + ": can't be gone on with. " + doubled + " `pincer report` and `pincer export` read it.");
+  return session.info();
 }
 
 }  // namespace
@@ -101,25 +49,20 @@ class SessionWriter::Impl {
  public:
   using FinishedTrial = std::variant<TrialRecord, ResponseRecord>;
 
-  // Of an existing session.
-  Impl(const std::string& path, const SessionOptions& options)
-      : options_(options), ring_(options.ring_capacity), inputs_(options.ring_capacity), database_(path, Database::Mode::kWrite) {
-    database_.text("PRAGMA journal_mode = WAL");
+  // Of a session whose file is there; `earlier`: what the file says of it, if another program may have begun it.
+  Impl(SessionLock lock, const std::string& path, const SessionOptions& options, const std::optional<SessionInfo>& earlier = {})
+      : options_(options),
+        ring_(options.ring_capacity),
+        inputs_(options.ring_capacity),
+        lock_(std::move(lock)),
+        database_(path, Database::Mode::kWrite) {
+    openForWriting(database_, options.max_pages);
     database_.run(fmt::format("PRAGMA wal_autocheckpoint = {}; PRAGMA synchronous = NORMAL", kCheckpointPages));
-    makeInputTables(database_);
-    for (const char* table : {"sample", "event", "reading", "hands", "input"}) {
-      database_.run(fmt::format("DELETE FROM {} WHERE trial NOT IN (SELECT trial FROM trial UNION SELECT trial FROM response)", table));
-    }
-    database_.run(fmt::format("UPDATE session SET state = '{}'", kStateRunning));
-    statements_.emplace(database_);
-    begin();
-  }
-  Impl(const std::string& path, const SessionInfo& info, const SessionOptions& options)
-      : options_(options), ring_(options.ring_capacity), inputs_(options.ring_capacity), database_(path, Database::Mode::kWrite) {
-    makeTables(database_, options);
-    Statement insert(database_, insertSql<SessionInfo>());
-    insertRow(insert, info);
-    database_.run(fmt::format("UPDATE session SET started_utc = '{}', state = '{}', samples_dropped = 0; COMMIT", nowUtc(), kStateRunning));
+    database_.run("BEGIN IMMEDIATE");
+    upgradeTables(database_);
+    if (earlier) tellWhoGoesOn(database_, *earlier);
+    removeUnfinished(database_);
+    database_.run(fmt::format("UPDATE session SET state = '{}'; COMMIT", kStateRunning));
     statements_.emplace(database_);
     begin();
   }
@@ -164,6 +107,7 @@ class SessionWriter::Impl {
       endWith(kStateComplete, "");
       database_.text("PRAGMA journal_mode = DELETE");
       database_.close();
+      lock_.reset();
     } catch (...) {
       failed();
       std::rethrow_exception(failure_);
@@ -336,8 +280,9 @@ class SessionWriter::Impl {
   SessionOptions options_;
   SampleRing ring_;
   InputRing inputs_;
-  InputPacker packer_;  // the writer thread's
-  Database database_;   // the writer thread's, until it is joined
+  InputPacker packer_;               // the writer thread's
+  std::optional<SessionLock> lock_;  // outlives the database
+  Database database_;                // the writer thread's, until it is joined
   std::optional<Statements> statements_;
   std::mutex mutex_;  // guards events_ .. failure_
   std::condition_variable wake_, done_;
@@ -354,9 +299,12 @@ class SessionWriter::Impl {
 
 SessionWriter SessionWriter::create(const std::string& path, const SessionInfo& info, const SessionOptions& options) {
   const std::array<std::string, 4> files = filesOfSession(path);
-  createEmptyFile(path);
+  std::error_code ignored;
+  if (std::filesystem::exists(std::filesystem::symlink_status(path, ignored))) failOnFile(path, "create the session", EEXIST);
+  SessionLock lock(path);
+  makeSession(path, info, options.max_pages);
   try {
-    return SessionWriter(std::make_unique<Impl>(path, info, options));
+    return SessionWriter(std::make_unique<Impl>(std::move(lock), path, options));
   } catch (...) {
     for (const std::string& file : files) ::unlink(file.c_str());
     throw;
@@ -364,8 +312,10 @@ SessionWriter SessionWriter::create(const std::string& path, const SessionInfo& 
 }
 
 SessionWriter SessionWriter::resume(const std::string& path, const SessionOptions& options) {
-  { const SessionReader checked(path); }  // says what is wrong with a file that is no session
-  return SessionWriter(std::make_unique<Impl>(path, options));
+  infoOfUnfinished(path);
+  SessionLock lock(path);
+  const SessionInfo earlier = infoOfUnfinished(path);  // once more: another program may have finished it in between
+  return SessionWriter(std::make_unique<Impl>(std::move(lock), path, options, earlier));
 }
 
 SessionWriter::SessionWriter(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}

@@ -1,7 +1,7 @@
 // table: rows of the session's tables, made from the column lists in columns.h. Internal to the session store.
 //
 //   table      record         one row per
-//   session    SessionInfo    file (plus started_utc, state, samples_dropped)
+//   session    SessionInfo    file; SessionProgress in the same row
 //   trial      TrialRecord    finished trial
 //   sample     SampleRecord   recorded tick
 //   event      EventRecord    event
@@ -17,20 +17,22 @@
 #include <type_traits>
 #include <vector>
 
+#include "tasks/session/cells.h"
 #include "tasks/session/columns.h"
 #include "tasks/session/database.h"
 
 namespace pincer::tasks {
 
 constexpr std::int64_t kApplicationId = 0x504e4352;  // "PNCR", in SQLite's header
-constexpr std::int64_t kFormat = 4;                  // raised whenever a column changes or a table is added
-constexpr std::int64_t kOldestFormat = 2;            // that is still read: it lacks the tables hands and input; 3 lacks columns of hands
+constexpr std::int64_t kFormat = 5;                  // raised whenever a column changes or a table is added
+constexpr std::int64_t kOldestFormat = 2;       // that is still read: it lacks the tables hands and input; ColumnName::since has the rest
+constexpr std::int64_t kFirstLockedFormat = 5;  // whose writers hold a lock (session_lock.h)
 
 constexpr std::string_view kStateRunning = "running", kStateComplete = "complete", kStateAborted = "aborted: ";
 
 template <class Record>
 constexpr std::string_view tableName() {
-  if constexpr (std::is_same_v<Record, SessionInfo>) return "session";
+  if constexpr (std::is_same_v<Record, SessionInfo> || std::is_same_v<Record, SessionProgress>) return "session";
   if constexpr (std::is_same_v<Record, TrialRecord>) return "trial";
   if constexpr (std::is_same_v<Record, SampleRecord>) return "sample";
   if constexpr (std::is_same_v<Record, EventRecord>) return "event";
@@ -60,12 +62,18 @@ std::string columnList(bool with_types = false) {
   return list;
 }
 
-// Columns of `hands` that format 4 added: what an arm's tip weighs.
-inline std::vector<std::string> columnsSinceFormat4() {
-  std::vector<std::string> added;
-  const HandsRecord record{};
-  forEachColumn(record, [&](const ColumnName& name, const auto&) {
-    if (name.quantity.starts_with("tip_")) added.push_back(name.text());
+struct AddedColumn {
+  std::string name;
+  std::string_view type;
+};
+
+// Columns that a file of format `format` lacks.
+template <class Record>
+std::vector<AddedColumn> columnsSince(std::int64_t format) {
+  std::vector<AddedColumn> added;
+  const Record record{};
+  forEachColumn(record, [&]<class Field>(const ColumnName& name, const Field&) {
+    if (name.since > format) added.push_back({name.text(), sqlType<Field>()});
   });
   return added;
 }
@@ -78,9 +86,16 @@ std::string insertSql() {
   return fmt::format("INSERT INTO {} ({}) VALUES ({})", tableName<Record>(), columnList<Record>(), marks);
 }
 
+// The row's number, then the columns. Those that a file of format `format` lacks: nothing was measured, nothing was said.
 template <class Record>
-std::string selectSql() {
-  return fmt::format("SELECT {} FROM {}", columnList<Record>(), tableName<Record>());
+std::string selectSql(std::int64_t format) {
+  std::string list = "rowid";
+  const Record record{};
+  forEachColumn(record, [&]<class Field>(const ColumnName& name, const Field&) {
+    const char* missing = std::is_floating_point_v<Field> ? "NULL" : std::is_same_v<Field, std::string> ? "''" : "0";
+    list += name.since > format ? fmt::format(", {}", missing) : fmt::format(", \"{}\"", name.text());
+  });
+  return fmt::format("SELECT {} FROM {}", list, tableName<Record>());
 }
 
 template <class Record>
@@ -102,22 +117,13 @@ void insertRow(Statement& insert, const Record& record) {
   insert.step();
 }
 
+// Of a statement by selectSql(). Throws InputError for a value that its column can't hold.
 template <class Record>
 Record readRow(const Statement& row) {
   Record record;
-  int column = 0;
-  forEachColumn(record, [&]<class Field>(const ColumnName&, Field& field) {
-    if constexpr (std::is_same_v<Field, std::uint64_t>) {
-      field = std::stoull(row.text(column++));
-    } else if constexpr (std::is_same_v<Field, Bytes>) {
-      field.value = row.text(column++);
-    } else if constexpr (std::is_integral_v<Field>) {
-      field = static_cast<Field>(row.integer(column++));
-    } else if constexpr (std::is_floating_point_v<Field>) {
-      field = row.real(column++);
-    } else {
-      field = row.text(column++);
-    }
+  int column = 1;
+  forEachColumn(record, [&](const ColumnName& name, auto& field) {
+    readCell({row, column++, tableName<Record>(), row.integer(0), name}, field);
   });
   return record;
 }

@@ -21,18 +21,31 @@ struct Parameter {
   bool may_be_null = false;                      // of a number: NaN stands for "there is none"
 };
 
+// What two parameters demand of each other, or one that was never in a file: `path` is as in messages of files (conditions[1].staircase), so
+// that the reader can say where in the file it stands.
+class ParameterError : public InputError {
+ public:
+  ParameterError(std::string path, const std::string& message) : InputError(message), path_(std::move(path)) {}
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
 template <class Field>
 concept NumberField = std::same_as<Field, double> || std::same_as<Field, int>;
 
-// A visitor of lists that refuses the first number out of its range. Throws InputError: "<of>: <key> = <value> is out of range ...".
+// A visitor of lists that refuses the first number out of its range. Throws ParameterError: "<of>: <key> = <value> is out of range ...".
 class RangeCheck {
  public:
-  explicit RangeCheck(std::string_view of) : of_(of) {}
+  // `path`: of the object in the file, "" for the whole file.
+  explicit RangeCheck(std::string_view of, std::string_view path = "") : of_(of), path_(path) {}
   template <class Field>
   void operator()(std::string_view key, const Field& field, const Parameter& parameter) const {
     if constexpr (NumberField<Field>) {
       if (isWithin(static_cast<double>(field), parameter.rule) || (parameter.may_be_null && field != field)) return;
-      throw InputError(fmt::format("{}: {} = {} {}", of_, key, field, outOfRange(parameter.rule)));
+      throw ParameterError(fmt::format("{}{}{}", path_, path_.empty() ? "" : ".", key),
+                           fmt::format("{}: {} = {} {}", of_, key, field, outOfRange(parameter.rule)));
     }
   }
   void operator()(std::string_view key, const std::vector<double>& field, const Parameter& parameter) const {
@@ -43,7 +56,7 @@ class RangeCheck {
   }
 
  private:
-  std::string_view of_;
+  std::string_view of_, path_;
 };
 
 }  // namespace pincer::tasks

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "contact/functions/elementary.h"
-#include "contact/invariants.h"
+#include "contact/elementary.h"
+#include "contact/functions/invariants.h"
 
 namespace pincer::tasks {
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "contact/io/counted.h"
 #include "tasks/scene/json_change.h"
 #include "tasks/scene/simulation.h"
 
@@ -97,7 +98,7 @@ SweepTable sweepScene(const NamedJson& scene, const SceneSweep& sweep, const Swe
     for (const SweptMeasure& measure : measuresOf(sweep, read)) table.measures.push_back(labelOf(measure));
     table.plotted.assign(table.measures.size(), true);
     if (read.expectations.empty()) continue;
-    table.measures.push_back(fmt::format("failed of {} expectations", read.expectations.size()));
+    table.measures.push_back(fmt::format("failed of {}", counted(static_cast<std::int64_t>(read.expectations.size()), "expectation")));
     table.plotted.push_back(table.plotted.empty());
   }
   runSweep(table, options, interrupted,

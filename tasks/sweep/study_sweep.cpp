@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "contact/io/counted.h"
 #include "tasks/experiments/manipulation_file.h"
 #include "tasks/experiments/row_sink.h"
 #include "tasks/report/person_means.h"
@@ -22,9 +23,7 @@ ManipulationStudy studyAt(const std::string& task, const StudySweep& sweep, cons
   if (task == "cylinder-alignment") study.tasks = {HandTask::kAlignment};
   JsonValue json = parseJson(studyFile(study), task);
   for (std::size_t i = 0; i < point.size(); ++i) setNumber(json, sweep.variations[i].path, point[i]);
-  study = studyOfJson(json);
-  validate(study);
-  return study;
+  return studyOfJson(json);
 }
 
 bool isMeasured(const std::string& task, const FindingMeasure& measure) {
@@ -53,7 +52,7 @@ bool isSweptStudy(const std::string& task) { return task == "sphere-pickup" || t
 SweepTable sweepStudy(const std::string& task, const StudySweep& sweep, const SweepOptions& options, const std::atomic<bool>& interrupted) {
   constexpr std::size_t kMostRuns = 1000;
   SweepTable table;
-  table.what = fmt::format("{}, {} participants", task, sweep.participants);
+  table.what = fmt::format("{}, {}", task, counted(sweep.participants, "participant"));
   table.points = gridOf(sweep.variations, kMostRuns);
   for (const Variation& variation : sweep.variations) table.parameters.push_back(variation.path);
   for (const std::vector<double>& point : table.points) studyAt(task, sweep, point);  // says what is wrong before anything runs

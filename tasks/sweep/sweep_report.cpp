@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
+#include "contact/io/atomic_file.h"
 #include "tasks/report/figures.h"
-#include "tasks/session/atomic_file.h"
 #include "tasks/session/csv.h"
 #include "tasks/sweep/sweep.h"
 
@@ -67,7 +67,7 @@ std::string sweepText(const SweepTable& table) {
 }
 
 std::string sweepCsv(const SweepTable& table) {
-  CsvTable csv;
+  PlotTable csv;
   for (const std::string& name : table.parameters) csv.add(name);
   for (const std::string& name : table.measures) csv.add(name);
   csv.endRow();

@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <sstream>
 
+#include "contact/elementary.h"
 #include "contact/error.h"
-#include "contact/functions/elementary.h"
 
 namespace pincer::tasks {
 namespace {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "contact/error.h"
+#include "contact/io/atomic_file.h"
 #include "tasks/view/image.h"
 
 namespace pincer::tasks {
@@ -33,8 +34,13 @@ double blockMean(const Image& image, int x0, int y0, int block, int channel) {
 
 void writePng(const Image& image, const std::string& path) {
   png_image head = pngHead(image);
-  if (png_image_write_to_file(&head, path.c_str(), 0, image.bytes.data(), 0, nullptr) != 0) return;
-  throw InputError(fmt::format("{}: the picture can't be written ({}). Is the folder there, and may it be written?", path, head.message));
+  std::string bytes(PNG_IMAGE_PNG_SIZE_MAX(head), '\0');
+  png_alloc_size_t size = bytes.size();
+  if (png_image_write_to_memory(&head, bytes.data(), &size, 0, image.bytes.data(), 0, nullptr) == 0) {
+    throw InputError(fmt::format("{}: the picture can't be written as PNG ({}).", path, head.message));
+  }
+  bytes.resize(size);
+  writeAtomically(path, bytes);
 }
 
 Image readPng(const std::string& path) {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "contact/functions/elementary.h"
-#include "contact/invariants.h"
+#include "contact/elementary.h"
+#include "contact/functions/invariants.h"
 
 namespace pincer::tasks {
 namespace {

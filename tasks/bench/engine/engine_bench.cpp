@@ -8,8 +8,8 @@
 #include <iterator>
 
 #include "contact/error.h"
+#include "contact/io/atomic_file.h"
 #include "tasks/measure/timing.h"
-#include "tasks/session/atomic_file.h"
 #include "tasks/session/csv.h"
 
 namespace pincer::tasks {

@@ -5,10 +5,10 @@
 #include <map>
 
 #include "contact/error.h"
+#include "contact/io/atomic_file.h"
 #include "tasks/bench/engine/engine_bench.h"
 #include "tasks/report/figures.h"
 #include "tasks/report/gnuplot.h"
-#include "tasks/session/atomic_file.h"
 #include "tasks/session/csv.h"
 
 namespace pincer::tasks {
@@ -25,7 +25,7 @@ const char* colourOf(const std::string& engine) {
 }
 
 std::string tableOfRace(const std::vector<Contestant>& contestants, const std::vector<RaceRun>& runs) {
-  CsvTable table{"contestant", "name", "step_ms", "tolerance_m", "us_per_simulated_second", "error"};
+  PlotTable table{"contestant", "name", "step_ms", "tolerance_m", "us_per_simulated_second", "error"};
   for (const RaceRun& run : runs) {
     table.row(run.contestant, std::string_view(contestants[run.contestant].name()), 1e3 * run.step.h, run.step.tolerance,
               run.ok() ? run.point().cost : std::nan(""), run.error);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "contact/functions/elementary.h"
+#include "contact/elementary.h"
 
 namespace pincer::tasks {
 namespace {

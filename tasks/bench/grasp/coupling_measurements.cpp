@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "contact/error.h"
+#include "contact/io/atomic_file.h"
 #include "grasp/energy_ledger.h"
 #include "grasp/hold_bounds.h"
 #include "grasp/passivity.h"
@@ -16,7 +17,6 @@
 #include "tasks/bench/grasp/hand_on_arm.h"
 #include "tasks/report/figures.h"
 #include "tasks/report/gnuplot.h"
-#include "tasks/session/atomic_file.h"
 #include "tasks/session/csv.h"
 
 namespace pincer::tasks {

@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-#include "contact/invariants.h"
+#include "contact/functions/invariants.h"
 
 namespace pincer {
 namespace {

@@ -89,7 +89,7 @@ TEST(MeshConvertCommand, ListsEveryRepairAndLeavesSoundFilesByteForByte) {
   const AppResult repaired =
       runPincer({"mesh", "convert", directory / "open.obj", directory / "closed.obj", "--units", "mm", "--repair", "--fill-holes", "4"});
   ASSERT_EQ(repaired.exit_code, kExitOk) << repaired.error;
-  EXPECT_TRUE(contains(repaired.out, "* filled-holes: filled 1 holes with 2 triangles")) << repaired.out;
+  EXPECT_TRUE(contains(repaired.out, "* filled-holes: filled 1 hole with 2 triangles")) << repaired.out;
   EXPECT_EQ(runPincer({"mesh", "check", directory / "closed.obj", "--units", "mm"}).exit_code, kExitOk);
 
   ASSERT_EQ(runPincer({"mesh", "convert", directory / "whole.obj", directory / "plain.obj", "--units", "mm"}).exit_code, kExitOk);
@@ -99,6 +99,39 @@ TEST(MeshConvertCommand, ListsEveryRepairAndLeavesSoundFilesByteForByte) {
   EXPECT_EQ(tests::readFile(directory / "again.obj"), tests::readFile(directory / "plain.obj"));
   EXPECT_EQ(runPincer({"mesh", "convert", directory / "whole.obj", directory / "x.obj", "--weld", "1"}).exit_code, kExitUsage)
       << "needs --repair";
+}
+
+// Two tetrahedra apart, the second one inside out and smaller: closed, of positive volume, and of no inertia that a solid could have.
+constexpr const char* kFlippedPiece =
+    "v 0 0 0\nv 0.01 0 0\nv 0 0.01 0\nv 0 0 0.01\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
+    "v 1 0 0\nv 1.009 0 0\nv 1 0.009 0\nv 1 0 0.009\nf 5 6 7\nf 5 8 6\nf 5 7 8\nf 6 8 7\n";
+
+TEST(MeshInfoCommand, DoesNotGiveUpOnAFlippedPiece) {
+  const tests::TemporaryDirectory directory;
+  const std::string file = directory / "flipped.obj";
+  std::ofstream(file) << kFlippedPiece;
+  const AppResult info = runPincer({"mesh", "info", file, "--units", "m"});
+  EXPECT_EQ(info.exit_code, kExitOk) << info.error;
+  EXPECT_TRUE(contains(info.out, file)) << info.out;
+  EXPECT_TRUE(contains(info.out, "flipped-component")) << info.out;
+  EXPECT_TRUE(contains(info.out, "no mass: parts of the surface are turned inside out")) << info.out;
+  const AppResult json = runPincer({"mesh", "info", file, "--units", "m", "--json"});
+  EXPECT_EQ(json.exit_code, kExitOk) << json.error;
+  EXPECT_FALSE(contains(json.out, "principal_moments")) << json.out;
+  const AppResult check = runPincer({"mesh", "check", file, "--units", "m"});
+  EXPECT_EQ(check.exit_code, kExitCheckFailed) << check.error;
+}
+
+TEST(MeshConvertCommand, SaysByItsExitCodeThatARepairLeftTheMeshOpen) {
+  const tests::TemporaryDirectory directory;
+  const std::string open = directory / "open.obj", out = directory / "out.obj";
+  std::ofstream(open) << "v 0 0 0\nv 10 0 0\nv 0 10 0\nv 0 0 10\nf 1 3 2\nf 1 2 4\nf 1 4 3\n";
+  const AppResult repaired = runPincer({"mesh", "convert", open, out, "--units", "mm", "--repair"});
+  EXPECT_EQ(repaired.exit_code, kExitCheckFailed) << repaired.out << repaired.error;
+  EXPECT_TRUE(std::filesystem::exists(out));
+  EXPECT_TRUE(contains(repaired.out, "boundary-edges")) << repaired.out;
+  EXPECT_EQ(runPincer({"mesh", "convert", open, out, "--units", "mm"}).exit_code, kExitOk) << "nothing was promised";
+  EXPECT_EQ(runPincer({"mesh", "convert", open, out, "--units", "mm", "--repair", "--fill-holes", "10"}).exit_code, kExitOk);
 }
 
 TEST(MeshRoundEdgesCommand, WritesNormalsThatMakeItSmooth) {
@@ -136,7 +169,8 @@ TEST(MeshesPage, EveryCommandRuns) {
     std::vector<std::string> arguments{std::istream_iterator<std::string>(words), {}};
     arguments.erase(arguments.begin());
     const AppResult result = runPincer(arguments);
-    EXPECT_EQ(result.exit_code, kExitOk) << command << "\n" << result.error;
+    const bool stays_open = contains(command, "--repair") && !contains(command, "--fill-holes");  // the scan lacks its bottom
+    EXPECT_EQ(result.exit_code, stays_open ? kExitCheckFailed : kExitOk) << command << "\n" << result.error;
   }
   std::filesystem::current_path(before);
 }

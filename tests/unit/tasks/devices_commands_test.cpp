@@ -44,9 +44,9 @@ TEST(DevicesCommand, ASessionOnMissingDevicesEndsBeforeItBegins) {
   EXPECT_EQ(usb.exit_code, 4);
   EXPECT_TRUE(contains(usb.error, "2 arms") && contains(usb.error, "found: none")) << usb.error;
   EXPECT_FALSE(std::ifstream(out + "/session.db").good());
-  EXPECT_EQ(runPincer({"run", "sphere-pickup", "--devices", "mouse", "--out", out}).exit_code, 3);  // needs --view
+  EXPECT_EQ(runPincer({"run", "sphere-pickup", "--devices", "mouse", "--out", out}).exit_code, 2);  // needs --view
   EXPECT_EQ(runPincer({"run", "sphere-pickup", "--devices", "falcon", "--out", out}).exit_code, 4);
-  EXPECT_EQ(runPincer({"run", "sphere-pickup", "--devices", "replay", "--out", out}).exit_code, 4);
+  EXPECT_EQ(runPincer({"run", "sphere-pickup", "--devices", "replay", "--out", out}).exit_code, 2);
   EXPECT_EQ(runPincer({"run", "sphere-pickup", "--devices", "abacus", "--out", out}).exit_code, 2);
 }
 

@@ -13,6 +13,7 @@
 #include "tasks/experiments/manipulation_file.h"
 #include "tasks/session/bids_export.h"
 #include "tasks/session/database.h"
+#include "tasks/session/session_lock.h"
 #include "tests/support/run_app.h"
 #include "tests/support/temporary_directory.h"
 
@@ -134,6 +135,72 @@ TEST(Replay, IsTheSameToTheBitAndNamesTheFirstDifference) {
   EXPECT_EQ(changed.first->trial, 1);
   EXPECT_EQ(changed.first->tick, 1234);
   EXPECT_NE(changed.first->what.find("f1_gap_m"), std::string::npos) << changed.first->what;
+}
+
+TEST(SessionStore, ResumingARunningSessionEndsWithExitCode3) {
+  const tests::TemporaryDirectory dir;
+  std::filesystem::create_directory(dir / "out");
+  tests::runPincer(
+      {"run", "sphere-pickup", "--repetitions", "1", "--friction", "0.9", "--condition", "force", "--no-report", "--out", dir / "out"});
+  Database(dir / "out/session.db", Database::Mode::kWrite).run("UPDATE session SET state = 'running'");
+  const SessionLock held(dir / "out/session.db");
+  const tests::AppResult result = tests::runPincer({"run", "sphere-pickup", "--resume", "--out", dir / "out"});
+  EXPECT_EQ(result.exit_code, kExitBadInput);
+  EXPECT_TRUE(tests::contains(result.error, "is being written by process " + std::to_string(::getpid()))) << result.error;
+}
+
+TEST(Replay, OfAnotherVersionIsRefusedByName) {
+  const tests::TemporaryDirectory directory;
+  const std::string path = directory / "s.db";
+  runManipulationSession(quickSession(1), path, kGoOn, {});
+  EXPECT_EQ(tests::runPincer({"replay", path}).exit_code, kExitOk);
+  Database(path, Database::Mode::kWrite).run("UPDATE session SET sources = '000000000000', commit_id = 'deadbeef0000'");
+  const tests::AppResult refused = tests::runPincer({"replay", path});
+  EXPECT_EQ(refused.exit_code, kExitBadInput);
+  EXPECT_TRUE(
+      tests::contains(refused.error, "it was made by pincer 0.1.0 (commit deadbeef0000, sources 000000000000), and this is pincer 0.1.0 ("))
+      << refused.error;
+  EXPECT_TRUE(tests::contains(refused.error, "--other-version")) << refused.error;
+  const tests::AppResult told = tests::runPincer({"replay", path, "--other-version"});
+  EXPECT_EQ(told.exit_code, kExitOk) << told.error;
+  EXPECT_TRUE(tests::contains(told.error, "Their bits may differ")) << told.error;
+  Database(path, Database::Mode::kWrite).run("UPDATE session SET version = '0.0.9', sources = '', commit_id = ''");
+  EXPECT_TRUE(tests::contains(tests::runPincer({"replay", path}).error, "made by pincer 0.0.9 (of before sessions kept their commit)"));
+}
+
+TEST(Replay, SaysWhatElseDiffersWhereBitsDo) {
+  const tests::TemporaryDirectory directory;
+  const std::string path = directory / "s.db";
+  runManipulationSession(quickSession(1), path, kGoOn, {});
+  Database(path, Database::Mode::kWrite)
+      .run("UPDATE sample SET f0_gap_m = 1; UPDATE session SET processor = 'abacus', c_library = 'glibc 1.0'");
+  const tests::AppResult result = tests::runPincer({"replay", path});
+  EXPECT_EQ(result.exit_code, kExitCheckFailed);
+  EXPECT_TRUE(tests::contains(result.error, "Not the same: processor: abacus then, ")) << result.error;
+  EXPECT_TRUE(tests::contains(result.error, "Not the same: C library: glibc 1.0 then, glibc ")) << result.error;
+  EXPECT_FALSE(tests::contains(result.error, "compiler")) << result.error;
+}
+
+TEST(ManipulationSession, NamesBothProgramsWhenAnotherGoesOn) {
+  const tests::TemporaryDirectory directory;
+  const std::string path = directory / "s.db";
+  runManipulationSession(quickSession(1), path, kGoOn, {});
+  Database(path, Database::Mode::kWrite)
+      .run("DELETE FROM trial; UPDATE session SET state = 'running', sources = 'old', commit_id = 'older'");
+  resumeManipulationSession({}, path, kGoOn, {});
+  const SessionInfo info = SessionReader(path).info();
+  EXPECT_TRUE(info.sources.starts_with("old; then ")) << info.sources;
+  EXPECT_EQ(info.version, "0.1.0");
+  EXPECT_EQ(tests::runPincer({"replay", path}).exit_code, kExitBadInput);
+}
+
+TEST(Version, TellsCommitCompilerLibraryAndProcessor) {
+  const tests::AppResult result = tests::runPincer({"--version"});
+  EXPECT_EQ(result.exit_code, kExitOk);
+  EXPECT_TRUE(result.out.starts_with("pincer 0.1.0 (commit ") ||
+              result.out.starts_with("pincer 0.1.0 (made without its repository, sources "))
+      << result.out;
+  for (const char* part : {"sources ", "glibc ", "-ffp-contract=off"}) EXPECT_TRUE(tests::contains(result.out, part)) << part;
 }
 
 TEST(BidsExport, LaysOutOneTableWithASidecarPerPersonAndTask) {

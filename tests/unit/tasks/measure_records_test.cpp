@@ -75,8 +75,8 @@ int runWith(const std::vector<Measurement>& list, const MeasureOptions& options,
   int exit_code = kExitInterrupted;
   try {
     exit_code = runMeasurements(list, options, "test");
-  } catch (const InputError&) {
-    exit_code = kExitBadInput;
+  } catch (const std::runtime_error&) {  // as the program catches it
+    exit_code = kExitUsage;
   }
   out = ::testing::internal::GetCapturedStdout();
   return exit_code;
@@ -100,7 +100,7 @@ TEST(Measurements, RunWhatIsSelectedAndFailTogether) {
   EXPECT_EQ(runs, 3);
   EXPECT_EQ(runWith(list, {.list = true}, out), kExitOk);
   EXPECT_EQ(out, "good\nbad\n");
-  EXPECT_EQ(runWith(list, {.only = "ugly"}, out), kExitBadInput);
+  EXPECT_EQ(runWith(list, {.only = "ugly"}, out), kExitUsage);
   EXPECT_EQ(runs, 3);
 }
 

@@ -83,7 +83,7 @@ TEST(ReplayOfAPerson, AMouseSessionIsTheSameToTheBit) {
   EXPECT_EQ(replay.inputs, done.servo.ticks);
   EXPECT_GT(replay.samples, 2000);
   EXPECT_TRUE(replay.notes.empty());
-  EXPECT_EQ(replaySession(session, 1, kNobodyStops).trials, 1);
+  EXPECT_EQ(replaySession(session, {.trial = 1}, kNobodyStops).trials, 1);
 }
 
 // The tick where a finger was a nanometre elsewhere, and where that led.

@@ -133,9 +133,51 @@ TEST(Report, NamesAnUnwritablePlace) {
   EXPECT_TRUE(has(errorOf([&] { writeReport(SessionReader(dir / "a.db"), "/proc/r.html"); }), "/proc/r_figures"));
 }
 
+// Names are drawn as they are: nothing in them is run, expanded, or ends a string.
+TEST(Report, HostileNamesAreDrawnAsTheyAre) {
+  const TemporaryDirectory dir;
+  const std::vector<std::string> names = {"a''b",         "\"\"",   "x\",\"y",  "100 %d %s", "`touch ran`$(touch ran)",
+                                          "{a}_b^c@d\\n", "é <b>&", "=1+1\n\tz"};
+  auto writer = SessionWriter::create(dir / "a.db", SyntheticSession::info(1));
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    TrialRecord t;
+    t.trial = static_cast<std::int64_t>(k);
+    t.condition = names[k];
+    t.mu_s = 0.5;
+    t.task = k % 2 ? "sphere-pickup" : "cylinder-alignment";
+    t.error = 0.1;
+    t.outcome = "success";
+    writer.finishTrial(t);
+  }
+  writer.close();
+  const ReportFiles files = writeReport(SessionReader(dir / "a.db"), dir / "r.html");
+  EXPECT_TRUE(files.not_drawn.empty());
+  const std::string html = readFile(files.html),
+                    drawn = readFile(dir / "r_figures/squeezes.svg") + readFile(dir / "r_figures/alignment.svg");
+  for (const char* shown : {"a''b", "x\",\"y", "100 %d %s", "`touch ran`$(touch ran)", "{a}_b^c@d\\n", "é &lt;b>&amp;", "=1+1  z"}) {
+    EXPECT_TRUE(has(drawn, shown)) << shown;
+  }
+  EXPECT_TRUE(has(html, "x&quot;,&quot;y") && has(html, "é &lt;b&gt;&amp;"));
+  EXPECT_FALSE(std::filesystem::exists(dir / "ran"));
+}
+
+TEST(Gnuplot, SaysThatThereIsNothingToDrawAndDoesNotBlameItsVersion) {
+  Gnuplot gnuplot;
+  Figure figure;
+  figure.name = "empty";
+  figure.data = {{"empty.csv", "x,y\n1,nan\n2,nan\n"}};
+  figure.script = "set datafile separator comma\nset datafile missing 'nan'\nplot 'empty.csv' skip 1 using 1:2\n";
+  EXPECT_THROW(gnuplot.plot(figure), NothingToDraw);
+  figure.script = "plot nonsense(x)\n";
+  const std::string error = errorOf([&] { gnuplot.plot(figure); });
+  EXPECT_TRUE(has(error, "undefined function")) << error;
+  EXPECT_FALSE(has(error, "newer")) << error;
+}
+
 TEST(GnuplotString, CanNotBeLeftByAQuoteOrALineEnd) {
-  EXPECT_EQ(gnuplotString("it's"), "'it''s'");
-  EXPECT_EQ(gnuplotString("a\nb"), "'a b'");
+  EXPECT_EQ(gnuplotString("it's"), "'it'.\"'\".'s'");
+  EXPECT_EQ(gnuplotString(std::string("a\nb\0c\x1b", 6)), "'a b c '");
+  EXPECT_EQ(gnuplotTic("100 %d"), "'100 %%d'");
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "contact/smooth_mesh.h"
 #include "contact/surface/patch_cache.h"
 #include "grasp/baseline.h"
+#include "tasks/scene/file_limits.h"
 #include "tasks/scene/scene.h"
 #include "tasks/scene/scene_keys.h"
 #include "tasks/scene/strict_json.h"
@@ -176,10 +177,10 @@ TEST_P(SceneComplaints, NamePlaceValueRangeAndRemedy) { EXPECT_EQ(messageFor(Get
 
 const std::vector<Complaint> kComplaints = {
     {"NegativeFriction", sceneWith(",\n\"mass\": 1, \"material\": {\n\"mu_s\": -0.3}"),
-     "s.json:3: bodies[0].material.mu_s = -0.3 is out of range [0, inf). A friction coefficient can't be negative; typical: skin on "
+     "s.json:3: bodies[0].material.mu_s = -0.3 is out of range [0, 100]. A friction coefficient can't be negative; typical: skin on "
      "plastic 0.6."},
     {"NegativeMass", sceneWith(", \"mass\": -1"),
-     "s.json:1: bodies[0].mass = -1 is out of range (0, 1000000]. Masses are in kilograms: 75 g is 0.075."},
+     "s.json:1: bodies[0].mass = -1 is out of range [1e-09, 1000000]. Masses are in kilograms: 75 g is 0.075."},
     {"UnknownKey", sceneWith(", \"mas\": 1"), "s.json:1: bodies[0].mas isn't a known key. Did you mean \"mass\"?"},
     {"NoMass", sceneWith(""), "s.json:1: bodies[0] lacks the key \"mass\" [kg] (or \"density\" [kg/m^3], or \"static\": true)."},
     {"MassAndDensity", sceneWith(", \"mass\": 1, \"density\": 1"),
@@ -191,7 +192,7 @@ const std::vector<Complaint> kComplaints = {
     {"UnknownShape", sceneWithShape("{\"type\": \"spere\"}"),
      "s.json:1: bodies[0].shape.type = \"spere\" isn't known. Did you mean \"sphere\"?"},
     {"RadiusInMillimetres", sceneWithShape("{\"type\": \"sphere\", \"radius\": 200}"),
-     "s.json:1: bodies[0].shape.radius = 200 is out of range (0, 100]. Lengths are in metres: 20 mm is 0.02."},
+     "s.json:1: bodies[0].shape.radius = 200 is out of range [1e-06, 100]. Lengths are in metres: 20 mm is 0.02."},
     {"FlatOutside", sceneWithShape("{\"type\": \"cylinder_with_flat\", \"radius\": 0.02, \"length\": 0.1, \"flat_distance\": 0.02}"),
      "s.json:1: bodies[0].shape.flat_distance = 0.02 isn't smaller than the radius 0.02: nothing would be cut off. Use the type "
      "\"cylinder\"."},
@@ -224,7 +225,8 @@ const std::vector<Complaint> kComplaints = {
      "s.json:1: fingers[0] needs \"position\" [m] for a finger that rests, or \"trajectory\"."},
     {"BackwardsKeyframes",
      sceneWithFinger("\"trajectory\": {\"keyframes\": [{\"time\": 1, \"position\": [0, 0, 0]}, {\"time\": 1, \"position\": [0, 0, 0]}]}"),
-     "s.json:1: fingers[0].trajectory.keyframes[1].time = 1 doesn't come after 1. Keyframes go forward in time."},
+     "s.json:1: fingers[0].trajectory.keyframes[1].time = 1 can't be: time 1 doesn't follow 1. Times must increase from one point to the "
+     "next."},
     {"UnknownAxis", sceneWithFinger("\"position\": [0, 0, 1], \"locked\": [\"w\"]"),
      "s.json:1: fingers[0].locked[0] = \"w\" isn't known. Did you mean \"x\"?"},
     {"SameName", sceneWithFinger("\"position\": [0, 0, 1], \"name\": \"body0\""),
@@ -288,7 +290,7 @@ TEST(SceneFingers, ContradictionsAreNamed) {
 
 // The schema that editors use and the reader know the same keys.
 TEST(SceneSchema, NamesExactlyTheKeysThatTheReaderKnows) {
-  const JsonValue schema = readJson(kSourceDir + "/docs/scene.schema.json");
+  const JsonValue schema = readJson(kSourceDir + "/docs/scene.schema.json", kSceneFile);
   const std::vector<std::pair<std::string, std::span<const std::string_view>>> parts = {{"scene", keys::kScene},
                                                                                         {"solver", keys::kSolver},
                                                                                         {"body", keys::kBody},

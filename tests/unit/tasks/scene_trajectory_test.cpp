@@ -94,7 +94,7 @@ TEST_F(TrajectoryCsv, NamesWhatIsWrong) {
   EXPECT_EQ(messageFor("time,x,y,z\n0,0,0,0,0\n"), ":2: has 5 columns, but four are needed: time,x,y,z.");
   EXPECT_EQ(messageFor("time,x,y,z\n0,0,0,0\n1,a,0,0\n"), ":3: \"a\" isn't a finite number. Each row is time,x,y,z in seconds and metres.");
   EXPECT_EQ(messageFor("time,x,y,z\n0,nan,0,0\n"), ":2: \"nan\" isn't a finite number. Each row is time,x,y,z in seconds and metres.");
-  EXPECT_EQ(messageFor("time,x,y,z\n1,0,0,0\n1,0,0,0\n"), ":3: time 1 doesn't follow 1. Times must increase from row to row.");
+  EXPECT_EQ(messageFor("time,x,y,z\n1,0,0,0\n1,0,0,0\n"), ":3: time 1 doesn't follow 1. Times must increase from one point to the next.");
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "tasks/experiments/manipulation_file.h"
 #include "tasks/experiments/study_schema.h"
 #include "tasks/experiments/study_writer.h"
+#include "tasks/scene/file_limits.h"
 #include "tasks/scene/scene.h"
 #include "tests/support/run_app.h"
 
@@ -103,7 +104,7 @@ void forEachRange(const JsonValue& schema, Visit&& visit) {
 
 TEST(SceneSchema, HasTheRangesOfTheReader) {
   int probed = 0;
-  forEachRange(readJson(PINCER_SOURCE_DIR "/docs/scene.schema.json"),
+  forEachRange(readJson(PINCER_SOURCE_DIR "/docs/scene.schema.json", kSceneFile),
                [&](const std::string& def, const std::string& key, const JsonValue& number) {
                  const std::string place_name = kPlaces.contains(def + "." + key) ? def + "." + key : def;
                  ASSERT_TRUE(kPlaces.contains(place_name)) << def << " has a number, but no place in a scene is known for it";

@@ -201,7 +201,9 @@ TEST(FullDisk, FailsWithTheCauseAndKeepsFinishedTrials) {
     while (error.empty() && finished < 1000) {
       try {
         for (std::int64_t k = 0; k < 20; ++k) writer.pushSample(sampleAt(static_cast<std::int64_t>(finished), k));
-        writer.finishTrial({});
+        TrialRecord row;
+        row.trial = static_cast<std::int64_t>(finished);
+        writer.finishTrial(row);
         ++finished;
       } catch (const InputError& e) {
         error = e.what();

@@ -82,6 +82,9 @@ TEST(SessionInputs, ComeBackTrialByTrialInOrder) {
   for (std::size_t k = 0; k < inputs.size(); ++k) {
     inputs[k].trial = static_cast<std::int64_t>(k / 1000);
     inputs[k].tick = static_cast<std::int64_t>(k % 1000);
+    inputs[k].time = 1e-3 * static_cast<double>(k % 1000);
+    inputs[k].phase %= 10;
+    inputs[k].cut %= 9;
   }
   auto writer = SessionWriter::create(dir / "a.db", {}, {.block_when_full = true, .ring_capacity = 64});
   for (std::int64_t trial = 0; trial < 3; ++trial) {
@@ -176,7 +179,7 @@ TEST(SessionInputs, AFormatThatIsYetToComeIsRefused) {
   const TemporaryDirectory dir;
   SessionWriter::create(dir / "a.db", {}).close();
   Database(dir / "a.db", Database::Mode::kWrite).run("PRAGMA user_version = 99");
-  EXPECT_NE(errorOf([&] { SessionReader(dir / "a.db"); }).find("has session format 99, this pincer reads formats 2 to 4"),
+  EXPECT_NE(errorOf([&] { SessionReader(dir / "a.db"); }).find("has session format 99, this pincer reads formats 2 to 5"),
             std::string::npos);
 }
 

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "tasks/app/study_file.h"
+#include "tasks/session/database.h"
 #include "tests/support/run_app.h"
 #include "tests/support/temporary_directory.h"
 
@@ -38,6 +39,27 @@ void writeDelaySession(const std::string& path, bool at_chance) {
     writer.finishResponse(r);
   }
   writer.close();
+}
+
+// Of a session that was interrupted at once, or whose trials all ended in a fault.
+TEST(StudyReport, WithoutAnAnswerSaysWhatIsNotDrawn) {
+  const TemporaryDirectory dir;
+  SessionInfo info;
+  info.task = "delay-discrimination";
+  info.protocol_json = studyJson(delayStudy());
+  SessionWriter writer = SessionWriter::create(dir / "a.db", info, {});
+  ResponseRecord r;
+  r.condition = "whole";
+  r.outcome = "fault";
+  r.level = r.finger_speed = r.tactor_speed = r.duration = 0;
+  writer.finishResponse(r);
+  writer.abort("interrupted");
+  const ReportFiles files = writeStudyReport(SessionReader(dir / "a.db"), dir / "r.html");
+  EXPECT_FALSE(files.not_drawn.empty());
+  EXPECT_TRUE(contains(readFile(files.html), "Not drawn, since no finished trial has numbers for it: "));
+  const tests::AppResult result = tests::runPincer({"report", dir / "a.db"});
+  EXPECT_EQ(result.exit_code, kExitOk) << result.error;
+  EXPECT_FALSE(contains(result.error, "gnuplot")) << result.error;
 }
 
 TEST(StudyReport, ThresholdsAreMeansOfTheLastReversalsPerPerson) {
@@ -83,6 +105,7 @@ TEST(StudyReport, EveryFigureStandsInThePageAndBesideItWithItsNumbers) {
 TEST(StudyReport, SaysHowFarTheDisplayWasFromWhatItWasToldAndHowLongTicksTook) {
   const TemporaryDirectory dir;
   writeDelaySession(dir / "a.db", false);
+  Database(dir / "a.db", Database::Mode::kWrite).run("UPDATE session SET state = 'running'");
   {
     SessionWriter writer = SessionWriter::resume(dir / "a.db");
     for (int k = 0; k < 100; ++k) {

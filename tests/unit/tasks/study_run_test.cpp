@@ -341,7 +341,7 @@ TEST(StudyApp, RunsReportsAndPrintsItsStudy) {
   EXPECT_EQ(run.exit_code, 0) << run.error;
   EXPECT_TRUE(contains(run.out, "\"task\": \"delay-discrimination\"")) << run.out;
   const auto bad = tests::runPincer({"run", "delay-discrimination", "--participants", "0"});
-  EXPECT_EQ(bad.exit_code, 3);
+  EXPECT_EQ(bad.exit_code, 2);
   EXPECT_TRUE(contains(bad.error, "participants = 0 is out of range [1, 10000]")) << bad.error;
 }
 

@@ -180,9 +180,9 @@ TEST(SweepCommand, WritesTableAndPicture) {
     EXPECT_GT(std::filesystem::file_size(dir / "out" + "/" + name), 100u) << name;
   EXPECT_TRUE(contains(done.out, "sphere.p_z [m]")) << done.out;
   EXPECT_EQ(tests::runPincer({"sweep", "s4_pinch"}).exit_code, kExitUsage);
-  EXPECT_EQ(tests::runPincer({"sweep", "s4_pinch", "--vary", "sphere.mass=much"}).exit_code, kExitBadInput);
+  EXPECT_EQ(tests::runPincer({"sweep", "s4_pinch", "--vary", "sphere.mass=much"}).exit_code, kExitUsage);
   const auto three = tests::runPincer({"sweep", "s4_pinch", "--vary", "duration=1", "--vary", "tick=0.001", "--vary", "sphere.mass=1"});
-  EXPECT_EQ(three.exit_code, kExitBadInput);
+  EXPECT_EQ(three.exit_code, kExitUsage);
   EXPECT_TRUE(contains(three.error, "one or two")) << three.error;
 }
 
