@@ -128,9 +128,9 @@ void makePeoplesSession(const Ground& ground) {
   std::size_t end = 0;
   for (int rows = 0; rows < 12; ++rows) end = recording.find('\n', end) + 1;
   put(ground.inputs() / "short.csv", recording.substr(0, end));
-  make(ground, {"run", "sphere-pickup", "--devices", "replay",     "--recording", "short.csv",   "--yes", "--watchdog",
-                "100", "--repetitions", "1",         "--friction", "0.9",         "--condition", "force", "--sample-rate",
-                "10",  "--no-report",   "--out",     "people"},
+  make(ground,
+       {"run", "sphere-pickup", "--devices", "replay", "--recording", "short.csv", "--yes", "--repetitions", "1", "--friction", "0.9",
+        "--condition", "force", "--sample-rate", "10", "--no-report", "--out", "people"},
        {}, {0, 1});
 }
 

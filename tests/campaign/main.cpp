@@ -172,7 +172,12 @@ int main(int argc, char** argv) {
   fs::remove(ground.out / "faults.txt");
   ground.out = fs::absolute(ground.out);
   ground.pincer = fs::absolute(ground.pincer);
-  makeInputs(ground);
-  ground.has_devices = devicesAreAttached(ground);
-  return runRows(ground, asked);
+  try {
+    makeInputs(ground);
+    ground.has_devices = devicesAreAttached(ground);
+    return runRows(ground, asked);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "campaign: {}\n", error.what());
+    return 1;
+  }
 }

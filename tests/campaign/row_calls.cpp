@@ -136,7 +136,7 @@ void failCall(Case& c) {
   launch.environment.emplace_back("CAMPAIGN_FAIL_ERROR", std::to_string(error));
   launch.environment.emplace_back("CAMPAIGN_FAIL_LOG", (c.folder.parent_path() / "failed").string());
   if (forever) launch.environment.emplace_back("CAMPAIGN_FAIL_FOREVER", "1");
-  const Ended ended = c.run(launch);
+  const Ended ended = c.run(launch, {.may_leave_parts = call == "unlink"});
   if (fs::exists(c.folder.parent_path() / "failed")) c.hit();
   requireSound(c, work, ended, forever);
 }
