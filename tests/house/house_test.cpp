@@ -112,7 +112,7 @@ TEST(House, EveryIncludeBeginsWithPincer) {
   for (const char* folder : {"contact", "engine", "grasp", "devices", "tasks", "tests"}) {
     for (const fs::path& file : sourcesUnder(fs::path(PINCER_SOURCE_DIR) / folder)) {
       for (const std::string& line : linesOf(file)) {
-        if (line.rfind("#include \"", 0) == 0) EXPECT_NE(includedBy(line), "") << file << ": " << line;
+        EXPECT_EQ(line.rfind("#include \"", 0) == 0, !includedBy(line).empty()) << file << ": " << line;
       }
     }
   }

@@ -184,7 +184,7 @@ std::vector<Record> anyScale(MeasureContext& context) {
       if (i % static_cast<std::size_t>(path.restart_every) == 0) a.tracker = b.tracker = {};
       const contact::SurfaceContact x = a.on(*mesh, path.centres[i]).main();
       const contact::SurfaceContact y =
-          scaled->querySphere(scale * path.centres[i], scale * kBenchFinger, scale * kBenchMargin, b.tracker, b.cache).main();
+          scaled->querySphere(scale * path.centres[i], scale * kBenchFinger, scale * kBenchMargin, b.tracker, *b.cache).main();
       place = std::max(place, (x.p_BS - y.p_BS / scale).norm());
       direction = std::max(direction, angleBetween(x.n_B, y.n_B));
     }

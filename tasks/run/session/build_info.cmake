@@ -19,7 +19,7 @@ foreach(folder contact engine grasp devices tasks)
   file(GLOB_RECURSE found RELATIVE ${SOURCES} ${SOURCES}/${folder}/*.h ${SOURCES}/${folder}/*.cpp ${SOURCES}/${folder}/*.json)
   list(APPEND files ${found})
 endforeach()
-list(FILTER files EXCLUDE REGEX "^tasks/(.*/)?(app|bench|demo|exact|findings|measure|report|session|stress|sweep|verify|view)/")
+list(FILTER files EXCLUDE REGEX "^tasks/(.*/)?(app|bench|demo|exact|findings|measure|report|session|sessions|stress|sweep|verify|view)/")
 list(SORT files)
 set(sums "")
 foreach(file ${files})
@@ -31,7 +31,7 @@ string(SUBSTRING ${sources} 0 12 sources)
 
 string(REPLACE "\\" "\\\\" FLAGS "${FLAGS}")
 string(REPLACE "\"" "\\\"" FLAGS "${FLAGS}")
-set(text "#include \"tasks/run/session/build_info.h\"
+set(text "#include \"pincer/tasks/run/session/build_info.h\"
 
 namespace pincer::tasks {
 const BuildInfo kBuildInfo{\"${VERSION}\", \"${commit}\", \"${sources}\", \"${FLAGS}\"};

@@ -12,12 +12,17 @@
 #include "pincer/contact/shape/closed_forms.h"
 #include "pincer/contact/shape/convex_features.h"
 #include "pincer/contact/surface/aabb_tree.h"
+#include "pincer/contact/surface/patch_cache.h"
 #include "pincer/contact/surface/short_list.h"
+#include "pincer/engine/motion/free_motion.h"
+#include "pincer/engine/motion/mass.h"
 #include "pincer/engine/motion/one_freedom.h"
+#include "pincer/engine/world/stages.h"
 #include "pincer/grasp/energy_ledger.h"
 #include "pincer/grasp/finger_distance.h"
 #include "pincer/grasp/grasp_quality.h"
 #include "pincer/grasp/passivity.h"
+#include "pincer/grasp/tick/scratch.h"
 #include "pincer/tests/support/worlds.h"
 
 namespace pincer::grasp {

@@ -31,7 +31,7 @@ using tests::contains;
 using tests::readFile;
 using tests::TemporaryDirectory;
 
-const std::atomic<bool> kGoOn{false}, kStop{true};
+const std::atomic<bool> kUndisturbed{false}, kStopped{true};
 
 int rounds() {
   const char* asked = std::getenv("PINCER_DAMAGE");
@@ -67,7 +67,7 @@ class Damage {
     attempt("report", [&] { report(); });
     attempt("export", [&] { exportCsv(SessionReader(copy()), dir_ / "csv", {}); });
     attempt("export --bids", [&] { exportBids(SessionReader(copy()), dir_ / "bids"); });
-    attempt("replay", [&] { replaySession(SessionReader(copy()), {.other_version = true}, kGoOn, {}, doNothing); });
+    attempt("replay", [&] { replaySession(SessionReader(copy()), {.other_version = true}, kUndisturbed, {}, doNothing); });
     attempt("run --resume", [&] { resume(); });
   }
 
@@ -99,7 +99,7 @@ class Damage {
   }
   void resume() {
     ManipulationSessionOptions options;
-    resumeManipulationSession(options, copy(), kStop, {});
+    resumeManipulationSession(options, copy(), kStopped, {});
   }
 
   // Two quick trials of a simulated participant.
@@ -113,7 +113,7 @@ class Damage {
     options.study.pickup.repetitions = 2;
     options.study.pickup.timeout = 1;
     options.sample_rate = 20;
-    runManipulationSession(options, pickups(), kGoOn, {});
+    runManipulationSession(options, pickups(), kUndisturbed, {});
     Database(pickups(), Database::Mode::kWrite).run("UPDATE session SET state = 'running'");
   }
   // The same, said to be a person's: with inputs that nobody gave.
@@ -295,9 +295,9 @@ TEST(DamagedSession, NamesTheCellThatIsWrong) {
 TEST(DamagedSession, ATrialOutsideThePlanIsNamed) {
   Damage damage;
   Database(damage.pickups(), Database::Mode::kWrite).run("UPDATE trial SET trial = 999 WHERE trial = 1");
-  const std::string error = tests::errorOf([&] { replaySession(SessionReader(damage.pickups()), {.trial = 999}, kGoOn, {}, doNothing); });
+  const std::string error = tests::errorOf([&] { replaySession(SessionReader(damage.pickups()), {.trial = 999}, kUndisturbed, {}, doNothing); });
   EXPECT_TRUE(contains(error, "trial 999 isn't one of its plan, which has trials 0 to 1")) << error;
-  const std::string resumed = tests::errorOf([&] { resumeManipulationSession({}, damage.pickups(), kStop, {}); });
+  const std::string resumed = tests::errorOf([&] { resumeManipulationSession({}, damage.pickups(), kStopped, {}); });
   EXPECT_TRUE(contains(resumed, "trial 999 isn't one of its plan")) << resumed;
 }
 
