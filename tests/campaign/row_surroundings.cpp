@@ -94,9 +94,9 @@ const std::vector<std::string>& tunings() {
 
 void compareGoldenStates(Case& c, const std::string& tuning) {
   Launch launch = c.pincer({});
-  launch.program = c.ground.build / "golden_state";
+  launch.program = c.ground.pincer.parent_path() / "golden_state";
   launch.limit = 60;
-  if (!fs::exists(launch.program)) return c.skip("there is no golden_state in the build directory");
+  if (!fs::exists(launch.program)) return c.skip("there is no golden_state beside the program");
   const Ended usual = c.runUnjudged(launch);
   launch.environment.emplace_back("GLIBC_TUNABLES", tuning);
   const Ended tuned = c.run(launch, {.codes = {0}});
