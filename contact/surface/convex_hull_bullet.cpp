@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "pincer/contact/shape/bullet_memory.h"
+#include "pincer/contact/surface/bullet_memory.h"
 #include "pincer/contact/surface/convex_hull.h"
 
 namespace pincer::contact {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "pincer/contact/functions/invariants.h"
-#include "pincer/contact/shape/bullet_memory.h"
+#include "pincer/contact/surface/bullet_memory.h"
 #include "pincer/engine/world/broad_phase.h"
 #include "pincer/engine/world/scratch.h"
 

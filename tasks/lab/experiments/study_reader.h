@@ -5,7 +5,7 @@
 #include <initializer_list>
 
 #include "pincer/tasks/lab/experiments/study_parameters.h"
-#include "pincer/tasks/run/scene/file_limits.h"
+#include "pincer/tasks/run/files/file_limits.h"
 #include "pincer/tasks/run/scene/json_change.h"
 
 namespace pincer::tasks {

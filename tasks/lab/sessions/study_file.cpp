@@ -5,7 +5,7 @@
 #include "pincer/tasks/lab/experiments/study_reader.h"
 #include "pincer/tasks/lab/experiments/study_writer.h"
 #include "pincer/tasks/lab/sessions/observer_fields.h"
-#include "pincer/tasks/run/scene/file_limits.h"
+#include "pincer/tasks/run/files/file_limits.h"
 
 namespace pincer::tasks {
 namespace {

@@ -8,8 +8,8 @@
 #include <unordered_set>
 
 #include "pincer/contact/io/printable.h"
+#include "pincer/tasks/run/files/file_limits.h"
 #include "pincer/tasks/run/files/strict_json.h"
-#include "pincer/tasks/run/scene/file_limits.h"
 
 namespace pincer::tasks {
 namespace {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "pincer/contact/error.h"
+#include "pincer/tasks/run/files/file_limits.h"
 #include "pincer/tasks/run/files/spelling.h"
-#include "pincer/tasks/run/scene/file_limits.h"
 
 namespace pincer::tasks {
 namespace {

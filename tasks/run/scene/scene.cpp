@@ -5,8 +5,8 @@
 #include <cmath>
 #include <filesystem>
 
+#include "pincer/tasks/run/files/file_limits.h"
 #include "pincer/tasks/run/files/strict_json.h"
-#include "pincer/tasks/run/scene/file_limits.h"
 #include "pincer/tasks/run/scene/scene_keys.h"
 #include "pincer/tasks/run/scene/scene_parts.h"
 

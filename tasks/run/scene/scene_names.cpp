@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cctype>
 
-#include "pincer/tasks/run/scene/file_limits.h"
+#include "pincer/tasks/run/files/file_limits.h"
 #include "pincer/tasks/run/scene/scene_parts.h"
 
 namespace pincer::tasks {

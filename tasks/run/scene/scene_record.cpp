@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <functional>
 
+#include "pincer/tasks/run/files/file_limits.h"
 #include "pincer/tasks/run/files/spelling.h"
-#include "pincer/tasks/run/scene/file_limits.h"
 #include "pincer/tasks/run/scene/scene_keys.h"
 #include "pincer/tasks/run/scene/scene_parts.h"
 

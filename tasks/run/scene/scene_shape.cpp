@@ -7,7 +7,7 @@
 #include "pincer/contact/mesh_report.h"
 #include "pincer/contact/polytope.h"
 #include "pincer/contact/smooth_mesh.h"
-#include "pincer/tasks/run/scene/file_limits.h"
+#include "pincer/tasks/run/files/file_limits.h"
 #include "pincer/tasks/run/scene/scene_keys.h"
 #include "pincer/tasks/run/scene/scene_parts.h"
 

@@ -10,7 +10,7 @@
 #include "pincer/contact/functions/invariants.h"
 #include "pincer/contact/io/input_file.h"
 #include "pincer/contact/io/printable.h"
-#include "pincer/tasks/run/scene/file_limits.h"
+#include "pincer/tasks/run/files/file_limits.h"
 #include "pincer/tasks/run/scene/scene_ranges.h"
 
 namespace pincer::tasks {

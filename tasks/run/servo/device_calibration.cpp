@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "pincer/contact/io/atomic_file.h"
+#include "pincer/tasks/run/files/file_limits.h"
 #include "pincer/tasks/run/files/strict_json.h"
-#include "pincer/tasks/run/scene/file_limits.h"
 
 namespace pincer::tasks {
 namespace {

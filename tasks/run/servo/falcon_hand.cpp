@@ -5,7 +5,7 @@
 
 #include "pincer/contact/error.h"
 #include "pincer/devices/falcon/falcon_arm.h"
-#include "pincer/tasks/run/scene/file_limits.h"
+#include "pincer/tasks/run/files/file_limits.h"
 #include "pincer/tasks/run/servo/hand_devices_parts.h"
 
 namespace pincer::tasks {

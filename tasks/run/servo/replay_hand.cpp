@@ -10,7 +10,7 @@
 #include "pincer/contact/error.h"
 #include "pincer/contact/io/printable.h"
 #include "pincer/devices/arm/replay_arm.h"
-#include "pincer/tasks/run/scene/file_limits.h"
+#include "pincer/tasks/run/files/file_limits.h"
 #include "pincer/tasks/run/scene/scene_ranges.h"
 #include "pincer/tasks/run/servo/hand_devices_parts.h"
 #include "pincer/tasks/run/session_store.h"

@@ -8,9 +8,9 @@
 
 #include "pincer/contact/io/printable.h"
 #include "pincer/tasks/lab/experiments/manipulation_file.h"
+#include "pincer/tasks/run/files/file_limits.h"
 #include "pincer/tasks/run/files/spelling.h"
 #include "pincer/tasks/run/files/strict_json.h"
-#include "pincer/tasks/run/scene/file_limits.h"
 #include "pincer/tasks/run/scene/json_change.h"
 #include "pincer/tasks/run/servo/device_calibration.h"
 #include "pincer/tasks/run/simulation.h"

@@ -9,8 +9,8 @@
 #include "pincer/tasks/lab/experiments/manipulation_file.h"
 #include "pincer/tasks/lab/experiments/study_schema.h"
 #include "pincer/tasks/lab/experiments/study_writer.h"
+#include "pincer/tasks/run/files/file_limits.h"
 #include "pincer/tasks/run/scene.h"
-#include "pincer/tasks/run/scene/file_limits.h"
 #include "pincer/tests/support/run_app.h"
 
 namespace pincer::tasks {

@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <new>
 
-#include "pincer/contact/shape/bullet_memory.h"
+#include "pincer/contact/surface/bullet_memory.h"
 
 namespace pincer::contact {
 namespace {
