@@ -10,7 +10,7 @@ cmake -S docs/examples -B "$work/cmake" -G Ninja -DCMAKE_PREFIX_PATH="$work/pref
 cmake --build "$work/cmake" > "$work/log" || { cat "$work/log"; exit 1; }
 "$work/cmake/pinch_and_lift"
 "$work/cmake/run_scene_file" tasks/scenes/s4_pinch.json "$work/s4_pinch.csv" | tee "$work/scene_log"
-grep -q "ball" "$work/s4_pinch.csv"
+grep -q "sphere.p_z" "$work/s4_pinch.csv"
 # The same object, linked as pkg-config says; and a page that compiles as it says.
 export PKG_CONFIG_PATH=$work/prefix/lib/pkgconfig
 # shellcheck disable=SC2046

@@ -179,7 +179,7 @@ TEST(MeshesPage, EveryCommandRuns) {
 std::set<std::string> findingNames() {
   std::set<std::string> names;
   const std::regex finding("\\{\\s*\"([a-z-]+)\",\\s*(true|false)");
-  for (const char* file : {"/contact/mesh/mesh_findings.cpp", "/contact/mesh/mesh_report.cpp", "/tasks/app/mesh_check.cpp"}) {
+  for (const char* file : {"/contact/mesh/mesh_findings.cpp", "/contact/mesh/mesh_report.cpp", "/tasks/app/commands/mesh_check.cpp"}) {
     const std::string text = tests::readFile(std::string(PINCER_SOURCE_DIR) + file);
     for (std::sregex_iterator it(text.begin(), text.end(), finding), end; it != end; ++it) names.insert((*it)[1]);
   }

@@ -207,7 +207,9 @@ TEST(StudyFile, ComesBackAsItWasWritten) {
   written.strokes = 6;
   written.conditions[2].staircase.small_step = 0.25;
   std::ofstream(dir / "study.json") << studyJson(written);
-  ArcStudy read = backlashStudy();
+  ArcStudy read = smoothnessStudy();
+  for (auto& condition : read.conditions) condition.staircase.small_step *= 2;
+  ++read.strokes;
   readStudy(dir / "study.json", read);
   EXPECT_EQ(studyJson(read), studyJson(written));
 }
