@@ -21,7 +21,7 @@ SurfaceContacts contactAt(const NearestPoint& s, double r) {
 }  // namespace
 
 SurfaceContacts querySphere(const Shape& shape, const Vec3& p_BC, double r, double margin, SurfaceTracker& tracker, PatchCache& cache) {
-  PINCER_ASSERT(r > 0 && !(margin < 0));
+  PINCER_ASSERT(r >= 0 && !(margin < 0));
   return std::visit(
       [&](const auto& solid) -> SurfaceContacts {
         if constexpr (std::is_same_v<decltype(solid), const Mesh&>) {
