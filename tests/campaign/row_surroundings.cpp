@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <cstdlib>
+#include <sstream>
 
 #include "tests/campaign/inputs.h"
 #include "tests/campaign/rows.h"
@@ -61,6 +62,16 @@ void makeLocales(const fs::path& folder) {
   static_cast<void>(once);
 }
 
+// Without lines that tell what ticks took.
+std::string withoutTimes(const std::string& text) {
+  std::string kept;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.find(" us") == line.npos && line.find("real time") == line.npos) kept += line + "\n";
+  }
+  return kept;
+}
+
 // All that was said and written.
 std::string outputOf(const Ended& ended, const fs::path& folder) {
   std::map<std::string, std::string> files;
@@ -69,7 +80,7 @@ std::string outputOf(const Ended& ended, const fs::path& folder) {
     if (entry.is_regular_file() && extension != ".png" && extension != ".svg")
       files[fs::relative(entry.path(), folder)] = readFile(entry.path());
   }
-  std::string all = ended.out;
+  std::string all = withoutTimes(ended.out);
   for (const auto& [name, bytes] : files) all += name + "\n" + bytes;
   return all;
 }
