@@ -8,10 +8,10 @@
 #pragma once
 #include <array>
 
-#include "contact/finger_shape.h"
-#include "contact/math.h"
-#include "contact/shape.h"
-#include "contact/surface_contact.h"
+#include "pincer/contact/finger_shape.h"
+#include "pincer/contact/math.h"
+#include "pincer/contact/shape.h"
+#include "pincer/contact/surface_contact.h"
 
 namespace pincer::contact {
 

@@ -12,8 +12,8 @@
 #include <string>
 #include <variant>
 
-#include "contact/math.h"
-#include "contact/shape.h"
+#include "pincer/contact/math.h"
+#include "pincer/contact/shape.h"
 
 namespace pincer::contact {
 

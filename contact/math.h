@@ -9,7 +9,7 @@
 #include <cmath>
 #include <limits>
 
-#include "contact/elementary.h"
+#include "pincer/contact/elementary.h"
 
 namespace pincer {
 

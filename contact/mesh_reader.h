@@ -12,9 +12,9 @@
 #include <string>
 #include <string_view>
 
-#include "contact/error.h"
-#include "contact/mesh_format.h"
-#include "contact/triangle_mesh.h"
+#include "pincer/contact/error.h"
+#include "pincer/contact/mesh_format.h"
+#include "pincer/contact/triangle_mesh.h"
 
 namespace pincer::contact {
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "contact/error.h"
-#include "contact/triangle_mesh.h"
+#include "pincer/contact/error.h"
+#include "pincer/contact/triangle_mesh.h"
 
 namespace pincer::contact {
 

@@ -16,9 +16,9 @@
 #include <array>
 #include <cstdint>
 
-#include "contact/math.h"
-#include "contact/shape.h"
-#include "contact/surface_contact.h"
+#include "pincer/contact/math.h"
+#include "pincer/contact/shape.h"
+#include "pincer/contact/surface_contact.h"
 
 namespace pincer::contact {
 

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "contact/math.h"
+#include "pincer/contact/math.h"
 
 namespace pincer::contact {
 

@@ -3,7 +3,7 @@
 #include <memory>
 #include <variant>
 
-#include "contact/math.h"
+#include "pincer/contact/math.h"
 
 namespace pincer::contact {
 

@@ -17,9 +17,9 @@
 #include <string>
 #include <vector>
 
-#include "contact/math.h"
-#include "contact/surface_contact.h"
-#include "contact/triangle_mesh.h"
+#include "pincer/contact/math.h"
+#include "pincer/contact/surface_contact.h"
+#include "pincer/contact/triangle_mesh.h"
 
 namespace pincer::contact {
 

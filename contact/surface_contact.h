@@ -5,7 +5,7 @@
 #include <memory>
 #include <string_view>
 
-#include "contact/math.h"
+#include "pincer/contact/math.h"
 
 namespace pincer::contact {
 

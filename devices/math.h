@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "contact/elementary.h"
+#include "pincer/contact/elementary.h"
 
 namespace pincer {
 using Vec2 = Eigen::Vector2d;

@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include "contact/error.h"
-#include "contact/shape.h"
-#include "engine/motion.h"
-#include "engine/solver.h"
+#include "pincer/contact/error.h"
+#include "pincer/contact/shape.h"
+#include "pincer/engine/motion.h"
+#include "pincer/engine/solver.h"
 
 namespace pincer::engine {
 

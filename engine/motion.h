@@ -1,6 +1,6 @@
 // motion: velocities and places of what moves, and how a body's free rotation is advanced.
 #pragma once
-#include "contact/math.h"
+#include "pincer/contact/math.h"
 
 namespace pincer::engine {
 

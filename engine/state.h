@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/model.h"
-#include "engine/solver.h"
+#include "pincer/engine/model.h"
+#include "pincer/engine/solver.h"
 
 namespace pincer::engine {
 

@@ -10,10 +10,10 @@
 #include <memory>
 #include <span>
 
-#include "engine/model.h"
-#include "engine/motion.h"
-#include "engine/solver.h"
-#include "engine/state.h"
+#include "pincer/engine/model.h"
+#include "pincer/engine/motion.h"
+#include "pincer/engine/solver.h"
+#include "pincer/engine/state.h"
 
 namespace pincer::engine {
 

@@ -15,7 +15,7 @@
 #include <string_view>
 #include <vector>
 
-#include "grasp/step.h"
+#include "pincer/grasp/step.h"
 
 namespace pincer::grasp {
 

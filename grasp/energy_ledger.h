@@ -17,7 +17,7 @@
 #include <span>
 #include <vector>
 
-#include "grasp/step.h"
+#include "pincer/grasp/step.h"
 
 namespace pincer::grasp {
 

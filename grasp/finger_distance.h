@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 
-#include "grasp/step.h"
+#include "pincer/grasp/step.h"
 
 namespace pincer::grasp {
 

@@ -6,7 +6,7 @@
 #include <array>
 #include <vector>
 
-#include "grasp/step.h"
+#include "pincer/grasp/step.h"
 
 namespace pincer::grasp {
 

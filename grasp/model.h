@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "contact/finger_shape.h"
-#include "engine/model.h"
-#include "grasp/hold_bounds.h"
+#include "pincer/contact/finger_shape.h"
+#include "pincer/engine/model.h"
+#include "pincer/grasp/hold_bounds.h"
 
 namespace pincer::grasp {
 

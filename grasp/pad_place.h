@@ -1,8 +1,8 @@
 // pad_place: where on its pad a finger is touched. Made where somebody asks: two arcs were 4 % of the instructions of a tick, and a scene without a
 // display needs none.
 #pragma once
-#include "contact/math.h"
-#include "grasp/model.h"
+#include "pincer/contact/math.h"
+#include "pincer/grasp/model.h"
 
 namespace pincer::grasp {
 

@@ -29,8 +29,8 @@
 #include <string>
 #include <vector>
 
-#include "contact/math.h"
-#include "grasp/hold_bounds.h"
+#include "pincer/contact/math.h"
+#include "pincer/grasp/hold_bounds.h"
 
 namespace pincer::grasp {
 

@@ -4,10 +4,10 @@
 #include <span>
 #include <vector>
 
-#include "contact/finger_query.h"
-#include "engine/step.h"
-#include "grasp/model.h"
-#include "grasp/pad_place.h"
+#include "pincer/contact/finger_query.h"
+#include "pincer/engine/step.h"
+#include "pincer/grasp/model.h"
+#include "pincer/grasp/pad_place.h"
 
 namespace pincer::grasp {
 

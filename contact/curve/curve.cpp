@@ -1,10 +1,10 @@
-#include "contact/curve/curve.h"
+#include "pincer/contact/curve/curve.h"
 
 #include <algorithm>
 #include <limits>
 
-#include "contact/error.h"
-#include "contact/functions/invariants.h"
+#include "pincer/contact/error.h"
+#include "pincer/contact/functions/invariants.h"
 
 namespace pincer::contact {
 

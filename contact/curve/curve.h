@@ -29,8 +29,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "contact/curve/polyline.h"
-#include "contact/surface_contact.h"
+#include "pincer/contact/curve/polyline.h"
+#include "pincer/contact/surface_contact.h"
 
 namespace pincer::contact {
 

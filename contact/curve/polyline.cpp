@@ -1,8 +1,8 @@
-#include "contact/curve/polyline.h"
+#include "pincer/contact/curve/polyline.h"
 
 #include <fmt/format.h>
 
-#include "contact/error.h"
+#include "pincer/contact/error.h"
 
 namespace pincer::contact {
 

@@ -3,7 +3,7 @@
 #pragma once
 #include <vector>
 
-#include "contact/math.h"
+#include "pincer/contact/math.h"
 
 namespace pincer::contact {
 

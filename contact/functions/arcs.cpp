@@ -7,8 +7,8 @@
 #include <cmath>
 #include <limits>
 
-#include "contact/elementary.h"
-#include "contact/functions/double_double.h"
+#include "pincer/contact/elementary.h"
+#include "pincer/contact/functions/double_double.h"
 
 namespace pincer::math {
 namespace {

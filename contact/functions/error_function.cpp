@@ -7,9 +7,9 @@
 // Source: NIST Digital Library of Mathematical Functions, 7.6.1, 7.6.2, 7.9.2.
 #include <array>
 
-#include "contact/elementary.h"
-#include "contact/functions/double_double.h"
-#include "contact/functions/exponential.h"
+#include "pincer/contact/elementary.h"
+#include "pincer/contact/functions/double_double.h"
+#include "pincer/contact/functions/exponential.h"
 
 namespace pincer::math {
 namespace {

@@ -4,11 +4,11 @@
 //
 // 2^(j/64) from a table, e^r by its power series. Source: P. T. P. Tang, "Table-driven implementation of the exponential function in
 // IEEE floating-point arithmetic", ACM Trans. Math. Softw. 15 (1989) 144-157. Departure: the table has 106 bits.
-#include "contact/functions/exponential.h"
+#include "pincer/contact/functions/exponential.h"
 
 #include <array>
 
-#include "contact/elementary.h"
+#include "pincer/contact/elementary.h"
 
 namespace pincer::math {
 namespace {

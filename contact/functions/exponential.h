@@ -1,6 +1,6 @@
 // exponential: e^x of a number of 106 bits, for the functions that need it.
 #pragma once
-#include "contact/functions/double_double.h"
+#include "pincer/contact/functions/double_double.h"
 
 namespace pincer::math {
 

@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <functional>
 
-#include "contact/assert.h"
-#include "contact/math.h"
+#include "pincer/contact/assert.h"
+#include "pincer/contact/math.h"
 
 namespace pincer {
 

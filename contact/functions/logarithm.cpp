@@ -8,9 +8,9 @@
 #include <array>
 #include <limits>
 
-#include "contact/elementary.h"
-#include "contact/functions/double_double.h"
-#include "contact/functions/exponential.h"
+#include "pincer/contact/elementary.h"
+#include "pincer/contact/functions/double_double.h"
+#include "pincer/contact/functions/exponential.h"
 
 namespace pincer::math {
 namespace {

@@ -1,4 +1,4 @@
-#include "contact/io/atomic_file.h"
+#include "pincer/contact/io/atomic_file.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -6,7 +6,7 @@
 #include <cerrno>
 #include <filesystem>
 
-#include "contact/error.h"
+#include "pincer/contact/error.h"
 
 namespace pincer {
 

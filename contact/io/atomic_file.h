@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "contact/io/part_file.h"
+#include "pincer/contact/io/part_file.h"
 
 namespace pincer {
 

@@ -1,4 +1,4 @@
-#include "contact/io/counted.h"
+#include "pincer/contact/io/counted.h"
 
 #include <fmt/format.h>
 

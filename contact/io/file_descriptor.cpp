@@ -1,4 +1,4 @@
-#include "contact/io/file_descriptor.h"
+#include "pincer/contact/io/file_descriptor.h"
 
 #include <fcntl.h>
 #include <unistd.h>

@@ -1,4 +1,4 @@
-#include "contact/io/input_file.h"
+#include "pincer/contact/io/input_file.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -10,7 +10,7 @@
 #include <cstring>
 #include <utility>
 
-#include "contact/io/printable.h"
+#include "pincer/contact/io/printable.h"
 
 namespace pincer {
 namespace {

@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-#include "contact/error.h"
+#include "pincer/contact/error.h"
 
 namespace pincer {
 

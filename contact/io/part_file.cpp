@@ -1,4 +1,4 @@
-#include "contact/io/part_file.h"
+#include "pincer/contact/io/part_file.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -12,7 +12,7 @@
 #include <filesystem>
 #include <random>
 
-#include "contact/error.h"
+#include "pincer/contact/error.h"
 
 namespace pincer {
 namespace {

@@ -8,7 +8,7 @@
 #pragma once
 #include <string>
 
-#include "contact/io/file_descriptor.h"
+#include "pincer/contact/io/file_descriptor.h"
 
 namespace pincer {
 

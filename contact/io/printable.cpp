@@ -1,4 +1,4 @@
-#include "contact/io/printable.h"
+#include "pincer/contact/io/printable.h"
 
 #include <fmt/format.h>
 

@@ -2,8 +2,8 @@
 // on a terminal: what it holds is seen, and nothing in it is obeyed.
 //
 // Valid UTF-8 stays as it is. Control characters (C0, DEL, C1), line and paragraph separators, marks that turn the direction of writing, and
-// bytes that aren't UTF-8 are shown as \n, \t, \x1b, \u202e. A backslash stays as it is, so that text which was made printable before is
-// not changed again.
+// bytes that aren't UTF-8 are shown as C writes them: a backslash and n, t, x1b, u202e. A backslash stays as it is, so that text which was
+// made printable before is not changed again.
 #pragma once
 #include <string>
 #include <string_view>

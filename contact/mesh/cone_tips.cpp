@@ -1,4 +1,4 @@
-#include "contact/mesh/cone_tips.h"
+#include "pincer/contact/mesh/cone_tips.h"
 
 #include <Eigen/Dense>
 

@@ -11,8 +11,8 @@
 #include <optional>
 #include <vector>
 
-#include "contact/mesh/connectivity.h"
-#include "contact/triangle_mesh.h"
+#include "pincer/contact/mesh/connectivity.h"
+#include "pincer/contact/triangle_mesh.h"
 
 namespace pincer::contact {
 

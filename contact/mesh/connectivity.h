@@ -19,7 +19,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "contact/triangle_mesh.h"
+#include "pincer/contact/triangle_mesh.h"
 
 namespace pincer::contact {
 

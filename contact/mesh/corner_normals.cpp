@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <limits>
 
-#include "contact/functions/invariants.h"
-#include "contact/mesh/connectivity.h"
-#include "contact/mesh/union_find.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/contact/mesh/connectivity.h"
+#include "pincer/contact/mesh/union_find.h"
 
 namespace pincer::contact {
 

@@ -1,14 +1,14 @@
-#include "contact/mesh/edge_balls.h"
+#include "pincer/contact/mesh/edge_balls.h"
 
 #include <fmt/format.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
 
-#include "contact/error.h"
-#include "contact/functions/invariants.h"
-#include "contact/mesh/mesh_findings.h"
-#include "contact/mesh/union_find.h"
+#include "pincer/contact/error.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/contact/mesh/mesh_findings.h"
+#include "pincer/contact/mesh/union_find.h"
 
 namespace pincer::contact {
 

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "contact/mesh/connectivity.h"
-#include "contact/triangle_mesh.h"
+#include "pincer/contact/mesh/connectivity.h"
+#include "pincer/contact/triangle_mesh.h"
 
 namespace pincer::contact {
 

@@ -1,4 +1,4 @@
-#include "contact/generated_meshes.h"
+#include "pincer/contact/generated_meshes.h"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 #include <map>
 #include <utility>
 
-#include "contact/functions/invariants.h"
+#include "pincer/contact/functions/invariants.h"
 
 namespace pincer::contact {
 

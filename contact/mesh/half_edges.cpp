@@ -1,9 +1,9 @@
-#include "contact/mesh/half_edges.h"
+#include "pincer/contact/mesh/half_edges.h"
 
 #include <algorithm>
 #include <tuple>
 
-#include "contact/functions/invariants.h"
+#include "pincer/contact/functions/invariants.h"
 
 namespace pincer::contact {
 

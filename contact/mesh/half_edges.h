@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "contact/triangle_mesh.h"
+#include "pincer/contact/triangle_mesh.h"
 
 namespace pincer::contact {
 

@@ -1,4 +1,4 @@
-#include "contact/mesh/lathe.h"
+#include "pincer/contact/mesh/lathe.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "contact/error.h"
+#include "pincer/contact/error.h"
 
 namespace pincer::contact {
 namespace {

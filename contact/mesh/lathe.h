@@ -6,7 +6,7 @@
 #pragma once
 #include <vector>
 
-#include "contact/triangle_mesh.h"
+#include "pincer/contact/triangle_mesh.h"
 
 namespace pincer::contact {
 

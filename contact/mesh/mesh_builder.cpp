@@ -1,4 +1,4 @@
-#include "contact/mesh/mesh_builder.h"
+#include "pincer/contact/mesh/mesh_builder.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "contact/functions/invariants.h"
+#include "pincer/contact/functions/invariants.h"
 
 namespace pincer::contact {
 

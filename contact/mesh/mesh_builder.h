@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "contact/mesh/mesh_file.h"
-#include "contact/mesh/polygon.h"
-#include "contact/mesh_reader.h"
+#include "pincer/contact/mesh/mesh_file.h"
+#include "pincer/contact/mesh/polygon.h"
+#include "pincer/contact/mesh_reader.h"
 
 namespace pincer::contact {
 

@@ -1,11 +1,11 @@
-#include "contact/mesh/mesh_file.h"
+#include "pincer/contact/mesh/mesh_file.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <limits>
 
-#include "contact/error.h"
+#include "pincer/contact/error.h"
 
 namespace pincer::contact {
 

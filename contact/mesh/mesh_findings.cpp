@@ -1,10 +1,10 @@
-#include "contact/mesh/mesh_findings.h"
+#include "pincer/contact/mesh/mesh_findings.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "contact/io/counted.h"
+#include "pincer/contact/io/counted.h"
 
 namespace pincer::contact {
 

@@ -4,9 +4,9 @@
 #include <optional>
 #include <string>
 
-#include "contact/mesh/mesh_pieces.h"
-#include "contact/mesh/mesh_topology.h"
-#include "contact/mesh_report.h"
+#include "pincer/contact/mesh/mesh_pieces.h"
+#include "pincer/contact/mesh/mesh_topology.h"
+#include "pincer/contact/mesh_report.h"
 
 namespace pincer::contact {
 

@@ -1,4 +1,4 @@
-#include "contact/mesh_format.h"
+#include "pincer/contact/mesh_format.h"
 
 #include <fmt/format.h>
 
@@ -6,10 +6,10 @@
 #include <array>
 #include <cctype>
 
-#include "contact/error.h"
-#include "contact/mesh/mesh_file.h"
-#include "contact/mesh/obj_reader.h"
-#include "contact/mesh/off_reader.h"
+#include "pincer/contact/error.h"
+#include "pincer/contact/mesh/mesh_file.h"
+#include "pincer/contact/mesh/obj_reader.h"
+#include "pincer/contact/mesh/off_reader.h"
 
 namespace pincer::contact {
 

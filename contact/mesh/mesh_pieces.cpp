@@ -1,6 +1,6 @@
-#include "contact/mesh/mesh_pieces.h"
+#include "pincer/contact/mesh/mesh_pieces.h"
 
-#include "contact/functions/invariants.h"
+#include "pincer/contact/functions/invariants.h"
 
 namespace pincer::contact {
 

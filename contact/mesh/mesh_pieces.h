@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "contact/mesh/mesh_topology.h"
+#include "pincer/contact/mesh/mesh_topology.h"
 
 namespace pincer::contact {
 

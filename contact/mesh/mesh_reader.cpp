@@ -1,15 +1,15 @@
-#include "contact/mesh_reader.h"
+#include "pincer/contact/mesh_reader.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
 
-#include "contact/io/input_file.h"
-#include "contact/mesh/mesh_file.h"
-#include "contact/mesh/obj_reader.h"
-#include "contact/mesh/off_reader.h"
-#include "contact/mesh/ply_reader.h"
-#include "contact/mesh/stl_reader.h"
+#include "pincer/contact/io/input_file.h"
+#include "pincer/contact/mesh/mesh_file.h"
+#include "pincer/contact/mesh/obj_reader.h"
+#include "pincer/contact/mesh/off_reader.h"
+#include "pincer/contact/mesh/ply_reader.h"
+#include "pincer/contact/mesh/stl_reader.h"
 
 namespace pincer::contact {
 

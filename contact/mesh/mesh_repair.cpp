@@ -1,10 +1,10 @@
-#include "contact/mesh_repair.h"
+#include "pincer/contact/mesh_repair.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
 
-#include "contact/mesh/repair_steps.h"
+#include "pincer/contact/mesh/repair_steps.h"
 
 namespace pincer::contact {
 

@@ -1,10 +1,10 @@
-#include "contact/mesh_report.h"
+#include "pincer/contact/mesh_report.h"
 
 #include <algorithm>
 
-#include "contact/mesh/connectivity.h"
-#include "contact/mesh/mesh_findings.h"
-#include "contact/mesh/polygon.h"
+#include "pincer/contact/mesh/connectivity.h"
+#include "pincer/contact/mesh/mesh_findings.h"
+#include "pincer/contact/mesh/polygon.h"
 
 namespace pincer::contact {
 

@@ -1,9 +1,9 @@
-#include "contact/mesh/mesh_topology.h"
+#include "pincer/contact/mesh/mesh_topology.h"
 
 #include <algorithm>
 #include <numeric>
 
-#include "contact/functions/invariants.h"
+#include "pincer/contact/functions/invariants.h"
 
 namespace pincer::contact {
 

@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "contact/mesh/half_edges.h"
-#include "contact/mesh/union_find.h"
-#include "contact/triangle_mesh.h"
+#include "pincer/contact/mesh/half_edges.h"
+#include "pincer/contact/mesh/union_find.h"
+#include "pincer/contact/triangle_mesh.h"
 
 namespace pincer::contact {
 

@@ -1,4 +1,4 @@
-#include "contact/mesh/mesh_writer.h"
+#include "pincer/contact/mesh/mesh_writer.h"
 
 #include <fmt/format.h>
 
@@ -7,9 +7,9 @@
 #include <cmath>
 #include <optional>
 
-#include "contact/error.h"
-#include "contact/io/atomic_file.h"
-#include "contact/mesh/mesh_file.h"
+#include "pincer/contact/error.h"
+#include "pincer/contact/io/atomic_file.h"
+#include "pincer/contact/mesh/mesh_file.h"
 
 namespace pincer::contact {
 

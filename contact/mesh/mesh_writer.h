@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "contact/mesh_format.h"
-#include "contact/triangle_mesh.h"
+#include "pincer/contact/mesh_format.h"
+#include "pincer/contact/triangle_mesh.h"
 
 namespace pincer::contact {
 

@@ -1,9 +1,9 @@
-#include "contact/mesh/moving_mesh.h"
+#include "pincer/contact/mesh/moving_mesh.h"
 
 #include <algorithm>
 #include <limits>
 
-#include "contact/functions/invariants.h"
+#include "pincer/contact/functions/invariants.h"
 
 namespace pincer::contact {
 

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "contact/assert.h"
-#include "contact/triangle_mesh.h"
+#include "pincer/contact/assert.h"
+#include "pincer/contact/triangle_mesh.h"
 
 namespace pincer::contact {
 

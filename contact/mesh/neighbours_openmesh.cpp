@@ -2,7 +2,7 @@
 #include <OpenMesh/Core/Mesh/TriConnectivity.hh>
 #include <stdexcept>
 
-#include "contact/mesh/connectivity.h"
+#include "pincer/contact/mesh/connectivity.h"
 
 namespace pincer::contact {
 

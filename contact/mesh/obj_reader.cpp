@@ -1,12 +1,12 @@
-#include "contact/mesh/obj_reader.h"
+#include "pincer/contact/mesh/obj_reader.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 
-#include "contact/mesh/mesh_builder.h"
-#include "contact/mesh/text_lines.h"
+#include "pincer/contact/mesh/mesh_builder.h"
+#include "pincer/contact/mesh/text_lines.h"
 
 namespace pincer::contact {
 

@@ -8,8 +8,8 @@
 #pragma once
 #include <string_view>
 
-#include "contact/mesh/mesh_file.h"
-#include "contact/mesh_reader.h"
+#include "pincer/contact/mesh/mesh_file.h"
+#include "pincer/contact/mesh_reader.h"
 
 namespace pincer::contact {
 

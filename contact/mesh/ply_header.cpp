@@ -1,4 +1,4 @@
-#include "contact/mesh/ply_header.h"
+#include "pincer/contact/mesh/ply_header.h"
 
 #include <fmt/format.h>
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "contact/mesh/text_lines.h"
+#include "pincer/contact/mesh/text_lines.h"
 
 namespace pincer::contact {
 

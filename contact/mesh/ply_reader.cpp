@@ -1,12 +1,12 @@
-#include "contact/mesh/ply_reader.h"
+#include "pincer/contact/mesh/ply_reader.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "contact/mesh/mesh_builder.h"
-#include "contact/mesh/ply_header.h"
+#include "pincer/contact/mesh/mesh_builder.h"
+#include "pincer/contact/mesh/ply_header.h"
 
 namespace pincer::contact {
 

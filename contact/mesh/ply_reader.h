@@ -5,8 +5,8 @@
 // others are skipped. Refused by name: triangle strips. Departure from Turk's text: in an ascii file each entry has a line of its own.
 // Source: ply_header.h.
 #pragma once
-#include "contact/mesh/mesh_file.h"
-#include "contact/mesh_reader.h"
+#include "pincer/contact/mesh/mesh_file.h"
+#include "pincer/contact/mesh_reader.h"
 
 namespace pincer::contact {
 

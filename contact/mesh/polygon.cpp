@@ -1,8 +1,8 @@
-#include "contact/mesh/polygon.h"
+#include "pincer/contact/mesh/polygon.h"
 
 #include <algorithm>
 
-#include "contact/functions/invariants.h"
+#include "pincer/contact/functions/invariants.h"
 
 namespace pincer::contact {
 

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "contact/mesh_repair.h"
+#include "pincer/contact/mesh_repair.h"
 
 namespace pincer::contact {
 

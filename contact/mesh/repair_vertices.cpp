@@ -5,11 +5,11 @@
 #include <map>
 #include <numeric>
 
-#include "contact/io/counted.h"
-#include "contact/mesh/mesh_findings.h"
-#include "contact/mesh/mesh_topology.h"
-#include "contact/mesh/polygon.h"
-#include "contact/mesh/repair_steps.h"
+#include "pincer/contact/io/counted.h"
+#include "pincer/contact/mesh/mesh_findings.h"
+#include "pincer/contact/mesh/mesh_topology.h"
+#include "pincer/contact/mesh/polygon.h"
+#include "pincer/contact/mesh/repair_steps.h"
 
 namespace pincer::contact {
 

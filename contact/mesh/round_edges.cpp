@@ -1,17 +1,17 @@
-#include "contact/mesh/round_edges.h"
+#include "pincer/contact/mesh/round_edges.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <map>
 
-#include "contact/functions/invariants.h"
-#include "contact/mesh/cone_tips.h"
-#include "contact/mesh/connectivity.h"
-#include "contact/mesh/edge_balls.h"
-#include "contact/mesh/mesh_findings.h"
-#include "contact/mesh/moving_mesh.h"
-#include "contact/mesh_report.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/contact/mesh/cone_tips.h"
+#include "pincer/contact/mesh/connectivity.h"
+#include "pincer/contact/mesh/edge_balls.h"
+#include "pincer/contact/mesh/mesh_findings.h"
+#include "pincer/contact/mesh/moving_mesh.h"
+#include "pincer/contact/mesh_report.h"
 
 namespace pincer::contact {
 

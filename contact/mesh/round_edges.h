@@ -13,8 +13,8 @@
 // Departures: a face that is curved across its edge is met on its tangent plane, kappa (rho tan(theta / 2))^2 / 2 off, theta the turn over the
 // edge. Parts that aren't neighbours may come to overlap where concave edges are rounded; that isn't checked.
 #pragma once
-#include "contact/error.h"
-#include "contact/triangle_mesh.h"
+#include "pincer/contact/error.h"
+#include "pincer/contact/triangle_mesh.h"
 
 namespace pincer::contact {
 

@@ -1,4 +1,4 @@
-#include "contact/mesh/stl_reader.h"
+#include "pincer/contact/mesh/stl_reader.h"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,8 @@
 #include <cctype>
 #include <cmath>
 
-#include "contact/mesh/mesh_builder.h"
-#include "contact/mesh/text_lines.h"
+#include "pincer/contact/mesh/mesh_builder.h"
+#include "pincer/contact/mesh/text_lines.h"
 
 namespace pincer::contact {
 

@@ -6,8 +6,8 @@
 // several solids; they are read as one mesh. A binary file's header may say anything, "solid" too: its size decides (mesh_format.h).
 // Source: 3D Systems, "Stereolithography Interface Specification", 1989.
 #pragma once
-#include "contact/mesh/mesh_file.h"
-#include "contact/mesh_reader.h"
+#include "pincer/contact/mesh/mesh_file.h"
+#include "pincer/contact/mesh_reader.h"
 
 namespace pincer::contact {
 

@@ -1,4 +1,4 @@
-#include "contact/mesh/text_lines.h"
+#include "pincer/contact/mesh/text_lines.h"
 
 #include <fmt/format.h>
 

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "contact/mesh/mesh_file.h"
+#include "pincer/contact/mesh/mesh_file.h"
 
 namespace pincer::contact {
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "contact/assert.h"
+#include "pincer/contact/assert.h"
 
 namespace pincer::contact {
 

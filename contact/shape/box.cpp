@@ -1,6 +1,6 @@
-#include "contact/functions/invariants.h"
-#include "contact/shape/closed_forms.h"
-#include "contact/shape/direction.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/contact/shape/closed_forms.h"
+#include "pincer/contact/shape/direction.h"
 
 namespace pincer::contact {
 namespace {

@@ -12,8 +12,8 @@
 // Source: C. Ericson, Real-Time Collision Detection (2005), sec. 5.1, for the box and the capsule; the rest follows from the section times
 // the interval: the solid D x [-h, h] has d = max(d_D, |z| - h) where one of the two is negative, their hypotenuse where none is.
 #pragma once
-#include "contact/math.h"
-#include "contact/shape.h"
+#include "pincer/contact/math.h"
+#include "pincer/contact/shape.h"
 
 namespace pincer::contact {
 

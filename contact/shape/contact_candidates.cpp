@@ -1,9 +1,9 @@
-#include "contact/shape/contact_candidates.h"
+#include "pincer/contact/shape/contact_candidates.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "contact/functions/invariants.h"
+#include "pincer/contact/functions/invariants.h"
 
 namespace pincer::contact {
 namespace {

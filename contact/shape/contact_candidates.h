@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "contact/pair_query.h"
+#include "pincer/contact/pair_query.h"
 
 namespace pincer::contact {
 

@@ -1,11 +1,11 @@
-#include "contact/shape/convex_features.h"
+#include "pincer/contact/shape/convex_features.h"
 
 #include <algorithm>
 #include <cmath>
 #include <type_traits>
 
-#include "contact/functions/invariants.h"
-#include "contact/polytope.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/contact/polytope.h"
 
 namespace pincer::contact {
 namespace {

@@ -18,8 +18,8 @@
 #include <array>
 #include <cstdint>
 
-#include "contact/math.h"
-#include "contact/shape.h"
+#include "pincer/contact/math.h"
+#include "pincer/contact/shape.h"
 
 namespace pincer::contact {
 

@@ -1,9 +1,9 @@
-#include "contact/shape/convex_pairs.h"
+#include "pincer/contact/shape/convex_pairs.h"
 
-#include "contact/functions/invariants.h"
-#include "contact/shape/direction.h"
-#include "contact/shape/facet_overlap.h"
-#include "contact/shape/separation.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/contact/shape/direction.h"
+#include "pincer/contact/shape/facet_overlap.h"
+#include "pincer/contact/shape/separation.h"
 
 namespace pincer::contact {
 namespace {

@@ -1,6 +1,6 @@
 // convex_pairs: contact points of two convex solids, primitives or hulls.
 #pragma once
-#include "contact/pair_query.h"
+#include "pincer/contact/pair_query.h"
 
 namespace pincer::contact {
 

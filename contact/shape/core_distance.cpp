@@ -1,9 +1,9 @@
-#include "contact/shape/core_distance.h"
+#include "pincer/contact/shape/core_distance.h"
 
 #include <algorithm>
 #include <limits>
 
-#include "contact/functions/invariants.h"
+#include "pincer/contact/functions/invariants.h"
 
 namespace pincer::contact {
 namespace {

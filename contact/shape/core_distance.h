@@ -7,7 +7,7 @@
 // is: the direction then loses nothing where solids all but touch. Solids made of corners end after finitely many steps with v exact to round-off; round ones when a step can
 // shorten v by no more than the accuracy asked for: its direction is right to the root of that.
 #pragma once
-#include "contact/shape/posed_solid.h"
+#include "pincer/contact/shape/posed_solid.h"
 
 namespace pincer::contact {
 

@@ -1,7 +1,7 @@
 // Nearest points of right cylinders: first in the section (x, y), then along z.
-#include "contact/functions/invariants.h"
-#include "contact/shape/closed_forms.h"
-#include "contact/shape/direction.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/contact/shape/closed_forms.h"
+#include "pincer/contact/shape/direction.h"
 
 namespace pincer::contact {
 namespace {

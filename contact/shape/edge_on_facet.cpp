@@ -1,8 +1,8 @@
-#include "contact/shape/edge_on_facet.h"
+#include "pincer/contact/shape/edge_on_facet.h"
 
 #include <algorithm>
 
-#include "contact/functions/invariants.h"
+#include "pincer/contact/functions/invariants.h"
 
 namespace pincer::contact {
 namespace {

@@ -9,7 +9,7 @@
 #pragma once
 #include <array>
 
-#include "contact/shape/posed_solid.h"
+#include "pincer/contact/shape/posed_solid.h"
 
 namespace pincer::contact {
 

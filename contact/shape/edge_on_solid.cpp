@@ -1,8 +1,8 @@
-#include "contact/shape/edge_on_solid.h"
+#include "pincer/contact/shape/edge_on_solid.h"
 
 #include <algorithm>
 
-#include "contact/functions/invariants.h"
+#include "pincer/contact/functions/invariants.h"
 
 namespace pincer::contact {
 namespace {

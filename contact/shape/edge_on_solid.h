@@ -10,7 +10,7 @@
 #pragma once
 #include <array>
 
-#include "contact/shape/posed_solid.h"
+#include "pincer/contact/shape/posed_solid.h"
 
 namespace pincer::contact {
 

@@ -1,7 +1,7 @@
-#include "contact/shape/extreme_points.h"
+#include "pincer/contact/shape/extreme_points.h"
 
-#include "contact/polytope.h"
-#include "contact/smooth_mesh.h"
+#include "pincer/contact/polytope.h"
+#include "pincer/contact/smooth_mesh.h"
 
 namespace pincer::contact {
 namespace {

@@ -17,9 +17,9 @@
 #include <cstdint>
 #include <span>
 
-#include "contact/assert.h"
-#include "contact/math.h"
-#include "contact/shape.h"
+#include "pincer/contact/assert.h"
+#include "pincer/contact/math.h"
+#include "pincer/contact/shape.h"
 
 namespace pincer::contact {
 

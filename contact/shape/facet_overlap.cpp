@@ -1,10 +1,10 @@
-#include "contact/shape/facet_overlap.h"
+#include "pincer/contact/shape/facet_overlap.h"
 
 #include <algorithm>
 #include <limits>
 
-#include "contact/functions/invariants.h"
-#include "contact/shape/point_choice.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/contact/shape/point_choice.h"
 
 namespace pincer::contact {
 namespace {

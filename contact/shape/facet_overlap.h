@@ -13,8 +13,8 @@
 // (convex_features.h), so it stays while these touch. A corner of A counts as within B's facet up to kSame of the size outside of it: so
 // the corners of equal boxes on each other keep their names.
 #pragma once
-#include "contact/pair_query.h"
-#include "contact/shape/separation.h"
+#include "pincer/contact/pair_query.h"
+#include "pincer/contact/shape/separation.h"
 
 namespace pincer::contact {
 

@@ -1,11 +1,11 @@
-#include "contact/finger_query.h"
+#include "pincer/contact/finger_query.h"
 
 #include <type_traits>
 
-#include "contact/functions/invariants.h"
-#include "contact/pair_query.h"
-#include "contact/shape/closed_forms.h"
-#include "contact/smooth_mesh.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/contact/pair_query.h"
+#include "pincer/contact/shape/closed_forms.h"
+#include "pincer/contact/smooth_mesh.h"
 
 namespace pincer::contact {
 namespace {

@@ -1,12 +1,12 @@
-#include "contact/finger_shape.h"
+#include "pincer/contact/finger_shape.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "contact/functions/invariants.h"
-#include "contact/polytope.h"
-#include "contact/shape/closed_forms.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/contact/polytope.h"
+#include "pincer/contact/shape/closed_forms.h"
 
 namespace pincer::contact {
 namespace {

@@ -1,9 +1,9 @@
-#include "contact/shape/mesh_mesh.h"
+#include "pincer/contact/shape/mesh_mesh.h"
 
-#include "contact/shape/contact_candidates.h"
-#include "contact/shape/mesh_rules.h"
-#include "contact/shape/posed_solid.h"
-#include "contact/smooth_mesh.h"
+#include "pincer/contact/shape/contact_candidates.h"
+#include "pincer/contact/shape/mesh_rules.h"
+#include "pincer/contact/shape/posed_solid.h"
+#include "pincer/contact/smooth_mesh.h"
 
 namespace pincer::contact {
 namespace {

@@ -9,7 +9,7 @@
 // Corners and edges are looked for where the boxes of one tree meet those of the other.
 // Cost: about 1 us per corner or edge that is near the other's surface, however many.
 #pragma once
-#include "contact/pair_query.h"
+#include "pincer/contact/pair_query.h"
 
 namespace pincer::contact {
 

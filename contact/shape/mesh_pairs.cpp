@@ -1,13 +1,13 @@
-#include "contact/shape/mesh_pairs.h"
+#include "pincer/contact/shape/mesh_pairs.h"
 
 #include <type_traits>
 
-#include "contact/shape/contact_candidates.h"
-#include "contact/shape/edge_on_facet.h"
-#include "contact/shape/edge_on_solid.h"
-#include "contact/shape/mesh_rules.h"
-#include "contact/shape/solid_walls.h"
-#include "contact/smooth_mesh.h"
+#include "pincer/contact/shape/contact_candidates.h"
+#include "pincer/contact/shape/edge_on_facet.h"
+#include "pincer/contact/shape/edge_on_solid.h"
+#include "pincer/contact/shape/mesh_rules.h"
+#include "pincer/contact/shape/solid_walls.h"
+#include "pincer/contact/smooth_mesh.h"
 
 namespace pincer::contact {
 namespace {

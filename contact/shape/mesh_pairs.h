@@ -18,7 +18,7 @@
 // groups in turn the one that is furthest from what the group has, by point_choice.h's d^2 / (g + s).
 // Cost: about 0.1 us per triangle near the other body, however many.
 #pragma once
-#include "contact/pair_query.h"
+#include "pincer/contact/pair_query.h"
 
 namespace pincer::contact {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "contact/surface/mesh_features.h"
+#include "pincer/contact/surface/mesh_features.h"
 
 namespace pincer::contact {
 

@@ -1,19 +1,19 @@
-#include "contact/pair_query.h"
+#include "pincer/contact/pair_query.h"
 
 #include <limits>
 
-#include "contact/finger_query.h"
-#include "contact/functions/invariants.h"
-#include "contact/polytope.h"
-#include "contact/shape/convex_features.h"
-#include "contact/shape/convex_pairs.h"
-#include "contact/shape/direction.h"
-#include "contact/shape/extreme_points.h"
-#include "contact/shape/mesh_mesh.h"
-#include "contact/shape/mesh_pairs.h"
-#include "contact/shape/point_choice.h"
-#include "contact/shape/support.h"
-#include "contact/smooth_mesh.h"
+#include "pincer/contact/finger_query.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/contact/polytope.h"
+#include "pincer/contact/shape/convex_features.h"
+#include "pincer/contact/shape/convex_pairs.h"
+#include "pincer/contact/shape/direction.h"
+#include "pincer/contact/shape/extreme_points.h"
+#include "pincer/contact/shape/mesh_mesh.h"
+#include "pincer/contact/shape/mesh_pairs.h"
+#include "pincer/contact/shape/point_choice.h"
+#include "pincer/contact/shape/support.h"
+#include "pincer/contact/smooth_mesh.h"
 
 namespace pincer::contact {
 namespace {

@@ -19,10 +19,10 @@
 #include <array>
 #include <limits>
 
-#include "contact/assert.h"
-#include "contact/pair_query.h"
-#include "contact/shape/direction.h"
-#include "contact/shape/extreme_points.h"
+#include "pincer/contact/assert.h"
+#include "pincer/contact/pair_query.h"
+#include "pincer/contact/shape/direction.h"
+#include "pincer/contact/shape/extreme_points.h"
 
 namespace pincer::contact {
 

@@ -1,4 +1,4 @@
-#include "contact/polytope.h"
+#include "pincer/contact/polytope.h"
 
 #include <fmt/format.h>
 
@@ -7,11 +7,11 @@
 #include <map>
 #include <numeric>
 
-#include "contact/error.h"
-#include "contact/functions/invariants.h"
-#include "contact/mesh/union_find.h"
-#include "contact/shape/quick_hull.h"
-#include "contact/surface/convex_hull.h"
+#include "pincer/contact/error.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/contact/mesh/union_find.h"
+#include "pincer/contact/shape/quick_hull.h"
+#include "pincer/contact/surface/convex_hull.h"
 
 namespace pincer::contact {
 namespace {

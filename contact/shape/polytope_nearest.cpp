@@ -1,9 +1,9 @@
 // Nearest point of a convex hull: within, on the nearest face; outside, on the nearest of the faces that look at the point.
 #include <limits>
 
-#include "contact/polytope.h"
-#include "contact/shape/closed_forms.h"
-#include "contact/shape/direction.h"
+#include "pincer/contact/polytope.h"
+#include "pincer/contact/shape/closed_forms.h"
+#include "pincer/contact/shape/direction.h"
 
 namespace pincer::contact {
 namespace {

@@ -1,6 +1,6 @@
 // posed_solid: a convex solid where it is, seen in the axes of the world from an origin near by.
 #pragma once
-#include "contact/shape/convex_features.h"
+#include "pincer/contact/shape/convex_features.h"
 
 namespace pincer::contact {
 

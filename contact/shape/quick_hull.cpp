@@ -1,9 +1,9 @@
-#include "contact/shape/quick_hull.h"
+#include "pincer/contact/shape/quick_hull.h"
 
 #include <algorithm>
 #include <map>
 
-#include "contact/functions/invariants.h"
+#include "pincer/contact/functions/invariants.h"
 
 namespace pincer::contact {
 namespace {

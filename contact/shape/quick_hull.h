@@ -7,7 +7,7 @@
 #include <array>
 #include <vector>
 
-#include "contact/math.h"
+#include "pincer/contact/math.h"
 
 namespace pincer::contact {
 

@@ -1,11 +1,11 @@
-#include "contact/shape/separation.h"
+#include "pincer/contact/shape/separation.h"
 
 #include <algorithm>
 #include <limits>
 
-#include "contact/functions/invariants.h"
-#include "contact/shape/core_distance.h"
-#include "contact/shape/direction.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/contact/shape/core_distance.h"
+#include "pincer/contact/shape/direction.h"
 
 namespace pincer::contact {
 namespace {

@@ -28,7 +28,7 @@
 // nearest points of the solids inset by 5 % of the least half width, and Bullet's EPA.
 // Error: round-off; at round rims 1e-9 of the size. Of very deep overlap it may be one of several ways out that isn't the shortest.
 #pragma once
-#include "contact/shape/posed_solid.h"
+#include "pincer/contact/shape/posed_solid.h"
 
 namespace pincer::contact {
 

@@ -2,7 +2,7 @@
 #include <BulletCollision/CollisionShapes/btConvexInternalShape.h>
 #include <BulletCollision/NarrowPhaseCollision/btGjkEpa2.h>
 
-#include "contact/shape/separation.h"
+#include "pincer/contact/shape/separation.h"
 
 namespace pincer::contact {
 namespace {

@@ -4,10 +4,10 @@
 //
 // The point is in the solid where no height is positive; then the largest is the shortest way out.
 #pragma once
-#include "contact/math.h"
-#include "contact/polytope.h"
-#include "contact/shape/closed_forms.h"
-#include "contact/shape/direction.h"
+#include "pincer/contact/math.h"
+#include "pincer/contact/polytope.h"
+#include "pincer/contact/shape/closed_forms.h"
+#include "pincer/contact/shape/direction.h"
 
 namespace pincer::contact {
 

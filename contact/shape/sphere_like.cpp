@@ -1,7 +1,7 @@
 // Nearest points of the surfaces at constant distance from a point, a segment or a plane.
-#include "contact/functions/invariants.h"
-#include "contact/shape/closed_forms.h"
-#include "contact/shape/direction.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/contact/shape/closed_forms.h"
+#include "pincer/contact/shape/direction.h"
 
 namespace pincer::contact {
 

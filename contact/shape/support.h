@@ -8,9 +8,9 @@
 //   steepest()  the direction in A's xy-plane in which the gap falls fastest, times that rate (at the solid's axis; bowl: seen from m) [-];
 //               of a circle about A's z axis the point in that direction is the deepest, exactly, for both
 #pragma once
-#include "contact/math.h"
-#include "contact/shape.h"
-#include "contact/shape/direction.h"
+#include "pincer/contact/math.h"
+#include "pincer/contact/shape.h"
+#include "pincer/contact/shape/direction.h"
 
 namespace pincer::contact {
 

@@ -1,9 +1,9 @@
-#include "contact/surface/aabb_tree.h"
+#include "pincer/contact/surface/aabb_tree.h"
 
 #include <numeric>
 
-#include "contact/functions/invariants.h"
-#include "contact/surface/outward_float.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/contact/surface/outward_float.h"
 
 namespace pincer::contact {
 

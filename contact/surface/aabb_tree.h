@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "contact/assert.h"
-#include "contact/math.h"
+#include "pincer/contact/assert.h"
+#include "pincer/contact/math.h"
 
 namespace pincer::contact {
 

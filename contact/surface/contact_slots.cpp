@@ -1,10 +1,10 @@
-#include "contact/surface/contact_slots.h"
+#include "pincer/contact/surface/contact_slots.h"
 
 #include <algorithm>
 
-#include "contact/surface/flat_contact.h"
-#include "contact/surface/shell_edge.h"
-#include "contact/surface/surface_touch.h"
+#include "pincer/contact/surface/flat_contact.h"
+#include "pincer/contact/surface/shell_edge.h"
+#include "pincer/contact/surface/surface_touch.h"
 
 namespace pincer::contact {
 

@@ -28,8 +28,8 @@
 //   it leads to one nearer than it, so it lies at phi > 0. Nothing is eased where the centre leaps by more than half of r in one query.
 // - A contact without a solution near is looked for in the whole surface; failing that, its plane is held.
 #pragma once
-#include "contact/surface/surface_search.h"
-#include "contact/surface_contact.h"
+#include "pincer/contact/surface/surface_search.h"
+#include "pincer/contact/surface_contact.h"
 
 namespace pincer::contact {
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "contact/shape/bullet_memory.h"
-#include "contact/surface/convex_hull.h"
+#include "pincer/contact/surface/bullet_memory.h"
+#include "pincer/contact/surface/convex_hull.h"
 
 namespace pincer::contact {
 namespace {

@@ -1,4 +1,4 @@
-#include "contact/surface/edge_cubic.h"
+#include "pincer/contact/surface/edge_cubic.h"
 
 namespace pincer::contact {
 

@@ -14,8 +14,8 @@
 #pragma once
 #include <array>
 
-#include "contact/math.h"
-#include "contact/surface/vec_pair.h"
+#include "pincer/contact/math.h"
+#include "pincer/contact/surface/vec_pair.h"
 
 namespace pincer::contact {
 

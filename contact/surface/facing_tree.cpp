@@ -1,8 +1,8 @@
-#include "contact/surface/facing_tree.h"
+#include "pincer/contact/surface/facing_tree.h"
 
 #include <numeric>
 
-#include "contact/functions/invariants.h"
+#include "pincer/contact/functions/invariants.h"
 
 namespace pincer::contact {
 

@@ -12,9 +12,9 @@
 #include <utility>
 #include <vector>
 
-#include "contact/assert.h"
-#include "contact/surface/four_lanes.h"
-#include "contact/surface/tree_walk.h"
+#include "pincer/contact/assert.h"
+#include "pincer/contact/surface/four_lanes.h"
+#include "pincer/contact/surface/tree_walk.h"
 
 namespace pincer::contact {
 

@@ -1,10 +1,10 @@
-#include "contact/surface/flat_contact.h"
+#include "pincer/contact/surface/flat_contact.h"
 
 #include <cmath>
 
-#include "contact/functions/invariants.h"
-#include "contact/surface/flat_minimum.h"
-#include "contact/surface/shell_edge.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/contact/surface/flat_minimum.h"
+#include "pincer/contact/surface/shell_edge.h"
 
 namespace pincer::contact {
 

@@ -12,8 +12,8 @@
 // Sources: C. Zilles, J. K. Salisbury, "A constraint-based god-object method", IROS 1995; H.-B. Morgenbesser, M. A. Srinivasan, "Force
 // shading for haptic shape perception", ASME DSC-58, 1996; sign at a vertex: J. A. Baerentzen, H. Aanaes, IEEE TVCG 11(3), 2005.
 #pragma once
-#include "contact/surface/shell_solver.h"
-#include "contact/surface_contact.h"
+#include "pincer/contact/surface/shell_solver.h"
+#include "pincer/contact/surface_contact.h"
 
 namespace pincer::contact {
 

@@ -1,4 +1,4 @@
-#include "contact/surface/flat_minimum.h"
+#include "pincer/contact/surface/flat_minimum.h"
 
 namespace pincer::contact {
 

@@ -5,7 +5,7 @@
 #pragma once
 #include <array>
 
-#include "contact/surface/surface_net.h"
+#include "pincer/contact/surface/surface_net.h"
 
 namespace pincer::contact {
 

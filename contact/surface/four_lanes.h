@@ -6,8 +6,8 @@
 #include <array>
 #include <cstdint>
 
-#include "contact/surface/normal_cone.h"
-#include "contact/surface/outward_float.h"
+#include "pincer/contact/surface/normal_cone.h"
+#include "pincer/contact/surface/outward_float.h"
 
 namespace pincer::contact {
 

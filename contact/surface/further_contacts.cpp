@@ -1,9 +1,9 @@
 #include <algorithm>
 
-#include "contact/surface/lone_contact.h"
-#include "contact/surface/near_parts.h"
-#include "contact/surface/shell_face.h"
-#include "contact/surface/surface_touch.h"
+#include "pincer/contact/surface/lone_contact.h"
+#include "pincer/contact/surface/near_parts.h"
+#include "pincer/contact/surface/shell_face.h"
+#include "pincer/contact/surface/surface_touch.h"
 
 namespace pincer::contact {
 

@@ -1,4 +1,4 @@
-#include "contact/surface/large_pages.h"
+#include "pincer/contact/surface/large_pages.h"
 
 #include <sys/mman.h>
 

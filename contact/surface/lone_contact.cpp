@@ -1,7 +1,7 @@
-#include "contact/surface/lone_contact.h"
+#include "pincer/contact/surface/lone_contact.h"
 
-#include "contact/functions/invariants.h"
-#include "contact/surface/surface_search.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/contact/surface/surface_search.h"
 
 namespace pincer::contact {
 

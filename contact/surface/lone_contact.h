@@ -12,7 +12,7 @@
 //
 //   C  centre, n  unit normal of the contact, h  its height over the contact [m], reach  how far from C contacts are wanted [m]; frame B
 #pragma once
-#include "contact/surface/four_lanes.h"
+#include "pincer/contact/surface/four_lanes.h"
 
 namespace pincer::contact {
 

@@ -1,10 +1,10 @@
-#include "contact/surface/mesh_features.h"
+#include "pincer/contact/surface/mesh_features.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include "contact/functions/invariants.h"
+#include "pincer/contact/functions/invariants.h"
 
 namespace pincer::contact {
 namespace {

@@ -15,9 +15,9 @@
 #include <span>
 #include <vector>
 
-#include "contact/mesh/connectivity.h"
-#include "contact/surface/aabb_tree.h"
-#include "contact/triangle_mesh.h"
+#include "pincer/contact/mesh/connectivity.h"
+#include "pincer/contact/surface/aabb_tree.h"
+#include "pincer/contact/triangle_mesh.h"
 
 namespace pincer::contact {
 

@@ -1,11 +1,11 @@
-#include "contact/surface/near_parts.h"
+#include "pincer/contact/surface/near_parts.h"
 
 #include <algorithm>
 #include <array>
 
-#include "contact/functions/invariants.h"
-#include "contact/surface/outward_float.h"
-#include "contact/surface/surface_search.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/contact/surface/outward_float.h"
+#include "pincer/contact/surface/surface_search.h"
 
 namespace pincer::contact {
 

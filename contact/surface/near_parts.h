@@ -19,9 +19,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "contact/surface/four_lanes.h"
-#include "contact/surface/tree_walk.h"
-#include "contact/surface_contact.h"
+#include "pincer/contact/surface/four_lanes.h"
+#include "pincer/contact/surface/tree_walk.h"
+#include "pincer/contact/surface_contact.h"
 
 namespace pincer::contact {
 

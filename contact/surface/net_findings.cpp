@@ -1,6 +1,6 @@
 #include <limits>
 
-#include "contact/surface/surface_net.h"
+#include "pincer/contact/surface/surface_net.h"
 
 namespace pincer::contact {
 

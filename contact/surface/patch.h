@@ -10,7 +10,7 @@
 #pragma once
 #include <array>
 
-#include "contact/math.h"
+#include "pincer/contact/math.h"
 
 namespace pincer::contact {
 

@@ -1,9 +1,9 @@
-#include "contact/surface/patch_cache.h"
+#include "pincer/contact/surface/patch_cache.h"
 
 #include <algorithm>
 #include <bit>
 
-#include "contact/functions/invariants.h"
+#include "pincer/contact/functions/invariants.h"
 
 namespace pincer::contact {
 

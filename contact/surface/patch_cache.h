@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "contact/surface/near_parts.h"
-#include "contact/surface/surface_cell.h"
+#include "pincer/contact/surface/near_parts.h"
+#include "pincer/contact/surface/surface_cell.h"
 
 namespace pincer::contact {
 

@@ -1,8 +1,8 @@
-#include "contact/surface/published_iteration.h"
+#include "pincer/contact/surface/published_iteration.h"
 
 #include <algorithm>
 
-#include "contact/functions/invariants.h"
+#include "pincer/contact/functions/invariants.h"
 
 namespace pincer::contact {
 

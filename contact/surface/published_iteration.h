@@ -9,7 +9,7 @@
 // the contact is a crease, on which no surface point fulfils the equation. Its error shrinks by 1 - g (1 + k h) per step, so it takes 2 to 3.
 // Source: A. J. Doxon et al., Presence 20(6), 2011.
 #pragma once
-#include "contact/surface/shell_solver.h"
+#include "pincer/contact/surface/shell_solver.h"
 
 namespace pincer::contact {
 

@@ -1,10 +1,10 @@
-#include "contact/surface/self_crossings.h"
+#include "pincer/contact/surface/self_crossings.h"
 
 #include <algorithm>
 #include <array>
 #include <limits>
 
-#include "contact/surface/aabb_tree.h"
+#include "pincer/contact/surface/aabb_tree.h"
 
 namespace pincer::contact {
 

@@ -10,7 +10,7 @@
 #pragma once
 #include <cstdint>
 
-#include "contact/triangle_mesh.h"
+#include "pincer/contact/triangle_mesh.h"
 
 namespace pincer::contact {
 

@@ -1,8 +1,8 @@
-#include "contact/surface/shell_edge.h"
+#include "pincer/contact/surface/shell_edge.h"
 
 #include <algorithm>
 
-#include "contact/functions/invariants.h"
+#include "pincer/contact/functions/invariants.h"
 
 namespace pincer::contact {
 

@@ -10,8 +10,8 @@
 #pragma once
 #include <array>
 
-#include "contact/math.h"
-#include "contact/surface/surface_net.h"
+#include "pincer/contact/math.h"
+#include "pincer/contact/surface/surface_net.h"
 
 namespace pincer::contact {
 

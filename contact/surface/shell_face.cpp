@@ -1,4 +1,4 @@
-#include "contact/surface/shell_face.h"
+#include "pincer/contact/surface/shell_face.h"
 
 #include <algorithm>
 #include <cmath>

@@ -8,7 +8,7 @@
 #pragma once
 #include <array>
 
-#include "contact/surface/patch.h"
+#include "pincer/contact/surface/patch.h"
 
 namespace pincer::contact {
 

@@ -1,10 +1,10 @@
-#include "contact/surface/shell_solver.h"
+#include "pincer/contact/surface/shell_solver.h"
 
 #include <algorithm>
 
-#include "contact/functions/invariants.h"
-#include "contact/surface/shell_edge.h"
-#include "contact/surface/shell_face.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/contact/surface/shell_edge.h"
+#include "pincer/contact/surface/shell_face.h"
 
 namespace pincer::contact {
 

@@ -17,8 +17,8 @@
 #include <cstdint>
 #include <span>
 
-#include "contact/math.h"
-#include "contact/surface/surface_net.h"
+#include "pincer/contact/math.h"
+#include "pincer/contact/surface/surface_net.h"
 
 namespace pincer::contact {
 

@@ -4,7 +4,7 @@
 #include <memory>
 #include <type_traits>
 
-#include "contact/assert.h"
+#include "pincer/contact/assert.h"
 
 namespace pincer::contact {
 

@@ -1,16 +1,16 @@
-#include "contact/smooth_mesh.h"
+#include "pincer/contact/smooth_mesh.h"
 
 #include <fmt/format.h>
 
 #include <mutex>
 
-#include "contact/functions/invariants.h"
-#include "contact/mesh_report.h"
-#include "contact/surface/contact_slots.h"
-#include "contact/surface/convex_hull.h"
-#include "contact/surface/mesh_features.h"
-#include "contact/surface/surface_net.h"
-#include "contact/surface/surface_search.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/contact/mesh_report.h"
+#include "pincer/contact/surface/contact_slots.h"
+#include "pincer/contact/surface/convex_hull.h"
+#include "pincer/contact/surface/mesh_features.h"
+#include "pincer/contact/surface/surface_net.h"
+#include "pincer/contact/surface/surface_search.h"
 
 namespace pincer::contact {
 

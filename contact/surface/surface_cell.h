@@ -3,8 +3,8 @@
 #include <array>
 #include <cstdint>
 
-#include "contact/mesh/connectivity.h"
-#include "contact/surface/patch.h"
+#include "pincer/contact/mesh/connectivity.h"
+#include "pincer/contact/surface/patch.h"
 
 namespace pincer::contact {
 

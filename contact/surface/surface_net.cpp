@@ -1,11 +1,11 @@
-#include "contact/surface/surface_net.h"
+#include "pincer/contact/surface/surface_net.h"
 
 #include <algorithm>
 #include <bit>
 
-#include "contact/functions/invariants.h"
-#include "contact/surface/edge_cubic.h"
-#include "contact/surface/large_pages.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/contact/surface/edge_cubic.h"
+#include "pincer/contact/surface/large_pages.h"
 
 namespace pincer::contact {
 

@@ -13,12 +13,12 @@
 #include <type_traits>
 #include <vector>
 
-#include "contact/assert.h"
-#include "contact/mesh/connectivity.h"
-#include "contact/surface/patch_cache.h"
-#include "contact/surface/surface_cell.h"
-#include "contact/surface_contact.h"
-#include "contact/triangle_mesh.h"
+#include "pincer/contact/assert.h"
+#include "pincer/contact/mesh/connectivity.h"
+#include "pincer/contact/surface/patch_cache.h"
+#include "pincer/contact/surface/surface_cell.h"
+#include "pincer/contact/surface_contact.h"
+#include "pincer/contact/triangle_mesh.h"
 
 namespace pincer::contact {
 

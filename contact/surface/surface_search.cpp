@@ -1,11 +1,11 @@
-#include "contact/surface/surface_search.h"
+#include "pincer/contact/surface/surface_search.h"
 
 #include <limits>
 
-#include "contact/functions/invariants.h"
-#include "contact/surface/edge_cubic.h"
-#include "contact/surface/lone_contact.h"
-#include "contact/surface/outward_float.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/contact/surface/edge_cubic.h"
+#include "pincer/contact/surface/lone_contact.h"
+#include "pincer/contact/surface/outward_float.h"
 
 namespace pincer::contact {
 

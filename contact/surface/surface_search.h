@@ -13,10 +13,10 @@
 #include <optional>
 #include <vector>
 
-#include "contact/surface/facing_tree.h"
-#include "contact/surface/flat_minimum.h"
-#include "contact/surface/shell_solver.h"
-#include "contact/surface/surface_net.h"
+#include "pincer/contact/surface/facing_tree.h"
+#include "pincer/contact/surface/flat_minimum.h"
+#include "pincer/contact/surface/shell_solver.h"
+#include "pincer/contact/surface/surface_net.h"
 
 namespace pincer::contact {
 

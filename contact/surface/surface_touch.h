@@ -5,10 +5,10 @@
 #pragma once
 #include <algorithm>
 
-#include "contact/surface/contact_slots.h"
-#include "contact/surface/short_list.h"
-#include "contact/surface/surface_variant.h"
-#include "contact/surface/turns.h"
+#include "pincer/contact/surface/contact_slots.h"
+#include "pincer/contact/surface/short_list.h"
+#include "pincer/contact/surface/surface_variant.h"
+#include "pincer/contact/surface/turns.h"
 
 namespace pincer::contact {
 

@@ -1,7 +1,7 @@
-#include "contact/surface/surface_variant.h"
+#include "pincer/contact/surface/surface_variant.h"
 
-#include "contact/surface/flat_contact.h"
-#include "contact/surface/published_iteration.h"
+#include "pincer/contact/surface/flat_contact.h"
+#include "pincer/contact/surface/published_iteration.h"
 
 namespace pincer::contact {
 

@@ -1,7 +1,7 @@
 // surface_variant: the one place where the variants of shading part.
 #pragma once
-#include "contact/surface/shell_solver.h"
-#include "contact/surface_contact.h"
+#include "pincer/contact/surface/shell_solver.h"
+#include "pincer/contact/surface_contact.h"
 
 namespace pincer::contact {
 

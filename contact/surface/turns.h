@@ -10,7 +10,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "contact/assert.h"
+#include "pincer/contact/assert.h"
 
 namespace pincer::contact {
 
@@ -18,7 +18,7 @@ class Turns {
  public:
   // Those on the way from `from` to `to` >= `from` >= 0 [m]; a period of 0: everyone's.
   Turns(double from, double to, double period) : period_(period) {
-    PINCER_ASSERT(0 <= from && from <= to);
+    PINCER_ASSERT(!(from < 0) && !(to < from));  // what isn't finite is handed on
     if (!(period > 0)) return;
     begin_ = from / period - std::floor(from / period);
     end_ = begin_ + (to - from) / period;

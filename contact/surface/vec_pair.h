@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "contact/math.h"
+#include "pincer/contact/math.h"
 
 namespace pincer::contact {
 

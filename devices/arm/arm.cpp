@@ -1,4 +1,4 @@
-#include "devices/arm/arm.h"
+#include "pincer/devices/arm/arm.h"
 
 #include <cmath>
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "devices/math.h"
+#include "pincer/devices/math.h"
 
 namespace pincer::devices {
 

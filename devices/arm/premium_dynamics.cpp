@@ -1,9 +1,9 @@
-#include "devices/arm/premium_dynamics.h"
+#include "pincer/devices/arm/premium_dynamics.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "devices/arm/premium_kinematics.h"
+#include "pincer/devices/arm/premium_kinematics.h"
 
 namespace pincer::devices::premium {
 namespace {

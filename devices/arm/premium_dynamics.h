@@ -11,7 +11,7 @@
 // Source: Cavusoglu, Feygin, Tendick, Presence 11 (2002) 555-568, eq. 12-14 and table 2. Departure: their products of half angles are
 // collected into the seven constants above; the Coriolis terms are derived afresh.
 #pragma once
-#include "devices/math.h"
+#include "pincer/devices/math.h"
 
 namespace pincer::devices::premium {
 

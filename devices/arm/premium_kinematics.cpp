@@ -1,4 +1,4 @@
-#include "devices/arm/premium_kinematics.h"
+#include "pincer/devices/arm/premium_kinematics.h"
 
 #include <cmath>
 #include <numbers>

@@ -13,7 +13,7 @@
 #pragma once
 #include <optional>
 
-#include "devices/math.h"
+#include "pincer/devices/math.h"
 
 namespace pincer::devices::premium {
 

@@ -1,4 +1,4 @@
-#include "devices/arm/replay_arm.h"
+#include "pincer/devices/arm/replay_arm.h"
 
 #include <algorithm>
 #include <stdexcept>

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "devices/arm/arm.h"
+#include "pincer/devices/arm/arm.h"
 
 namespace pincer::devices {
 

@@ -1,11 +1,11 @@
-#include "devices/arm/sim_arm.h"
+#include "pincer/devices/arm/sim_arm.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 
-#include "devices/sim_settings.h"
+#include "pincer/devices/sim_settings.h"
 
 namespace pincer::devices {
 namespace {

@@ -14,11 +14,11 @@
 #include <cstdint>
 #include <string>
 
-#include "devices/arm/arm.h"
-#include "devices/arm/premium_dynamics.h"
-#include "devices/arm/premium_kinematics.h"
-#include "devices/math.h"
-#include "devices/sim_fault.h"
+#include "pincer/devices/arm/arm.h"
+#include "pincer/devices/arm/premium_dynamics.h"
+#include "pincer/devices/arm/premium_kinematics.h"
+#include "pincer/devices/math.h"
+#include "pincer/devices/sim_fault.h"
 
 namespace pincer::devices {
 

@@ -1,4 +1,4 @@
-#include "devices/cld/pad_policy.h"
+#include "pincer/devices/cld/pad_policy.h"
 
 #include <algorithm>
 #include <cmath>

@@ -10,8 +10,8 @@
 #include <cstdint>
 #include <optional>
 
-#include "devices/cld/tactile_display.h"
-#include "devices/math.h"
+#include "pincer/devices/cld/tactile_display.h"
+#include "pincer/devices/math.h"
 
 namespace pincer::devices {
 

@@ -14,10 +14,10 @@
 #include <optional>
 #include <string>
 
-#include "devices/cld/tactile_display.h"
-#include "devices/cld/two_dof_kinematics.h"
-#include "devices/math.h"
-#include "devices/sim_fault.h"
+#include "pincer/devices/cld/tactile_display.h"
+#include "pincer/devices/cld/two_dof_kinematics.h"
+#include "pincer/devices/math.h"
+#include "pincer/devices/sim_fault.h"
 
 namespace pincer::devices {
 

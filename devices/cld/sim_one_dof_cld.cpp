@@ -1,4 +1,4 @@
-#include "devices/cld/sim_one_dof_cld.h"
+#include "pincer/devices/cld/sim_one_dof_cld.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "devices/sim_settings.h"
+#include "pincer/devices/sim_settings.h"
 
 namespace pincer::devices {
 namespace {

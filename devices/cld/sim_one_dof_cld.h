@@ -15,10 +15,10 @@
 #include <cstdint>
 #include <string>
 
-#include "devices/cld/tactile_display.h"
-#include "devices/cld/virtual_transmission.h"
-#include "devices/math.h"
-#include "devices/sim_fault.h"
+#include "pincer/devices/cld/tactile_display.h"
+#include "pincer/devices/cld/virtual_transmission.h"
+#include "pincer/devices/math.h"
+#include "pincer/devices/sim_fault.h"
 
 namespace pincer::devices {
 

@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
-#include "devices/arm/arm.h"
-#include "devices/math.h"
+#include "pincer/devices/arm/arm.h"
+#include "pincer/devices/math.h"
 
 namespace pincer::devices {
 

@@ -1,4 +1,4 @@
-#include "devices/cld/tactor_error.h"
+#include "pincer/devices/cld/tactor_error.h"
 
 #include <algorithm>
 #include <cmath>

@@ -11,7 +11,7 @@
 #include <array>
 #include <optional>
 
-#include "devices/math.h"
+#include "pincer/devices/math.h"
 
 namespace pincer::devices {
 

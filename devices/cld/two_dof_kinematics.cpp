@@ -1,4 +1,4 @@
-#include "devices/cld/two_dof_kinematics.h"
+#include "pincer/devices/cld/two_dof_kinematics.h"
 
 #include <algorithm>
 #include <array>

@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-#include "devices/math.h"
+#include "pincer/devices/math.h"
 
 namespace pincer::devices {
 

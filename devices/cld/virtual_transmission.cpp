@@ -1,4 +1,4 @@
-#include "devices/cld/virtual_transmission.h"
+#include "pincer/devices/cld/virtual_transmission.h"
 
 #include <algorithm>
 #include <cmath>

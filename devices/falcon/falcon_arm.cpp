@@ -1,10 +1,10 @@
-#include "devices/falcon/falcon_arm.h"
+#include "pincer/devices/falcon/falcon_arm.h"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
-#include "devices/usb/usb_bus.h"
+#include "pincer/devices/usb/usb_bus.h"
 
 namespace pincer::devices::falcon {
 namespace {

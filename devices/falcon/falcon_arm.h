@@ -12,10 +12,10 @@
 #include <thread>
 #include <vector>
 
-#include "devices/arm/arm.h"
-#include "devices/falcon/falcon_kinematics.h"
-#include "devices/falcon/falcon_packet.h"
-#include "devices/triple_buffer.h"
+#include "pincer/devices/arm/arm.h"
+#include "pincer/devices/falcon/falcon_kinematics.h"
+#include "pincer/devices/falcon/falcon_packet.h"
+#include "pincer/devices/triple_buffer.h"
 
 namespace pincer::devices::falcon {
 

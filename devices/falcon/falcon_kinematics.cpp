@@ -1,4 +1,4 @@
-#include "devices/falcon/falcon_kinematics.h"
+#include "pincer/devices/falcon/falcon_kinematics.h"
 
 #include <Eigen/LU>
 #include <cmath>

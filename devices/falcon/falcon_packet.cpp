@@ -1,4 +1,4 @@
-#include "devices/falcon/falcon_packet.h"
+#include "pincer/devices/falcon/falcon_packet.h"
 
 #include <algorithm>
 

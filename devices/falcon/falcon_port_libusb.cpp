@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "devices/falcon/falcon_arm.h"
-#include "devices/usb/port_name.h"
+#include "pincer/devices/falcon/falcon_arm.h"
+#include "pincer/devices/usb/port_name.h"
 
 namespace pincer::devices::falcon {
 namespace {

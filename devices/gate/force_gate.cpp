@@ -1,4 +1,4 @@
-#include "devices/gate/force_gate.h"
+#include "pincer/devices/gate/force_gate.h"
 
 #include <fmt/format.h>
 

@@ -8,7 +8,7 @@
 //              H = (f_peak^2 - f_cont^2) (thermal_time + tau): peak_force from cold lasts thermal_time, then sinks smoothly to f_cont
 //   slew       f = s + (f - s) min(1, (slew dt - |s - f_last|) / |f - s|),   s = f_last within the torques of now:   |f - f_last| <= slew dt
 //
-// in this order, behind the passivity controller of grasp/passivity (tasks/servo/tick.cpp). Slew comes last, because its bound is one on
+// in this order, behind the passivity controller of grasp/passivity (tasks/run/tick/tick.cpp). Slew comes last, because its bound is one on
 // what the motor gets: a stage behind it could break it. It can delay the thermal stage by peak_force / slew at most. It keeps to the torque
 // bound: both s and f do, and so does the straight line between them. Only where the arm moved so far within a tick that the last force
 // overloads a joint by more than the slew can take back, torque wins over slew.
@@ -19,8 +19,8 @@
 #include <optional>
 #include <string>
 
-#include "devices/arm/arm.h"
-#include "devices/math.h"
+#include "pincer/devices/arm/arm.h"
+#include "pincer/devices/math.h"
 
 namespace pincer::devices {
 

@@ -1,4 +1,4 @@
-#include "devices/usb/device_link.h"
+#include "pincer/devices/usb/device_link.h"
 
 #include <algorithm>
 

@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "devices/usb/frame_order.h"
-#include "devices/usb/messages.h"
+#include "pincer/devices/usb/frame_order.h"
+#include "pincer/devices/usb/messages.h"
 
 namespace pincer::devices::usb {
 

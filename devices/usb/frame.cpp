@@ -1,8 +1,8 @@
-#include "devices/usb/frame.h"
+#include "pincer/devices/usb/frame.h"
 
 #include <algorithm>
 
-#include "devices/usb/byte_order.h"
+#include "pincer/devices/usb/byte_order.h"
 
 namespace pincer::devices::usb {
 namespace {

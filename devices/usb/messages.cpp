@@ -1,6 +1,6 @@
-#include "devices/usb/messages.h"
+#include "pincer/devices/usb/messages.h"
 
-#include "devices/usb/payload.h"
+#include "pincer/devices/usb/payload.h"
 
 namespace pincer::devices::usb {
 namespace {

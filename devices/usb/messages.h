@@ -7,10 +7,10 @@
 #include <optional>
 #include <string>
 
-#include "devices/arm/arm.h"
-#include "devices/cld/tactile_display.h"
-#include "devices/math.h"
-#include "devices/usb/frame.h"
+#include "pincer/devices/arm/arm.h"
+#include "pincer/devices/cld/tactile_display.h"
+#include "pincer/devices/math.h"
+#include "pincer/devices/usb/frame.h"
 
 namespace pincer::devices::usb {
 

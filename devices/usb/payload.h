@@ -5,9 +5,9 @@
 #include <string>
 #include <string_view>
 
-#include "devices/math.h"
-#include "devices/usb/byte_order.h"
-#include "devices/usb/frame.h"
+#include "pincer/devices/math.h"
+#include "pincer/devices/usb/byte_order.h"
+#include "pincer/devices/usb/frame.h"
 
 namespace pincer::devices::usb {
 

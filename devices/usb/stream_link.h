@@ -6,9 +6,9 @@
 #pragma once
 #include <cstdint>
 
-#include "devices/triple_buffer.h"
-#include "devices/usb/device_link.h"
-#include "devices/usb/usb_thread.h"
+#include "pincer/devices/triple_buffer.h"
+#include "pincer/devices/usb/device_link.h"
+#include "pincer/devices/usb/usb_thread.h"
 
 namespace pincer::devices::usb {
 

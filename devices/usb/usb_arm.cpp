@@ -1,6 +1,6 @@
-#include "devices/usb/usb_arm.h"
+#include "pincer/devices/usb/usb_arm.h"
 
-#include "devices/arm/premium_kinematics.h"
+#include "pincer/devices/arm/premium_kinematics.h"
 
 namespace pincer::devices::usb {
 

@@ -3,8 +3,8 @@
 // Force needs three yeses: the gate's (the caller), this arm's (armed since it was plugged in and since the last stop), and the device's (an
 // arming count that it hasn't refused). Every command dies in the device after its deadline, so a computer that stops is zero force.
 #pragma once
-#include "devices/arm/arm.h"
-#include "devices/usb/stream_link.h"
+#include "pincer/devices/arm/arm.h"
+#include "pincer/devices/usb/stream_link.h"
 
 namespace pincer::devices::usb {
 

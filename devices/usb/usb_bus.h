@@ -9,7 +9,7 @@
 #include <span>
 #include <string>
 
-#include "devices/usb/frame.h"
+#include "pincer/devices/usb/frame.h"
 
 namespace pincer::devices::usb {
 

@@ -15,8 +15,8 @@
 #include <utility>
 #include <vector>
 
-#include "devices/usb/port_name.h"
-#include "devices/usb/usb_bus.h"
+#include "pincer/devices/usb/port_name.h"
+#include "pincer/devices/usb/usb_bus.h"
 
 namespace pincer::devices::usb {
 namespace {

@@ -1,4 +1,4 @@
-#include "devices/usb/usb_display.h"
+#include "pincer/devices/usb/usb_display.h"
 
 namespace pincer::devices::usb {
 

@@ -1,8 +1,8 @@
 // usb_display: a contact location display that speaks the protocol of docs/usb-protocol.md. A command dies in the device after
 // `kPlaceDeadline`; the tactor then parks.
 #pragma once
-#include "devices/cld/tactile_display.h"
-#include "devices/usb/stream_link.h"
+#include "pincer/devices/cld/tactile_display.h"
+#include "pincer/devices/usb/stream_link.h"
 
 namespace pincer::devices::usb {
 

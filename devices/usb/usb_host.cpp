@@ -1,4 +1,4 @@
-#include "devices/usb/usb_host.h"
+#include "pincer/devices/usb/usb_host.h"
 
 #include <chrono>
 

@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "devices/usb/usb_arm.h"
-#include "devices/usb/usb_bus.h"
-#include "devices/usb/usb_display.h"
-#include "devices/usb/usb_thread.h"
+#include "pincer/devices/usb/usb_arm.h"
+#include "pincer/devices/usb/usb_bus.h"
+#include "pincer/devices/usb/usb_display.h"
+#include "pincer/devices/usb/usb_thread.h"
 
 namespace pincer::devices::usb {
 

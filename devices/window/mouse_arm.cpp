@@ -1,9 +1,9 @@
-#include "devices/window/mouse_arm.h"
+#include "pincer/devices/window/mouse_arm.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "devices/sim_settings.h"
+#include "pincer/devices/sim_settings.h"
 
 namespace pincer::devices {
 namespace {

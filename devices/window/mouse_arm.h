@@ -6,7 +6,7 @@
 //
 // Half steps of at most 0.25 ms: a drift, a kick with the forces there, a drift. Position and velocity are exact: there is nothing to quantise.
 #pragma once
-#include "devices/arm/arm.h"
+#include "pincer/devices/arm/arm.h"
 
 namespace pincer::devices {
 

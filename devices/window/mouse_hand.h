@@ -10,8 +10,8 @@
 #pragma once
 #include <vector>
 
-#include "devices/triple_buffer.h"
-#include "devices/window/mouse_arm.h"
+#include "pincer/devices/triple_buffer.h"
+#include "pincer/devices/window/mouse_arm.h"
 
 namespace pincer::devices {
 

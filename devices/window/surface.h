@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "devices/window/input.h"
+#include "pincer/devices/window/input.h"
 
 namespace pincer::devices {
 

@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "devices/window/surface.h"
+#include "pincer/devices/window/surface.h"
 
 namespace pincer::devices {
 namespace {

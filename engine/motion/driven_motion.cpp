@@ -1,8 +1,8 @@
-#include "engine/motion/driven_motion.h"
+#include "pincer/engine/motion/driven_motion.h"
 
 #include <cmath>
 
-#include "contact/functions/invariants.h"
+#include "pincer/contact/functions/invariants.h"
 
 namespace pincer::engine {
 

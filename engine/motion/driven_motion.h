@@ -6,8 +6,8 @@
 // Both ends are exact; between them the turn errs by what the axis of rotation turns within a tick.
 // Source: C. de Boor, A Practical Guide to Splines, 1978, ch. IV (cubic Hermite interpolation).
 #pragma once
-#include "contact/math.h"
-#include "engine/motion.h"
+#include "pincer/contact/math.h"
+#include "pincer/engine/motion.h"
 
 namespace pincer::engine {
 

@@ -1,6 +1,6 @@
-#include "engine/motion/free_motion.h"
+#include "pincer/engine/motion/free_motion.h"
 
-#include "contact/functions/invariants.h"
+#include "pincer/contact/functions/invariants.h"
 
 namespace pincer::engine {
 namespace {

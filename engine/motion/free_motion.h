@@ -11,8 +11,8 @@
 // A. Zanna, Found. Comput. Math. 5 (2005) 87-123, and E. Celledoni, F. Fasso, N. Saefstroem, A. Zanna, SIAM J. Sci. Comput. 30 (2008).
 // Measured on a 20 x 40 x 80 mm box at 20 rad/s about its middle axis, 1 ms, angle after 1 s: Strang 3e-6, triple jump 5e-10, this 9e-12 rad.
 #pragma once
-#include "contact/math.h"
-#include "engine/motion.h"
+#include "pincer/contact/math.h"
+#include "pincer/engine/motion.h"
 
 namespace pincer::engine {
 

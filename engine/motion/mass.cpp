@@ -1,11 +1,11 @@
-#include "engine/motion/mass.h"
+#include "pincer/engine/motion/mass.h"
 
 #include <fmt/format.h>
 
-#include "contact/error.h"
-#include "contact/functions/invariants.h"
-#include "contact/polytope.h"
-#include "contact/smooth_mesh.h"
+#include "pincer/contact/error.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/contact/polytope.h"
+#include "pincer/contact/smooth_mesh.h"
 
 namespace pincer::engine {
 namespace {

@@ -1,7 +1,7 @@
 // mass: mass, centre of mass and inertia of solids.
 #pragma once
-#include "contact/shape.h"
-#include "contact/triangle_mesh.h"
+#include "pincer/contact/shape.h"
+#include "pincer/contact/triangle_mesh.h"
 
 namespace pincer::engine {
 

@@ -1,11 +1,11 @@
-#include "engine/motion/one_freedom.h"
+#include "pincer/engine/motion/one_freedom.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "contact/elementary.h"
-#include "contact/functions/invariants.h"
+#include "pincer/contact/elementary.h"
+#include "pincer/contact/functions/invariants.h"
 
 namespace pincer::engine {
 namespace {

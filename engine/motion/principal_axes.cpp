@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
-#include "contact/error.h"
-#include "contact/functions/invariants.h"
-#include "engine/motion/mass.h"
+#include "pincer/contact/error.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/engine/motion/mass.h"
 
 namespace pincer::engine {
 namespace {

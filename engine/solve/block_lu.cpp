@@ -1,11 +1,11 @@
-#include "engine/solve/block_lu.h"
+#include "pincer/engine/solve/block_lu.h"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <utility>
 
-#include "contact/functions/invariants.h"
+#include "pincer/contact/functions/invariants.h"
 
 namespace pincer::engine {
 namespace {

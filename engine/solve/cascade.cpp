@@ -1,17 +1,17 @@
-#include "engine/solve/cascade.h"
+#include "pincer/engine/solve/cascade.h"
 
 #include <algorithm>
 
-#include "contact/functions/invariants.h"
-#include "engine/solve/contact_equations.h"
-#include "engine/solve/gauss_seidel.h"
-#include "engine/solve/interior_point.h"
-#include "engine/solve/large_problem.h"
-#include "engine/solve/newton.h"
-#include "engine/solve/point_problem.h"
-#include "engine/solve/residual.h"
-#include "engine/solve/small_problem.h"
-#include "engine/solve/squeeze.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/engine/solve/contact_equations.h"
+#include "pincer/engine/solve/gauss_seidel.h"
+#include "pincer/engine/solve/interior_point.h"
+#include "pincer/engine/solve/large_problem.h"
+#include "pincer/engine/solve/newton.h"
+#include "pincer/engine/solve/point_problem.h"
+#include "pincer/engine/solve/residual.h"
+#include "pincer/engine/solve/small_problem.h"
+#include "pincer/engine/solve/squeeze.h"
 
 namespace pincer::engine {
 namespace {

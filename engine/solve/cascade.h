@@ -17,9 +17,9 @@
 #include <limits>
 #include <vector>
 
-#include "engine/solve/block_lu.h"
-#include "engine/solve/contact_problem.h"
-#include "engine/solver.h"
+#include "pincer/engine/solve/block_lu.h"
+#include "pincer/engine/solve/contact_problem.h"
+#include "pincer/engine/solver.h"
 
 namespace pincer::engine {
 

@@ -1,11 +1,11 @@
-#include "engine/solve/contact_equations.h"
+#include "pincer/engine/solve/contact_equations.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "engine/solve/inverse3.h"
-#include "engine/solve/linear.h"
-#include "engine/solve/mobility.h"
+#include "pincer/engine/solve/inverse3.h"
+#include "pincer/engine/solve/linear.h"
+#include "pincer/engine/solve/mobility.h"
 
 namespace pincer::engine {
 namespace {

@@ -10,7 +10,7 @@
 // Source: the second is Woodbury's identity (Golub, Van Loan, Matrix Computations, 4th ed., section 2.1.4) on V. Acary, M. Bremond,
 // O. Huber, Advanced Topics in Nonsmooth Dynamics (2018), eq. (9.57).
 #pragma once
-#include "engine/solve/scaled_problem.h"
+#include "pincer/engine/solve/scaled_problem.h"
 
 namespace pincer::engine {
 

@@ -18,8 +18,8 @@
 #include <span>
 #include <type_traits>
 
-#include "contact/math.h"
-#include "engine/solver.h"
+#include "pincer/contact/math.h"
+#include "pincer/engine/solver.h"
 
 namespace pincer::engine {
 

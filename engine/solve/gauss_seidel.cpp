@@ -1,14 +1,14 @@
-#include "engine/solve/gauss_seidel.h"
+#include "pincer/engine/solve/gauss_seidel.h"
 
 #include <algorithm>
 #include <limits>
 
-#include "engine/solve/cone.h"
-#include "engine/solve/inverse3.h"
-#include "engine/solve/linear.h"
-#include "engine/solve/local_contact.h"
-#include "engine/solve/mobility.h"
-#include "engine/solve/round_contact.h"
+#include "pincer/engine/solve/cone.h"
+#include "pincer/engine/solve/inverse3.h"
+#include "pincer/engine/solve/linear.h"
+#include "pincer/engine/solve/local_contact.h"
+#include "pincer/engine/solve/mobility.h"
+#include "pincer/engine/solve/round_contact.h"
 
 namespace pincer::engine {
 namespace {

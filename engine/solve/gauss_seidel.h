@@ -12,7 +12,7 @@
 #pragma once
 #include <cmath>
 
-#include "engine/solve/scaled_problem.h"
+#include "pincer/engine/solve/scaled_problem.h"
 
 namespace pincer::engine {
 

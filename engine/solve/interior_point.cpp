@@ -1,8 +1,8 @@
-#include "engine/solve/interior_point.h"
+#include "pincer/engine/solve/interior_point.h"
 
 #include <algorithm>
 
-#include "engine/solve/lorentz.h"
+#include "pincer/engine/solve/lorentz.h"
 
 namespace pincer::engine {
 namespace {

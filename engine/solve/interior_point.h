@@ -8,7 +8,7 @@
 // Sources: L. Vandenberghe, "The CVXOPT linear and quadratic cone program solvers" (2010); the shift: V. Acary, P. Armand,
 // H. M. Nguyen, M. Shpakovych, Optim. Methods Softw. 39 (2024).
 #pragma once
-#include "engine/solve/contact_equations.h"
+#include "pincer/engine/solve/contact_equations.h"
 
 namespace pincer::engine {
 

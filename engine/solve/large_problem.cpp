@@ -1,9 +1,9 @@
-#include "engine/solve/large_problem.h"
+#include "pincer/engine/solve/large_problem.h"
 
 #include <algorithm>
 
-#include "engine/solve/gauss_seidel.h"
-#include "engine/solve/residual.h"
+#include "pincer/engine/solve/gauss_seidel.h"
+#include "pincer/engine/solve/residual.h"
 
 namespace pincer::engine {
 namespace {

@@ -4,7 +4,7 @@
 // by visits to contacts, so that a tick of a thousand bodies costs little more than one of a hundred. A heap of hundreds that falls is solved as
 // far as that goes, and flagged where that isn't to kLargeSpeed; one of a hundred, or that settles, is.
 #pragma once
-#include "engine/solve/cascade.h"
+#include "pincer/engine/solve/cascade.h"
 
 namespace pincer::engine {
 

@@ -1,9 +1,9 @@
-#include "engine/solve/linear.h"
+#include "pincer/engine/solve/linear.h"
 
 #include <cmath>
 #include <utility>
 
-#include "contact/functions/invariants.h"
+#include "pincer/contact/functions/invariants.h"
 
 namespace pincer::engine {
 namespace {

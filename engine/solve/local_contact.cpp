@@ -1,9 +1,9 @@
-#include "engine/solve/local_contact.h"
+#include "pincer/engine/solve/local_contact.h"
 
 #include <algorithm>
 #include <limits>
 
-#include "engine/solve/cone.h"
+#include "pincer/engine/solve/cone.h"
 
 namespace pincer::engine {
 namespace {

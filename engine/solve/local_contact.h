@@ -12,7 +12,7 @@
 #pragma once
 #include <cmath>
 
-#include "engine/solve/contact_problem.h"
+#include "pincer/engine/solve/contact_problem.h"
 
 namespace pincer::engine {
 

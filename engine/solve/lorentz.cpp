@@ -1,4 +1,4 @@
-#include "engine/solve/lorentz.h"
+#include "pincer/engine/solve/lorentz.h"
 
 namespace pincer::engine {
 

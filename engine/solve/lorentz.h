@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/solve/cone.h"
+#include "pincer/engine/solve/cone.h"
 
 namespace pincer::engine {
 

@@ -4,7 +4,7 @@
 //
 // Linear in the number of contacts, whatever the number of pairs of them that see each other. Sums in a fixed order.
 #pragma once
-#include "engine/solve/contact_problem.h"
+#include "pincer/engine/solve/contact_problem.h"
 
 namespace pincer::engine {
 

@@ -1,10 +1,10 @@
-#include "engine/solve/newton.h"
+#include "pincer/engine/solve/newton.h"
 
 #include <algorithm>
 #include <limits>
 #include <utility>
 
-#include "engine/solve/cone.h"
+#include "pincer/engine/solve/cone.h"
 
 namespace pincer::engine {
 namespace {

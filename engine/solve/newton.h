@@ -10,7 +10,7 @@
 // M. Bremond, O. Huber, in Advanced Topics in Nonsmooth Dynamics (2018) 375-457. Departure: each iterate is put back into the cones, so
 // that any of them may be returned.
 #pragma once
-#include "engine/solve/contact_equations.h"
+#include "pincer/engine/solve/contact_equations.h"
 
 namespace pincer::engine {
 

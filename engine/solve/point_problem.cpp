@@ -1,12 +1,12 @@
-#include "engine/solve/point_problem.h"
+#include "pincer/engine/solve/point_problem.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
-#include "engine/solve/inverse3.h"
-#include "engine/solve/local_contact.h"
-#include "engine/solve/residual.h"
+#include "pincer/engine/solve/inverse3.h"
+#include "pincer/engine/solve/local_contact.h"
+#include "pincer/engine/solve/residual.h"
 
 namespace pincer::engine {
 namespace {

@@ -1,7 +1,7 @@
-#include "engine/solve/residual.h"
+#include "pincer/engine/solve/residual.h"
 
-#include "engine/solve/mobility.h"
-#include "engine/solve/round_contact.h"
+#include "pincer/engine/solve/mobility.h"
+#include "pincer/engine/solve/round_contact.h"
 
 namespace pincer::engine {
 

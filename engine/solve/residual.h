@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/solve/cascade.h"
-#include "engine/solve/cone.h"
+#include "pincer/engine/solve/cascade.h"
+#include "pincer/engine/solve/cone.h"
 
 namespace pincer::engine {
 

@@ -1,8 +1,8 @@
-#include "engine/solve/round_contact.h"
+#include "pincer/engine/solve/round_contact.h"
 
 #include <cmath>
 
-#include "engine/solve/mobility.h"
+#include "pincer/engine/solve/mobility.h"
 
 namespace pincer::engine {
 namespace {

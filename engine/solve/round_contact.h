@@ -9,7 +9,7 @@
 #pragma once
 #include <vector>
 
-#include "engine/solve/contact_problem.h"
+#include "pincer/engine/solve/contact_problem.h"
 
 namespace pincer::engine {
 

@@ -1,7 +1,7 @@
-#include "engine/solve/scaled_problem.h"
+#include "pincer/engine/solve/scaled_problem.h"
 
-#include "engine/solve/mobility.h"
-#include "engine/solve/residual.h"
+#include "pincer/engine/solve/mobility.h"
+#include "pincer/engine/solve/residual.h"
 
 namespace pincer::engine {
 namespace {

@@ -1,13 +1,13 @@
-#include "engine/solve/small_problem.h"
+#include "pincer/engine/solve/small_problem.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "engine/solve/cone.h"
-#include "engine/solve/inverse3.h"
-#include "engine/solve/mobility.h"
-#include "engine/solve/residual.h"
-#include "engine/solve/squeeze.h"
+#include "pincer/engine/solve/cone.h"
+#include "pincer/engine/solve/inverse3.h"
+#include "pincer/engine/solve/mobility.h"
+#include "pincer/engine/solve/residual.h"
+#include "pincer/engine/solve/squeeze.h"
 
 namespace pincer::engine {
 namespace {

@@ -9,7 +9,7 @@
 // Full steps only; what they don't solve is left to the cascade, from the same warm start.
 // Source: as newton.h.
 #pragma once
-#include "engine/solve/cascade.h"
+#include "pincer/engine/solve/cascade.h"
 
 namespace pincer::engine {
 

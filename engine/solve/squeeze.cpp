@@ -1,10 +1,10 @@
-#include "engine/solve/squeeze.h"
+#include "pincer/engine/solve/squeeze.h"
 
 #include <algorithm>
 #include <limits>
 
-#include "engine/solve/mobility.h"
-#include "engine/solve/residual.h"
+#include "pincer/engine/solve/mobility.h"
+#include "pincer/engine/solve/residual.h"
 
 namespace pincer::engine {
 

@@ -8,7 +8,7 @@
 #pragma once
 #include <vector>
 
-#include "engine/solve/contact_problem.h"
+#include "pincer/engine/solve/contact_problem.h"
 
 namespace pincer::engine {
 

@@ -1,14 +1,14 @@
 // From impulses to momenta, from momenta to poses.
 #include <algorithm>
 
-#include "engine/motion/free_motion.h"
-#include "engine/world/contact_rows.h"
-#include "engine/world/held_body.h"
-#include "engine/world/impact.h"
-#include "engine/world/island_sleep.h"
-#include "engine/world/joints.h"
-#include "engine/world/rest.h"
-#include "engine/world/stages.h"
+#include "pincer/engine/motion/free_motion.h"
+#include "pincer/engine/world/contact_rows.h"
+#include "pincer/engine/world/held_body.h"
+#include "pincer/engine/world/impact.h"
+#include "pincer/engine/world/island_sleep.h"
+#include "pincer/engine/world/joints.h"
+#include "pincer/engine/world/rest.h"
+#include "pincer/engine/world/stages.h"
 
 namespace pincer::engine {
 namespace {

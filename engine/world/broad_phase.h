@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/model.h"
+#include "pincer/engine/model.h"
 
 namespace pincer::engine {
 

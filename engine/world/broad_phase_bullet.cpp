@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "contact/functions/invariants.h"
-#include "contact/shape/bullet_memory.h"
-#include "engine/world/broad_phase.h"
-#include "engine/world/scratch.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/contact/surface/bullet_memory.h"
+#include "pincer/engine/world/broad_phase.h"
+#include "pincer/engine/world/scratch.h"
 
 namespace pincer::engine {
 namespace {

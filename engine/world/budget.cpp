@@ -1,4 +1,4 @@
-#include "engine/world/budget.h"
+#include "pincer/engine/world/budget.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 // Counted in multiplications, not measured (solve/cascade.h); scratch.operations_left below 0 is spent. Then what is left of the tick is done in one
 // part, however far bodies turn in it, with impulses that are best iterates: its answer is flagged, and must not have more energy than there was.
 #pragma once
-#include "engine/world/scratch.h"
+#include "pincer/engine/world/scratch.h"
 
 namespace pincer::engine {
 

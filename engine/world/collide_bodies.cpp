@@ -1,10 +1,10 @@
 #include <algorithm>
 
-#include "contact/functions/invariants.h"
-#include "contact/pair_query.h"
-#include "engine/world/budget.h"
-#include "engine/world/impact.h"
-#include "engine/world/island_sleep.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/contact/pair_query.h"
+#include "pincer/engine/world/budget.h"
+#include "pincer/engine/world/impact.h"
+#include "pincer/engine/world/island_sleep.h"
 
 namespace pincer::engine {
 namespace {

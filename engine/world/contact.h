@@ -2,10 +2,10 @@
 #pragma once
 #include <cstdint>
 
-#include "engine/model.h"
-#include "engine/motion.h"
-#include "engine/solve/contact_problem.h"
-#include "engine/state.h"
+#include "pincer/engine/model.h"
+#include "pincer/engine/motion.h"
+#include "pincer/engine/solve/contact_problem.h"
+#include "pincer/engine/state.h"
 
 namespace pincer::engine {
 

@@ -1,13 +1,13 @@
-#include "engine/world/contact_rows.h"
+#include "pincer/engine/world/contact_rows.h"
 
 #include <algorithm>
 
-#include "contact/functions/invariants.h"
-#include "engine/world/hollow_inertia.h"
-#include "engine/world/impact.h"
-#include "engine/world/push_out.h"
-#include "engine/world/stick_bias.h"
-#include "engine/world/wedge.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/engine/world/hollow_inertia.h"
+#include "pincer/engine/world/impact.h"
+#include "pincer/engine/world/push_out.h"
+#include "pincer/engine/world/stick_bias.h"
+#include "pincer/engine/world/wedge.h"
 
 namespace pincer::engine {
 namespace {

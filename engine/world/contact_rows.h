@@ -18,9 +18,9 @@
 #pragma once
 #include <span>
 
-#include "engine/solve/contact_problem.h"
-#include "engine/state.h"
-#include "engine/world/scratch.h"
+#include "pincer/engine/solve/contact_problem.h"
+#include "pincer/engine/state.h"
+#include "pincer/engine/world/scratch.h"
 
 namespace pincer::engine {
 

@@ -1,10 +1,10 @@
-#include "engine/world/contact_sides.h"
+#include "pincer/engine/world/contact_sides.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "contact/functions/invariants.h"
-#include "engine/world/joints.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/engine/world/joints.h"
 
 namespace pincer::engine {
 namespace {

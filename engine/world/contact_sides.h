@@ -7,9 +7,9 @@
 #pragma once
 #include <vector>
 
-#include "engine/model.h"
-#include "engine/solve/contact_problem.h"
-#include "engine/world/scratch.h"
+#include "pincer/engine/model.h"
+#include "pincer/engine/solve/contact_problem.h"
+#include "pincer/engine/world/scratch.h"
 
 namespace pincer::engine {
 

@@ -1,10 +1,10 @@
-#include "engine/world/held_body.h"
+#include "pincer/engine/world/held_body.h"
 
 #include <cmath>
 
-#include "contact/functions/invariants.h"
-#include "engine/motion/free_motion.h"
-#include "engine/motion/one_freedom.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/engine/motion/free_motion.h"
+#include "pincer/engine/motion/one_freedom.h"
 
 namespace pincer::engine {
 namespace {

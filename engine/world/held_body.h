@@ -9,8 +9,8 @@
 // What they add to th' is taken as a constant push, as for free bodies (decision 3): half of it acts on the way, with a damper a little more. The body is placed on its joint by the coordinate: nothing
 // drifts, nothing is projected. Joints that bind several bodies: joints.h.
 #pragma once
-#include "engine/state.h"
-#include "engine/world/scratch.h"
+#include "pincer/engine/state.h"
+#include "pincer/engine/world/scratch.h"
 
 namespace pincer::engine {
 

@@ -1,4 +1,4 @@
-#include "engine/world/hollow_inertia.h"
+#include "pincer/engine/world/hollow_inertia.h"
 
 #include <algorithm>
 

@@ -11,9 +11,9 @@
 // can bear, until it leaves through the wall. m_g bounds that: the eigenvalues of the linear tick stay below 1 for any lambda up to 30 and any d,
 // with kappa wrong by 40 % to either side (decision 17). What moves evenly, or rests, doesn't feel m_g; couplings with d > 3/2 h f kappa have none.
 #pragma once
-#include "engine/model.h"
-#include "engine/state.h"
-#include "engine/world/scratch.h"
+#include "pincer/engine/model.h"
+#include "pincer/engine/state.h"
+#include "pincer/engine/world/scratch.h"
 
 namespace pincer::engine {
 

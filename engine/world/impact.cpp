@@ -1,10 +1,10 @@
-#include "engine/world/impact.h"
+#include "pincer/engine/world/impact.h"
 
 #include <algorithm>
 
-#include "contact/functions/invariants.h"
-#include "engine/solve/local_contact.h"
-#include "engine/world/contact_rows.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/engine/solve/local_contact.h"
+#include "pincer/engine/world/contact_rows.h"
 
 namespace pincer::engine {
 namespace {

@@ -17,7 +17,7 @@
 // Departure from W. J. Stronge, Impact Mechanics, 2000, whose energetic coefficient needs the course of each hit: for bodies of convex shape
 // that don't rub they are the same.
 #pragma once
-#include "engine/world/stages.h"
+#include "pincer/engine/world/stages.h"
 
 namespace pincer::engine {
 

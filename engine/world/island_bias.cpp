@@ -1,12 +1,12 @@
-#include "engine/world/island_bias.h"
+#include "pincer/engine/world/island_bias.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "engine/solve/cone.h"
-#include "engine/solve/mobility.h"
-#include "engine/solve/round_contact.h"
-#include "engine/world/contact_rows.h"
+#include "pincer/engine/solve/cone.h"
+#include "pincer/engine/solve/mobility.h"
+#include "pincer/engine/solve/round_contact.h"
+#include "pincer/engine/world/contact_rows.h"
 
 namespace pincer::engine {
 namespace {

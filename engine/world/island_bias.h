@@ -11,7 +11,7 @@
 // shut. Of hundreds of contacts a few steps are taken per tick: what is left is fitted again in the next one. So it is with a rod between two pads, too, which two contacts each hold. Where the contacts don't contradict each other b stays what it is. Pairs alone are made consistent by stick_bias.h, at less cost.
 // Source: conjugate gradients on the normal equations (M. Hestenes, E. Stiefel, J. Res. Natl. Bur. Stand. 49 (1952) 409-436, section 10).
 #pragma once
-#include "engine/world/scratch.h"
+#include "pincer/engine/world/scratch.h"
 
 namespace pincer::engine {
 

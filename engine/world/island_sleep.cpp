@@ -1,9 +1,9 @@
-#include "engine/world/island_sleep.h"
+#include "pincer/engine/world/island_sleep.h"
 
 #include <algorithm>
 
-#include "contact/functions/invariants.h"
-#include "engine/world/rest.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/engine/world/rest.h"
 
 namespace pincer::engine {
 namespace {

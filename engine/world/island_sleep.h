@@ -9,7 +9,7 @@
 // Never asleep is what a point or a moving driven body touches, what joints bind, and any island in a world with a position tolerance.
 // With a budget what sleeps leaves its share to the others, so that theirs runs out later.
 #pragma once
-#include "engine/world/stages.h"
+#include "pincer/engine/world/stages.h"
 
 namespace pincer::engine {
 

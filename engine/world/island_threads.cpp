@@ -1,8 +1,8 @@
-#include "engine/world/island_threads.h"
+#include "pincer/engine/world/island_threads.h"
 
 #include <exception>
 
-#include "contact/functions/invariants.h"
+#include "pincer/contact/functions/invariants.h"
 
 namespace pincer::engine {
 namespace {

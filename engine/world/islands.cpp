@@ -1,16 +1,16 @@
-#include "engine/world/islands.h"
+#include "pincer/engine/world/islands.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <span>
 
-#include "contact/functions/invariants.h"
-#include "engine/world/contact_rows.h"
-#include "engine/world/contact_sides.h"
-#include "engine/world/island_threads.h"
-#include "engine/world/scratch.h"
-#include "engine/world/solve_island.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/engine/world/contact_rows.h"
+#include "pincer/engine/world/contact_sides.h"
+#include "pincer/engine/world/island_threads.h"
+#include "pincer/engine/world/scratch.h"
+#include "pincer/engine/world/solve_island.h"
 
 namespace pincer::engine {
 namespace {

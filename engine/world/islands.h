@@ -8,8 +8,8 @@
 #include <memory>
 #include <vector>
 
-#include "contact/math.h"
-#include "engine/solve/cascade.h"
+#include "pincer/contact/math.h"
+#include "pincer/engine/solve/cascade.h"
 
 namespace pincer::engine {
 

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "contact/functions/invariants.h"
-#include "engine/world/joints.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/engine/world/joints.h"
 
 namespace pincer::engine {
 namespace {

@@ -1,11 +1,11 @@
-#include "engine/world/joints.h"
+#include "pincer/engine/world/joints.h"
 
 #include <algorithm>
 
-#include "contact/functions/invariants.h"
-#include "engine/motion/free_motion.h"
-#include "engine/solve/linear.h"
-#include "engine/world/held_body.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/engine/motion/free_motion.h"
+#include "pincer/engine/solve/linear.h"
+#include "pincer/engine/world/held_body.h"
 
 namespace pincer::engine {
 namespace {

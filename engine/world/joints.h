@@ -16,8 +16,8 @@
 // Source: R. Featherstone, Rigid Body Dynamics Algorithms, 2008, section 3.2 (constrained motion; eliminated per group, not recursively: hands hold
 // a few joints); projection: E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration, 2nd ed., 2006, IV.4.
 #pragma once
-#include "engine/state.h"
-#include "engine/world/scratch.h"
+#include "pincer/engine/state.h"
+#include "pincer/engine/world/scratch.h"
 
 namespace pincer::engine {
 

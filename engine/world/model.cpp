@@ -1,4 +1,4 @@
-#include "engine/model.h"
+#include "pincer/engine/model.h"
 
 #include <fmt/format.h>
 
@@ -6,12 +6,12 @@
 #include <cmath>
 #include <limits>
 
-#include "contact/functions/invariants.h"
-#include "contact/pair_query.h"
-#include "engine/motion/mass.h"
-#include "engine/solve/contact_problem.h"
-#include "engine/world/broad_phase.h"
-#include "engine/world/most_numbered.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/contact/pair_query.h"
+#include "pincer/engine/motion/mass.h"
+#include "pincer/engine/solve/contact_problem.h"
+#include "pincer/engine/world/broad_phase.h"
+#include "pincer/engine/world/most_numbered.h"
 
 namespace pincer::engine {
 namespace {

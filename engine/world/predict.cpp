@@ -1,11 +1,11 @@
 // Where everything would be in the middle of the tick, and how fast at its end, if nothing touched.
-#include "contact/functions/invariants.h"
-#include "engine/motion/driven_motion.h"
-#include "engine/motion/free_motion.h"
-#include "engine/world/held_body.h"
-#include "engine/world/island_sleep.h"
-#include "engine/world/joints.h"
-#include "engine/world/stages.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/engine/motion/driven_motion.h"
+#include "pincer/engine/motion/free_motion.h"
+#include "pincer/engine/world/held_body.h"
+#include "pincer/engine/world/island_sleep.h"
+#include "pincer/engine/world/joints.h"
+#include "pincer/engine/world/stages.h"
 
 namespace pincer::engine {
 namespace {

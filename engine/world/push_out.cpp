@@ -1,11 +1,11 @@
-#include "engine/world/push_out.h"
+#include "pincer/engine/world/push_out.h"
 
 #include <algorithm>
 #include <limits>
 
-#include "contact/functions/invariants.h"
-#include "engine/motion/free_motion.h"
-#include "engine/world/contact_rows.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/engine/motion/free_motion.h"
+#include "pincer/engine/world/contact_rows.h"
 
 namespace pincer::engine {
 namespace {

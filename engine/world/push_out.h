@@ -11,7 +11,7 @@
 // so is that of joined bodies and of fingertips.
 // Source: split impulses, E. Guendelman, R. Bridson, R. Fedkiw, ACM Trans. Graph. 22 (2003) 871-878, section 7 (there by repeated pushes).
 #pragma once
-#include "engine/world/scratch.h"
+#include "pincer/engine/world/scratch.h"
 
 namespace pincer::engine {
 

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "contact/functions/invariants.h"
-#include "engine/world/contact_rows.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/engine/world/contact_rows.h"
 
 namespace pincer::engine {
 namespace {

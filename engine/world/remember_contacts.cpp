@@ -1,7 +1,7 @@
 // What each contact remembers of a tick.
-#include "contact/functions/invariants.h"
-#include "engine/world/contact_rows.h"
-#include "engine/world/rest.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/engine/world/contact_rows.h"
+#include "pincer/engine/world/rest.h"
 
 namespace pincer::engine {
 namespace {

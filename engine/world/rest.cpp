@@ -1,8 +1,8 @@
-#include "engine/world/rest.h"
+#include "pincer/engine/world/rest.h"
 
 #include <algorithm>
 
-#include "contact/functions/invariants.h"
+#include "pincer/contact/functions/invariants.h"
 
 namespace pincer::engine {
 namespace {

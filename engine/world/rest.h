@@ -9,7 +9,7 @@
 // is a difference, and the tick is computed. Costs a comparison of the
 // state. Of a world that isn't at rest as a whole, islands sleep (island_sleep.h).
 #pragma once
-#include "engine/world/stages.h"
+#include "pincer/engine/world/stages.h"
 
 namespace pincer::engine {
 

@@ -1,9 +1,9 @@
-#include "engine/world/scratch.h"
+#include "pincer/engine/world/scratch.h"
 
 #include <algorithm>
 
-#include "contact/functions/invariants.h"
-#include "engine/world/most_numbered.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/engine/world/most_numbered.h"
 
 namespace pincer::engine {
 namespace {

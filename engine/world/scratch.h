@@ -5,16 +5,16 @@
 #include <cstdint>
 #include <vector>
 
-#include "contact/surface/patch_cache.h"
-#include "engine/model.h"
-#include "engine/solve/cascade.h"
-#include "engine/state.h"
-#include "engine/step.h"
-#include "engine/world/broad_phase.h"
-#include "engine/world/contact.h"
-#include "engine/world/islands.h"
-#include "engine/world/stage_clock.h"
-#include "engine/world/world_sleep.h"
+#include "pincer/contact/surface/patch_cache.h"
+#include "pincer/engine/model.h"
+#include "pincer/engine/solve/cascade.h"
+#include "pincer/engine/state.h"
+#include "pincer/engine/step.h"
+#include "pincer/engine/world/broad_phase.h"
+#include "pincer/engine/world/contact.h"
+#include "pincer/engine/world/islands.h"
+#include "pincer/engine/world/stage_clock.h"
+#include "pincer/engine/world/world_sleep.h"
 
 namespace pincer::engine {
 

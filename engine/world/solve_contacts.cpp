@@ -1,7 +1,7 @@
-#include "contact/functions/invariants.h"
-#include "engine/solve/cone.h"
-#include "engine/world/contact_rows.h"
-#include "engine/world/stages.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/engine/solve/cone.h"
+#include "pincer/engine/world/contact_rows.h"
+#include "pincer/engine/world/stages.h"
 
 namespace pincer::engine {
 namespace {

@@ -1,15 +1,15 @@
-#include "engine/world/solve_island.h"
+#include "pincer/engine/world/solve_island.h"
 
 #include <algorithm>
 
-#include "engine/solve/contact_equations.h"
-#include "engine/solve/gauss_seidel.h"
-#include "engine/solve/large_problem.h"
-#include "engine/solve/round_contact.h"
-#include "engine/world/contact_rows.h"
-#include "engine/world/island_bias.h"
-#include "engine/world/scratch.h"
-#include "engine/world/wedge.h"
+#include "pincer/engine/solve/contact_equations.h"
+#include "pincer/engine/solve/gauss_seidel.h"
+#include "pincer/engine/solve/large_problem.h"
+#include "pincer/engine/solve/round_contact.h"
+#include "pincer/engine/world/contact_rows.h"
+#include "pincer/engine/world/island_bias.h"
+#include "pincer/engine/world/scratch.h"
+#include "pincer/engine/world/wedge.h"
 
 namespace pincer::engine {
 namespace {

@@ -14,8 +14,8 @@
 // Second order in the tick while contacts persist: geometry at the predicted middle, p += h (v + v+)/2; a contact that closes in this tick
 // lands exactly, p += h v+. (docs/decisions/0003-second-order-contact.md)
 #pragma once
-#include "engine/step.h"
-#include "engine/world/scratch.h"
+#include "pincer/engine/step.h"
+#include "pincer/engine/world/scratch.h"
 
 namespace pincer::engine {
 

@@ -1,12 +1,12 @@
-#include "engine/state.h"
+#include "pincer/engine/state.h"
 
 #include <fmt/format.h>
 
 #include <bit>
 
-#include "contact/functions/invariants.h"
-#include "engine/motion/free_motion.h"
-#include "engine/world/joints.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/engine/motion/free_motion.h"
+#include "pincer/engine/world/joints.h"
 
 namespace pincer::engine {
 namespace {

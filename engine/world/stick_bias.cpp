@@ -1,8 +1,8 @@
-#include "engine/world/stick_bias.h"
+#include "pincer/engine/world/stick_bias.h"
 
 #include <span>
 
-#include "engine/solve/linear.h"
+#include "pincer/engine/solve/linear.h"
 
 namespace pincer::engine {
 namespace {

@@ -15,7 +15,7 @@
 // A driven point has three freedoms, and two contacts hold it six-fold: in a steep groove what is left of a contradiction squeezed it with 1e9 N.
 // Its Omega is zero, sliding contacts take part with their normals, and normal biases become n_i . V too.
 #pragma once
-#include "engine/world/scratch.h"
+#include "pincer/engine/world/scratch.h"
 
 namespace pincer::engine {
 

@@ -2,15 +2,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "contact/functions/invariants.h"
-#include "engine/motion/driven_motion.h"
-#include "engine/motion/free_motion.h"
-#include "engine/world/budget.h"
-#include "engine/world/impact.h"
-#include "engine/world/island_sleep.h"
-#include "engine/world/push_out.h"
-#include "engine/world/rest.h"
-#include "engine/world/stages.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/engine/motion/driven_motion.h"
+#include "pincer/engine/motion/free_motion.h"
+#include "pincer/engine/world/budget.h"
+#include "pincer/engine/world/impact.h"
+#include "pincer/engine/world/island_sleep.h"
+#include "pincer/engine/world/push_out.h"
+#include "pincer/engine/world/rest.h"
+#include "pincer/engine/world/stages.h"
 
 namespace pincer::engine {
 namespace {
@@ -344,7 +344,8 @@ StepReport step(const WorldModel& model, WorldState& state, WorldScratch& scratc
   PINCER_DEMAND(inputs.points.size() == model.points.size(), "step: one input per driven point");
   PINCER_DEMAND(inputs.motions.size() <= static_cast<std::size_t>(model.driven_count), "step: no more motions than driven bodies");
   PINCER_DEMAND(state.bodies.size() == model.bodies.size() && state.points.size() == model.points.size() &&
-                    state.contacts.size() == static_cast<std::size_t>(model.options.max_contacts),
+                    state.contacts.size() == static_cast<std::size_t>(model.options.max_contacts) &&
+                    state.driven_w_W.size() == static_cast<std::size_t>(model.driven_count),
                 "step: the state is one of this model (makeState)");
   PINCER_DEMAND(scratch.bodies.size() == model.bodies.size() && scratch.points.size() == model.points.size() &&
                     scratch.mu.size() == static_cast<std::size_t>(model.options.max_contacts),

@@ -2,13 +2,13 @@
 #include <algorithm>
 #include <limits>
 
-#include "contact/functions/invariants.h"
-#include "contact/pair_query.h"
-#include "engine/motion/driven_motion.h"
-#include "engine/motion/free_motion.h"
-#include "engine/world/budget.h"
-#include "engine/world/held_body.h"
-#include "engine/world/impact.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/contact/pair_query.h"
+#include "pincer/engine/motion/driven_motion.h"
+#include "pincer/engine/motion/free_motion.h"
+#include "pincer/engine/world/budget.h"
+#include "pincer/engine/world/held_body.h"
+#include "pincer/engine/world/impact.h"
 
 namespace pincer::engine {
 namespace {

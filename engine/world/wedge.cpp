@@ -1,11 +1,11 @@
-#include "engine/world/wedge.h"
+#include "pincer/engine/world/wedge.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "engine/solve/mobility.h"
-#include "engine/solve/point_problem.h"
-#include "engine/solve/residual.h"
+#include "pincer/engine/solve/mobility.h"
+#include "pincer/engine/solve/point_problem.h"
+#include "pincer/engine/solve/residual.h"
 
 namespace pincer::engine {
 namespace {

@@ -12,7 +12,7 @@
 // directions). We let go where the pull begins. Pressed in, friction is that of both walls: sliding along the groove takes mu P / sin(alpha).
 // Source: K. L. Johnson, Contact Mechanics, Cambridge 1985, section 7.2 (that stick depends on how the load came); the rule is ours.
 #pragma once
-#include "engine/world/scratch.h"
+#include "pincer/engine/world/scratch.h"
 
 namespace pincer::engine {
 

@@ -6,8 +6,8 @@
 #pragma once
 #include <vector>
 
-#include "engine/step.h"
-#include "engine/world/contact.h"
+#include "pincer/engine/step.h"
+#include "pincer/engine/world/contact.h"
 
 namespace pincer::engine {
 

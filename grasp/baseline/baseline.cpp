@@ -1,11 +1,11 @@
-#include "grasp/baseline.h"
+#include "pincer/grasp/baseline.h"
 
 #include <algorithm>
 
-#include "contact/functions/invariants.h"
-#include "grasp/baseline/nearest_outside.h"
-#include "grasp/tick/finger_contacts.h"
-#include "grasp/tick/finger_tick.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/grasp/baseline/nearest_outside.h"
+#include "pincer/grasp/tick/finger_contacts.h"
+#include "pincer/grasp/tick/finger_tick.h"
 
 namespace pincer::grasp {
 namespace {

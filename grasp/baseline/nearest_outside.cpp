@@ -1,8 +1,8 @@
-#include "grasp/baseline/nearest_outside.h"
+#include "pincer/grasp/baseline/nearest_outside.h"
 
 #include <Eigen/LU>
 
-#include "contact/functions/invariants.h"
+#include "pincer/contact/functions/invariants.h"
 
 namespace pincer::grasp {
 namespace {

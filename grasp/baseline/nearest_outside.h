@@ -7,7 +7,7 @@
 #include <array>
 #include <span>
 
-#include "contact/math.h"
+#include "pincer/contact/math.h"
 
 namespace pincer::grasp {
 

@@ -1,12 +1,12 @@
-#include "grasp/hold_bounds.h"
+#include "pincer/grasp/hold_bounds.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <complex>
 
-#include "contact/functions/invariants.h"
-#include "contact/math.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/contact/math.h"
 
 namespace pincer::grasp {
 namespace {
@@ -57,8 +57,8 @@ double loopRadius(const ArmPort& arm, double stiffness, double damping, double t
   }
   loop(2, 0) = 1;
   double radius = 0;
-  for (const std::complex<double>& z : Eigen::EigenSolver<Mat3>(loop, false).eigenvalues())
-    radius = std::max(radius, math::hypot(z.real(), z.imag()));
+  const Eigen::EigenSolver<Mat3> solver(loop, false);
+  for (const std::complex<double>& z : solver.eigenvalues()) radius = std::max(radius, math::hypot(z.real(), z.imag()));
   return radius;
 }
 

@@ -1,7 +1,7 @@
-#include "grasp/energy_ledger.h"
+#include "pincer/grasp/energy_ledger.h"
 
-#include "contact/functions/invariants.h"
-#include "grasp/tick/scratch.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/grasp/tick/scratch.h"
 
 namespace pincer::grasp {
 namespace {

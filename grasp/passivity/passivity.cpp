@@ -1,12 +1,12 @@
-#include "grasp/passivity.h"
+#include "pincer/grasp/passivity.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "contact/error.h"
-#include "contact/functions/invariants.h"
+#include "pincer/contact/error.h"
+#include "pincer/contact/functions/invariants.h"
 
 namespace pincer::grasp {
 namespace {

@@ -1,7 +1,7 @@
-#include "grasp/finger_distance.h"
+#include "pincer/grasp/finger_distance.h"
 
-#include "contact/functions/invariants.h"
-#include "grasp/tick/finger_contacts.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/grasp/tick/finger_contacts.h"
 
 namespace pincer::grasp {
 

@@ -1,9 +1,9 @@
-#include "grasp/quality/grasp_contact.h"
+#include "pincer/grasp/quality/grasp_contact.h"
 
 #include <algorithm>
 
-#include "contact/functions/invariants.h"
-#include "grasp/tick/scratch.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/grasp/tick/scratch.h"
 
 namespace pincer::grasp {
 

@@ -8,7 +8,7 @@
 // Sources: B. Mishra, J. T. Schwartz, M. Sharir, Algorithmica 2 (1987) 541-558 (grasp matrix); R. D. Howe, M. R. Cutkosky, Int. J. Robotics
 // Res. 15 (1996) 554-572 (the soft finger's ellipsoid).
 #pragma once
-#include "grasp/grasp_quality.h"
+#include "pincer/grasp/grasp_quality.h"
 
 namespace pincer::grasp {
 

@@ -1,11 +1,11 @@
-#include "grasp/grasp_quality.h"
+#include "pincer/grasp/grasp_quality.h"
 
 #include <Eigen/QR>
 #include <algorithm>
 #include <limits>
 
-#include "contact/functions/invariants.h"
-#include "grasp/quality/wrench_set.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/grasp/quality/wrench_set.h"
 
 namespace pincer::grasp {
 namespace {

@@ -1,4 +1,4 @@
-#include "grasp/quality/wrench_set.h"
+#include "pincer/grasp/quality/wrench_set.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include <limits>
 #include <numbers>
 
-#include "contact/functions/invariants.h"
+#include "pincer/contact/functions/invariants.h"
 
 namespace pincer::grasp {
 namespace {

@@ -11,7 +11,7 @@
 #pragma once
 #include <vector>
 
-#include "grasp/quality/grasp_contact.h"
+#include "pincer/grasp/quality/grasp_contact.h"
 
 namespace pincer::grasp {
 

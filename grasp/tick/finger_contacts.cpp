@@ -1,9 +1,9 @@
-#include "grasp/tick/finger_contacts.h"
+#include "pincer/grasp/tick/finger_contacts.h"
 
 #include <limits>
 #include <type_traits>
 
-#include "contact/functions/invariants.h"
+#include "pincer/contact/functions/invariants.h"
 
 namespace pincer::grasp {
 namespace {

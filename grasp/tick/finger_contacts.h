@@ -1,6 +1,6 @@
 // finger_contacts: which bodies each finger touches, in this tick.
 #pragma once
-#include "grasp/tick/scratch.h"
+#include "pincer/grasp/tick/scratch.h"
 
 namespace pincer::grasp {
 

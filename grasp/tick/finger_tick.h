@@ -1,7 +1,7 @@
 // finger_tick: a tick's work on one finger, before and after the world's step.
 #pragma once
-#include "engine/world/stages.h"
-#include "grasp/tick/scratch.h"
+#include "pincer/engine/world/stages.h"
+#include "pincer/grasp/tick/scratch.h"
 
 namespace pincer::grasp {
 

@@ -1,11 +1,11 @@
-#include "grasp/model.h"
+#include "pincer/grasp/model.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "contact/functions/invariants.h"
+#include "pincer/contact/functions/invariants.h"
 
 namespace pincer::grasp {
 namespace {

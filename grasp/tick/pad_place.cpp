@@ -1,9 +1,9 @@
-#include "grasp/pad_place.h"
+#include "pincer/grasp/pad_place.h"
 
 #include <cmath>
 
-#include "contact/functions/invariants.h"
-#include "grasp/step.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/grasp/step.h"
 
 namespace pincer::grasp {
 

@@ -3,8 +3,8 @@
 #pragma once
 #include <vector>
 
-#include "engine/world/scratch.h"
-#include "grasp/step.h"
+#include "pincer/engine/world/scratch.h"
+#include "pincer/grasp/step.h"
 
 namespace pincer::grasp {
 

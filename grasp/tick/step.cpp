@@ -1,12 +1,12 @@
-#include "grasp/step.h"
+#include "pincer/grasp/step.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "contact/functions/invariants.h"
-#include "engine/motion/driven_motion.h"
-#include "grasp/tick/finger_contacts.h"
-#include "grasp/tick/finger_tick.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/engine/motion/driven_motion.h"
+#include "pincer/grasp/tick/finger_contacts.h"
+#include "pincer/grasp/tick/finger_tick.h"
 
 namespace pincer::grasp {
 namespace {

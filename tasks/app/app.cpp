@@ -1,4 +1,4 @@
-#include "tasks/app/app.h"
+#include "pincer/tasks/app/app.h"
 
 #include <fmt/format.h>
 
@@ -8,14 +8,14 @@
 #include <exception>
 #include <new>
 
-#include "contact/error.h"
-#include "contact/io/printable.h"
-#include "devices/window/surface.h"
-#include "tasks/app/commands.h"
-#include "tasks/app/process.h"
-#include "tasks/measure/interrupted.h"
-#include "tasks/servo/hand_devices.h"
-#include "tasks/session/build_info.h"
+#include "pincer/contact/error.h"
+#include "pincer/contact/io/printable.h"
+#include "pincer/devices/window/surface.h"
+#include "pincer/tasks/app/commands/commands.h"
+#include "pincer/tasks/app/process.h"
+#include "pincer/tasks/run/process/interrupted.h"
+#include "pincer/tasks/run/servo/hand_devices.h"
+#include "pincer/tasks/run/session/build_info.h"
 
 namespace pincer::tasks {
 namespace {

@@ -1,4 +1,4 @@
-#include "tasks/app/device_options.h"
+#include "pincer/tasks/app/device_options.h"
 
 #include <fmt/format.h>
 #include <poll.h>
@@ -7,12 +7,12 @@
 #include <CLI/CLI.hpp>
 #include <csignal>
 
-#include "contact/io/printable.h"
-#include "tasks/app/interrupt.h"
-#include "tasks/app/print.h"
-#include "tasks/app/servo_text.h"
-#include "tasks/app/usage.h"
-#include "tasks/scene/strict_json.h"
+#include "pincer/contact/io/printable.h"
+#include "pincer/tasks/app/interrupt.h"
+#include "pincer/tasks/app/print.h"
+#include "pincer/tasks/app/usage.h"
+#include "pincer/tasks/run/files/strict_json.h"
+#include "pincer/tasks/run/servo/servo_text.h"
 
 namespace pincer::tasks {
 

@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "tasks/servo/hand_devices.h"
-#include "tasks/servo/servo.h"
+#include "pincer/tasks/run/servo/hand_devices.h"
+#include "pincer/tasks/run/servo/servo.h"
 
 namespace CLI {
 class App;

@@ -1,12 +1,12 @@
-#include "tasks/app/grasp_text.h"
+#include "pincer/tasks/app/grasp_text.h"
 
 #include <fmt/format.h>
 
 #include <array>
 #include <cmath>
 
-#include "grasp/finger_distance.h"
-#include "grasp/grasp_quality.h"
+#include "pincer/grasp/finger_distance.h"
+#include "pincer/grasp/grasp_quality.h"
 
 namespace pincer::tasks {
 namespace {

@@ -2,8 +2,8 @@
 #pragma once
 #include <string>
 
-#include "tasks/scene/json_writer.h"
-#include "tasks/scene/simulation.h"
+#include "pincer/tasks/run/files/json_writer.h"
+#include "pincer/tasks/run/simulation.h"
 
 namespace pincer::tasks {
 

@@ -1,4 +1,4 @@
-#include "tasks/app/interrupt.h"
+#include "pincer/tasks/app/interrupt.h"
 
 #include <csignal>
 

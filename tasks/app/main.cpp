@@ -1,5 +1,5 @@
-#include "tasks/app/app.h"
-#include "tasks/app/process.h"
+#include "pincer/tasks/app/app.h"
+#include "pincer/tasks/app/process.h"
 
 namespace {
 

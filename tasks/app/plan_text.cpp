@@ -1,11 +1,11 @@
-#include "tasks/app/plan_text.h"
+#include "pincer/tasks/app/plan_text.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "contact/io/counted.h"
-#include "contact/polytope.h"
-#include "contact/smooth_mesh.h"
+#include "pincer/contact/io/counted.h"
+#include "pincer/contact/polytope.h"
+#include "pincer/contact/smooth_mesh.h"
 
 namespace pincer::tasks {
 namespace {

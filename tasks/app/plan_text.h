@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "grasp/baseline.h"
+#include "pincer/grasp/baseline.h"
 
 namespace pincer::tasks {
 

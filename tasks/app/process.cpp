@@ -1,4 +1,4 @@
-#include "tasks/app/process.h"
+#include "pincer/tasks/app/process.h"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -8,8 +8,8 @@
 #include <exception>
 #include <new>
 
-#include "tasks/app/app.h"
-#include "tasks/app/interrupt.h"
+#include "pincer/tasks/app/app.h"
+#include "pincer/tasks/app/interrupt.h"
 
 namespace pincer::tasks {
 namespace {

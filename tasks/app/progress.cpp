@@ -1,4 +1,4 @@
-#include "tasks/app/progress.h"
+#include "pincer/tasks/app/progress.h"
 
 #include <fmt/format.h>
 
@@ -6,8 +6,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "tasks/app/print.h"
-#include "tasks/app/terminal.h"
+#include "pincer/tasks/app/print.h"
+#include "pincer/tasks/app/terminal.h"
 
 namespace pincer::tasks {
 namespace {

@@ -1,4 +1,4 @@
-#include "tasks/app/record_text.h"
+#include "pincer/tasks/app/record_text.h"
 
 #include <fmt/format.h>
 
@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 
-#include "tasks/app/terminal.h"
-#include "tasks/scene/json_writer.h"
+#include "pincer/tasks/app/terminal.h"
+#include "pincer/tasks/run/files/json_writer.h"
 
 namespace pincer::tasks {
 namespace {

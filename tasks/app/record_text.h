@@ -1,9 +1,9 @@
-// record_text: measured figures (tasks/measure/record.h) as a table for people and as JSON for machines.
+// record_text: measured figures (tasks/run/measure/record.h) as a table for people and as JSON for machines.
 #pragma once
 #include <string>
 #include <vector>
 
-#include "tasks/measure/record.h"
+#include "pincer/tasks/run/measure/record.h"
 
 namespace pincer::tasks {
 

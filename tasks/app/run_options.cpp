@@ -1,4 +1,4 @@
-#include "tasks/app/run_options.h"
+#include "pincer/tasks/app/run_options.h"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "tasks/servo/servo.h"
+#include "pincer/tasks/run/servo/servo.h"
 
 namespace CLI {
 class App;

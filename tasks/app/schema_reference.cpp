@@ -1,4 +1,4 @@
-#include "tasks/app/schema_reference.h"
+#include "pincer/tasks/app/schema_reference.h"
 
 #include <fmt/format.h>
 

@@ -3,7 +3,7 @@
 #pragma once
 #include <string>
 
-#include "tasks/scene/strict_json.h"
+#include "pincer/tasks/run/files/strict_json.h"
 
 namespace pincer::tasks {
 

@@ -1,6 +1,6 @@
-#include "tasks/app/grasp_text.h"
-#include "tasks/app/sim_run.h"
-#include "tasks/scene/json_writer.h"
+#include "pincer/tasks/app/grasp_text.h"
+#include "pincer/tasks/run/files/json_writer.h"
+#include "pincer/tasks/run/scene/sim_run.h"
 
 namespace pincer::tasks {
 namespace {

@@ -2,11 +2,11 @@
 
 #include <cmath>
 
-#include "contact/io/counted.h"
-#include "contact/io/printable.h"
-#include "tasks/app/grasp_text.h"
-#include "tasks/app/sim_run.h"
-#include "tasks/app/terminal.h"
+#include "pincer/contact/io/counted.h"
+#include "pincer/contact/io/printable.h"
+#include "pincer/tasks/app/grasp_text.h"
+#include "pincer/tasks/app/terminal.h"
+#include "pincer/tasks/run/scene/sim_run.h"
 
 namespace pincer::tasks {
 namespace {

@@ -1,4 +1,4 @@
-#include "tasks/app/terminal.h"
+#include "pincer/tasks/app/terminal.h"
 
 #include <fmt/format.h>
 #include <unistd.h>

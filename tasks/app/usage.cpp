@@ -1,12 +1,12 @@
-#include "tasks/app/usage.h"
+#include "pincer/tasks/app/usage.h"
 
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <charconv>
 
-#include "contact/io/printable.h"
-#include "tasks/scene/strict_json.h"
+#include "pincer/contact/io/printable.h"
+#include "pincer/tasks/run/files/strict_json.h"
 
 namespace pincer::tasks {
 namespace {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "contact/error.h"
+#include "pincer/contact/error.h"
 
 namespace CLI {
 class Validator;

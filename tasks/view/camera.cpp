@@ -1,4 +1,4 @@
-#include "tasks/view/camera.h"
+#include "pincer/tasks/view/camera.h"
 
 #include <algorithm>
 #include <cmath>

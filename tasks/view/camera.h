@@ -4,7 +4,7 @@
 #pragma once
 #include <optional>
 
-#include "tasks/view/draw_list.h"
+#include "pincer/tasks/view/draw_list.h"
 
 namespace pincer::tasks {
 

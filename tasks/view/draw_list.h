@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "contact/math.h"
+#include "pincer/contact/math.h"
 
 namespace pincer::tasks {
 

@@ -3,8 +3,8 @@
 #include <map>
 #include <string>
 
-#include "devices/window/surface.h"
-#include "tasks/view/draw_list.h"
+#include "pincer/devices/window/surface.h"
+#include "pincer/tasks/view/draw_list.h"
 
 namespace pincer::tasks {
 

@@ -2,8 +2,8 @@
 #pragma once
 #include <deque>
 
-#include "contact/assert.h"
-#include "tasks/servo/snapshot.h"
+#include "pincer/contact/assert.h"
+#include "pincer/tasks/run/tick/snapshot.h"
 
 namespace pincer::tasks {
 

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "contact/error.h"
-#include "contact/io/atomic_file.h"
-#include "tasks/view/image.h"
+#include "pincer/contact/error.h"
+#include "pincer/contact/io/atomic_file.h"
+#include "pincer/tasks/view/image.h"
 
 namespace pincer::tasks {
 namespace {

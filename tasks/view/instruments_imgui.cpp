@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "tasks/view/overlay_parts.h"
+#include "pincer/tasks/view/overlay_parts.h"
 
 namespace pincer::tasks {
 namespace {

@@ -1,4 +1,4 @@
-#include "tasks/view/keys.h"
+#include "pincer/tasks/view/keys.h"
 
 #include <fmt/format.h>
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "tasks/view/scene_drawing.h"
+#include "pincer/tasks/view/scene_drawing.h"
 
 namespace pincer::tasks {
 

@@ -1,7 +1,7 @@
 #define GLAD_GL_IMPLEMENTATION
 #include <glad/gl.h>
 
-#include "tasks/view/gl_parts.h"
+#include "pincer/tasks/view/gl_parts.h"
 
 namespace pincer::tasks {
 

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "tasks/servo/histogram.h"
-#include "tasks/servo/snapshot.h"
-#include "tasks/view/keys.h"
-#include "tasks/view/strip_chart.h"
+#include "pincer/tasks/run/servo/histogram.h"
+#include "pincer/tasks/run/tick/snapshot.h"
+#include "pincer/tasks/view/keys.h"
+#include "pincer/tasks/view/strip_chart.h"
 
 namespace pincer::tasks {
 

@@ -4,9 +4,9 @@
 
 #include <filesystem>
 
-#include "devices/window/surface.h"
-#include "tasks/view/overlay.h"
-#include "tasks/view/overlay_parts.h"
+#include "pincer/devices/window/surface.h"
+#include "pincer/tasks/view/overlay.h"
+#include "pincer/tasks/view/overlay_parts.h"
 
 namespace pincer::tasks {
 namespace {

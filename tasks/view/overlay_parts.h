@@ -1,6 +1,6 @@
 // overlay_parts: the panels of the overlay, each drawn by one function between the beginning and the end of a picture.
 #pragma once
-#include "tasks/view/overlay.h"
+#include "pincer/tasks/view/overlay.h"
 
 namespace pincer::tasks {
 

@@ -1,4 +1,4 @@
-#include "tasks/view/painter.h"
+#include "pincer/tasks/view/painter.h"
 
 namespace pincer::tasks {
 

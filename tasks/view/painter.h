@@ -2,7 +2,7 @@
 #pragma once
 #include <memory>
 
-#include "tasks/view/scene_drawing.h"
+#include "pincer/tasks/view/scene_drawing.h"
 
 namespace pincer::tasks {
 

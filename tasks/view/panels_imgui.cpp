@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "tasks/view/overlay_parts.h"
+#include "pincer/tasks/view/overlay_parts.h"
 
 namespace pincer::tasks {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "tasks/view/gl_parts.h"
+#include "pincer/tasks/view/gl_parts.h"
 
 namespace pincer::tasks {
 namespace {

@@ -5,10 +5,10 @@
 #pragma once
 #include <memory>
 
-#include "devices/window/surface.h"
-#include "tasks/view/camera.h"
-#include "tasks/view/draw_list.h"
-#include "tasks/view/image.h"
+#include "pincer/devices/window/surface.h"
+#include "pincer/tasks/view/camera.h"
+#include "pincer/tasks/view/draw_list.h"
+#include "pincer/tasks/view/image.h"
 
 namespace pincer::tasks {
 

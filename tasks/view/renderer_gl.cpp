@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "tasks/view/gl_parts.h"
-#include "tasks/view/renderer.h"
-#include "tasks/view/shaders.h"
+#include "pincer/tasks/view/gl_parts.h"
+#include "pincer/tasks/view/renderer.h"
+#include "pincer/tasks/view/shaders.h"
 
 namespace pincer::tasks {
 namespace {

@@ -1,8 +1,8 @@
-#include "tasks/view/revolved.h"
+#include "pincer/tasks/view/revolved.h"
 
 #include <cmath>
 
-#include "contact/functions/invariants.h"
+#include "pincer/contact/functions/invariants.h"
 
 namespace pincer::tasks {
 

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "tasks/view/draw_list.h"
+#include "pincer/tasks/view/draw_list.h"
 
 namespace pincer::tasks {
 

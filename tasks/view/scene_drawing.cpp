@@ -1,4 +1,4 @@
-#include "tasks/view/scene_drawing.h"
+#include "pincer/tasks/view/scene_drawing.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "tasks/view/shape_meshes.h"
+#include "pincer/tasks/view/shape_meshes.h"
 
 namespace pincer::tasks {
 namespace {

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "tasks/servo/snapshot.h"
-#include "tasks/view/camera.h"
-#include "tasks/view/renderer.h"
+#include "pincer/tasks/run/tick/snapshot.h"
+#include "pincer/tasks/view/camera.h"
+#include "pincer/tasks/view/renderer.h"
 
 namespace pincer::tasks {
 

@@ -1,13 +1,13 @@
-#include "tasks/view/shape_meshes.h"
+#include "pincer/tasks/view/shape_meshes.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "contact/mesh/mesh_pieces.h"
-#include "contact/polytope.h"
-#include "contact/smooth_mesh.h"
-#include "contact/surface/patch.h"
-#include "tasks/view/revolved.h"
+#include "pincer/contact/mesh/mesh_pieces.h"
+#include "pincer/contact/polytope.h"
+#include "pincer/contact/smooth_mesh.h"
+#include "pincer/contact/surface/patch.h"
+#include "pincer/tasks/view/revolved.h"
 
 namespace pincer::tasks {
 namespace {

@@ -1,7 +1,7 @@
 // shape_meshes: the shapes of contact/ as triangles to be drawn, in their own frames [m].
 #pragma once
-#include "contact/shape.h"
-#include "tasks/view/draw_list.h"
+#include "pincer/contact/shape.h"
+#include "pincer/tasks/view/draw_list.h"
 
 namespace pincer::tasks {
 

@@ -1,10 +1,10 @@
-#include "tasks/view/strip_chart.h"
+#include "pincer/tasks/view/strip_chart.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "contact/elementary.h"
-#include "contact/functions/invariants.h"
+#include "pincer/contact/elementary.h"
+#include "pincer/contact/functions/invariants.h"
 
 namespace pincer::tasks {
 namespace {

@@ -1,4 +1,4 @@
-#include "tasks/view/viewer.h"
+#include "pincer/tasks/view/viewer.h"
 
 #include <fmt/format.h>
 

@@ -6,11 +6,11 @@
 #include <optional>
 #include <string>
 
-#include "devices/window/mouse_hand.h"
-#include "tasks/servo/paced_cycle.h"
-#include "tasks/view/history.h"
-#include "tasks/view/overlay.h"
-#include "tasks/view/painter.h"
+#include "pincer/devices/window/mouse_hand.h"
+#include "pincer/tasks/run/servo/paced_cycle.h"
+#include "pincer/tasks/view/history.h"
+#include "pincer/tasks/view/overlay.h"
+#include "pincer/tasks/view/painter.h"
 
 namespace pincer::tasks {
 

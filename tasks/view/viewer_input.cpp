@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tasks/view/viewer.h"
+#include "pincer/tasks/view/viewer.h"
 
 namespace pincer::tasks {
 namespace {

@@ -7,7 +7,7 @@
 #include <cctype>
 #include <filesystem>
 
-#include "tasks/app/sim_run.h"
+#include "pincer/tasks/run/scene/sim_run.h"
 
 namespace pincer::tasks {
 namespace {

@@ -1,5 +1,5 @@
-// The accuracy suite (tasks/verify): every figure within its bound.
-#include "tasks/verify/verify.h"
+// The accuracy suite (tasks/judge/verify): every figure within its bound.
+#include "pincer/tasks/judge/verify/verify.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -14,12 +14,12 @@
 #include <string>
 #include <vector>
 
-#include "contact/generated_meshes.h"
-#include "contact/smooth_mesh.h"
-#include "engine/state.h"
-#include "engine/step.h"
-#include "engine/world/scratch.h"
-#include "tests/support/contact_problems.h"
+#include "pincer/contact/generated_meshes.h"
+#include "pincer/contact/smooth_mesh.h"
+#include "pincer/engine/state.h"
+#include "pincer/engine/step.h"
+#include "pincer/engine/world/scratch.h"
+#include "pincer/tests/support/contact_problems.h"
 
 namespace {
 

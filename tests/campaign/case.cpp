@@ -6,8 +6,8 @@
 #include <iterator>
 #include <numeric>
 
-#include "tests/campaign/row.h"
-#include "tests/campaign/verdicts.h"
+#include "pincer/tests/campaign/row.h"
+#include "pincer/tests/campaign/verdicts.h"
 
 namespace pincer::campaign {
 namespace {

@@ -1,10 +1,10 @@
-#include "tests/campaign/command_tree.h"
+#include "pincer/tests/campaign/command_tree.h"
 
 #include <algorithm>
 #include <sstream>
 #include <stdexcept>
 
-#include "tests/campaign/inputs.h"
+#include "pincer/tests/campaign/inputs.h"
 
 namespace pincer::campaign {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/campaign/row.h"
+#include "pincer/tests/campaign/row.h"
 
 namespace pincer::campaign {
 

@@ -1,4 +1,4 @@
-#include "tests/campaign/inputs.h"
+#include "pincer/tests/campaign/inputs.h"
 
 #include <fmt/format.h>
 

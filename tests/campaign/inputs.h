@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/campaign/row.h"
+#include "pincer/tests/campaign/row.h"
 
 namespace pincer::campaign {
 

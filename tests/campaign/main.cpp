@@ -7,9 +7,9 @@
 #include <csignal>
 #include <fstream>
 
-#include "tests/campaign/inputs.h"
-#include "tests/campaign/row.h"
-#include "tests/campaign/verdicts.h"
+#include "pincer/tests/campaign/inputs.h"
+#include "pincer/tests/campaign/row.h"
+#include "pincer/tests/campaign/verdicts.h"
 
 namespace pincer::campaign {
 namespace {

@@ -1,4 +1,4 @@
-#include "tests/campaign/mutation.h"
+#include "pincer/tests/campaign/mutation.h"
 
 #include <algorithm>
 #include <array>

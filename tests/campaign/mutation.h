@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/support/random_numbers.h"
+#include "pincer/tests/support/random_numbers.h"
 
 namespace pincer::campaign {
 

@@ -1,4 +1,4 @@
-#include "tests/campaign/program_run.h"
+#include "pincer/tests/campaign/program_run.h"
 
 #include <fcntl.h>
 #include <linux/capability.h>

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "tests/campaign/program_run.h"
-#include "tests/support/random_numbers.h"
+#include "pincer/tests/campaign/program_run.h"
+#include "pincer/tests/support/random_numbers.h"
 
 namespace pincer::campaign {
 

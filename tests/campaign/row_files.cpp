@@ -1,9 +1,9 @@
 // Files that people write or export, harmed: scenes, studies, trajectories, meshes, recordings, calibrations.
 #include <fmt/format.h>
 
-#include "tests/campaign/inputs.h"
-#include "tests/campaign/mutation.h"
-#include "tests/campaign/rows.h"
+#include "pincer/tests/campaign/inputs.h"
+#include "pincer/tests/campaign/mutation.h"
+#include "pincer/tests/campaign/rows.h"
 
 namespace pincer::campaign {
 namespace {

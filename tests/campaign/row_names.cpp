@@ -3,10 +3,10 @@
 
 #include <algorithm>
 
-#include "tests/campaign/inputs.h"
-#include "tests/campaign/rows.h"
-#include "tests/campaign/session_file.h"
-#include "tests/campaign/tables.h"
+#include "pincer/tests/campaign/inputs.h"
+#include "pincer/tests/campaign/rows.h"
+#include "pincer/tests/campaign/session_file.h"
+#include "pincer/tests/campaign/tables.h"
 
 namespace pincer::campaign {
 namespace {

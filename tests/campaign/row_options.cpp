@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
-#include "tests/campaign/command_tree.h"
-#include "tests/campaign/mutation.h"
-#include "tests/campaign/rows.h"
+#include "pincer/tests/campaign/command_tree.h"
+#include "pincer/tests/campaign/mutation.h"
+#include "pincer/tests/campaign/rows.h"
 
 namespace pincer::campaign {
 namespace {

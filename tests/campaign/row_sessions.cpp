@@ -1,10 +1,10 @@
 // Sessions that something went through: columns of other types and ranges, bytes flipped, files cut off. Then all that reads sessions.
 #include <fmt/format.h>
 
-#include "tests/campaign/inputs.h"
-#include "tests/campaign/mutation.h"
-#include "tests/campaign/rows.h"
-#include "tests/campaign/session_file.h"
+#include "pincer/tests/campaign/inputs.h"
+#include "pincer/tests/campaign/mutation.h"
+#include "pincer/tests/campaign/rows.h"
+#include "pincer/tests/campaign/session_file.h"
 
 namespace pincer::campaign {
 namespace {

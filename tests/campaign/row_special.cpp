@@ -7,8 +7,8 @@
 #include <cstring>
 #include <fstream>
 
-#include "tests/campaign/inputs.h"
-#include "tests/campaign/rows.h"
+#include "pincer/tests/campaign/inputs.h"
+#include "pincer/tests/campaign/rows.h"
 
 namespace pincer::campaign {
 namespace {

@@ -9,9 +9,9 @@
 #include <csignal>
 #include <fstream>
 
-#include "tests/campaign/inputs.h"
-#include "tests/campaign/rows.h"
-#include "tests/campaign/session_checks.h"
+#include "pincer/tests/campaign/inputs.h"
+#include "pincer/tests/campaign/rows.h"
+#include "pincer/tests/campaign/session_checks.h"
 
 namespace pincer::campaign {
 namespace {

@@ -4,9 +4,9 @@
 #include <cstdlib>
 #include <sstream>
 
-#include "tests/campaign/inputs.h"
-#include "tests/campaign/rows.h"
-#include "tests/campaign/session_file.h"
+#include "pincer/tests/campaign/inputs.h"
+#include "pincer/tests/campaign/rows.h"
+#include "pincer/tests/campaign/session_file.h"
 
 namespace pincer::campaign {
 namespace {

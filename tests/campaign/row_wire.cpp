@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <chrono>
 
-#include "devices/falcon/falcon_packet.h"
-#include "devices/usb/frame.h"
-#include "devices/usb/frame_order.h"
-#include "devices/usb/messages.h"
-#include "tests/campaign/rows.h"
+#include "pincer/devices/falcon/falcon_packet.h"
+#include "pincer/devices/usb/frame.h"
+#include "pincer/devices/usb/frame_order.h"
+#include "pincer/devices/usb/messages.h"
+#include "pincer/tests/campaign/rows.h"
 
 namespace pincer::campaign {
 namespace {

@@ -1,4 +1,4 @@
-#include "tests/campaign/rows.h"
+#include "pincer/tests/campaign/rows.h"
 
 namespace pincer::campaign {
 

@@ -1,6 +1,6 @@
 // rows: what each row of the campaign does with a case. The table that names them is in rows.cpp.
 #pragma once
-#include "tests/campaign/row.h"
+#include "pincer/tests/campaign/row.h"
 
 namespace pincer::campaign {
 

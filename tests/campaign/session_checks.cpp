@@ -1,8 +1,8 @@
-#include "tests/campaign/session_checks.h"
+#include "pincer/tests/campaign/session_checks.h"
 
 #include <fmt/format.h>
 
-#include "tests/campaign/inputs.h"
+#include "pincer/tests/campaign/inputs.h"
 
 namespace pincer::campaign {
 

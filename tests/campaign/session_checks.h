@@ -1,7 +1,7 @@
 // session_checks: what must hold of the session out/session.db of a case, whatever happened to the program that wrote it (inputs.h: pickupArguments).
 #pragma once
-#include "tests/campaign/row.h"
-#include "tests/campaign/session_file.h"
+#include "pincer/tests/campaign/row.h"
+#include "pincer/tests/campaign/session_file.h"
 
 namespace pincer::campaign {
 

@@ -7,7 +7,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "tests/campaign/session_file.h"
+#include "pincer/tests/campaign/session_file.h"
 
 namespace pincer::campaign {
 namespace {

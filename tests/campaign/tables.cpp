@@ -1,4 +1,4 @@
-#include "tests/campaign/tables.h"
+#include "pincer/tests/campaign/tables.h"
 
 #include <fmt/format.h>
 

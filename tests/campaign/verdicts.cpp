@@ -1,4 +1,4 @@
-#include "tests/campaign/verdicts.h"
+#include "pincer/tests/campaign/verdicts.h"
 
 #include <fmt/format.h>
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "tests/campaign/row.h"
+#include "pincer/tests/campaign/row.h"
 
 namespace pincer::campaign {
 

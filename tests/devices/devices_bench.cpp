@@ -8,8 +8,8 @@
 #include <cstdlib>
 #include <limits>
 
-#include "tasks/servo/servo.h"
-#include "tests/devices/usb_scenarios.h"
+#include "pincer/tasks/run/servo/servo.h"
+#include "pincer/tests/devices/usb_scenarios.h"
 
 namespace pincer::tests {
 namespace {

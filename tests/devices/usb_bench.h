@@ -4,10 +4,10 @@
 #include <chrono>
 #include <thread>
 
-#include "devices/usb/usb_host.h"
-#include "tests/emulation/emulated_bus.h"
-#include "tests/emulation/firmware.h"
-#include "tests/emulation/usbfs_interpose.h"
+#include "pincer/devices/usb/usb_host.h"
+#include "pincer/tests/emulation/emulated_bus.h"
+#include "pincer/tests/emulation/firmware.h"
+#include "pincer/tests/emulation/usbfs_interpose.h"
 
 namespace pincer::tests {
 

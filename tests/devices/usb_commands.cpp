@@ -3,12 +3,12 @@
 
 #include <fstream>
 
-#include "tasks/servo/hand_devices.h"
-#include "tests/devices/usb_bench.h"
-#include "tests/emulation/firmware.h"
-#include "tests/support/error_of.h"
-#include "tests/support/run_app.h"
-#include "tests/support/temporary_directory.h"
+#include "pincer/tasks/run/servo/hand_devices.h"
+#include "pincer/tests/devices/usb_bench.h"
+#include "pincer/tests/emulation/firmware.h"
+#include "pincer/tests/support/error_of.h"
+#include "pincer/tests/support/run_app.h"
+#include "pincer/tests/support/temporary_directory.h"
 
 namespace pincer::tests {
 namespace {

@@ -3,13 +3,13 @@
 
 #include <fstream>
 
-#include "devices/falcon/falcon_arm.h"
-#include "tasks/servo/hand_devices.h"
-#include "tests/devices/usb_bench.h"
-#include "tests/emulation/falcon_gadget.h"
-#include "tests/support/error_of.h"
-#include "tests/support/run_app.h"
-#include "tests/support/temporary_directory.h"
+#include "pincer/devices/falcon/falcon_arm.h"
+#include "pincer/tasks/run/servo/hand_devices.h"
+#include "pincer/tests/devices/usb_bench.h"
+#include "pincer/tests/emulation/falcon_gadget.h"
+#include "pincer/tests/support/error_of.h"
+#include "pincer/tests/support/run_app.h"
+#include "pincer/tests/support/temporary_directory.h"
 
 namespace pincer::tests {
 namespace {

@@ -1,7 +1,7 @@
 // Every kind of transfer fault at every transfer, in both directions: nothing unsound is believed, and no force stays on.
 #include <gtest/gtest.h>
 
-#include "tests/devices/usb_scenarios.h"
+#include "pincer/tests/devices/usb_scenarios.h"
 
 namespace pincer::tests {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <cstdlib>
 
-#include "tests/devices/usb_scenarios.h"
+#include "pincer/tests/devices/usb_scenarios.h"
 
 namespace pincer::tests {
 namespace {

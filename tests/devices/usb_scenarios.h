@@ -3,8 +3,8 @@
 #include <dirent.h>
 #include <malloc.h>
 
-#include "devices/gate/force_gate.h"
-#include "tests/devices/usb_bench.h"
+#include "pincer/devices/gate/force_gate.h"
+#include "pincer/tests/devices/usb_bench.h"
 
 namespace pincer::tests {
 

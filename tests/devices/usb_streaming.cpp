@@ -1,8 +1,8 @@
 // Devices on an emulated bus under the real libusb: found, streaming, commanded, unplugged, plugged in again.
 #include <gtest/gtest.h>
 
-#include "devices/gate/force_gate.h"
-#include "tests/devices/usb_bench.h"
+#include "pincer/devices/gate/force_gate.h"
+#include "pincer/tests/devices/usb_bench.h"
 
 namespace pincer::tests {
 namespace {

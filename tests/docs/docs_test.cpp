@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/support/temporary_directory.h"
+#include "pincer/tests/support/temporary_directory.h"
 
 namespace pincer::tests {
 namespace {

@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-#include "tests/emulation/usbfs_device.h"
+#include "pincer/tests/emulation/usbfs_device.h"
 
 namespace pincer::emulation {
 

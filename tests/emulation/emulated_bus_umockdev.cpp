@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "tests/emulation/emulated_bus.h"
-#include "tests/emulation/usbfs_interpose.h"
+#include "pincer/tests/emulation/emulated_bus.h"
+#include "pincer/tests/emulation/usbfs_interpose.h"
 
 namespace pincer::emulation {
 namespace {

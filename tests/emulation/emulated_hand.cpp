@@ -1,6 +1,6 @@
-#include "tests/emulation/emulated_hand.h"
+#include "pincer/tests/emulation/emulated_hand.h"
 
-#include "tasks/experiments/pickup_object.h"
+#include "pincer/tasks/lab/experiments/pickup_object.h"
 
 namespace pincer::emulation {
 

@@ -3,9 +3,9 @@
 #include <memory>
 #include <vector>
 
-#include "tasks/experiments/pickup_scene.h"
-#include "tasks/participants/scripted_pickup.h"
-#include "tests/emulation/firmware.h"
+#include "pincer/tasks/lab/experiments/pickup_scene.h"
+#include "pincer/tasks/lab/participants/scripted_pickup.h"
+#include "pincer/tests/emulation/firmware.h"
 
 namespace pincer::emulation {
 

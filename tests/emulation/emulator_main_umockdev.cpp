@@ -24,9 +24,9 @@
 #include <filesystem>
 #include <thread>
 
-#include "tests/emulation/emulated_hand.h"
-#include "tests/emulation/falcon_gadget.h"
-#include "tests/emulation/remote_port.h"
+#include "pincer/tests/emulation/emulated_hand.h"
+#include "pincer/tests/emulation/falcon_gadget.h"
+#include "pincer/tests/emulation/remote_port.h"
 
 namespace pincer::emulation {
 namespace {

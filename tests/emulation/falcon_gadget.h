@@ -1,7 +1,7 @@
 // falcon_gadget: the emulated Falcon on an emulated cable. Its chip answers once per frame of the bus, a millisecond, as full speed does.
 #pragma once
-#include "tests/emulation/usb_gadget.h"
-#include "tests/support/emulated_falcon.h"
+#include "pincer/tests/emulation/usb_gadget.h"
+#include "pincer/tests/support/emulated_falcon.h"
 
 namespace pincer::emulation {
 

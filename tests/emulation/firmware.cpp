@@ -1,4 +1,4 @@
-#include "tests/emulation/firmware.h"
+#include "pincer/tests/emulation/firmware.h"
 
 #include <algorithm>
 #include <utility>

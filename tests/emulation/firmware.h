@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "devices/arm/sim_arm.h"
-#include "devices/cld/sim_cld.h"
-#include "devices/usb/frame_order.h"
-#include "devices/usb/messages.h"
-#include "tests/emulation/usb_gadget.h"
+#include "pincer/devices/arm/sim_arm.h"
+#include "pincer/devices/cld/sim_cld.h"
+#include "pincer/devices/usb/frame_order.h"
+#include "pincer/devices/usb/messages.h"
+#include "pincer/tests/emulation/usb_gadget.h"
 
 namespace pincer::emulation {
 

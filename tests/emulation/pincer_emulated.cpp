@@ -2,10 +2,10 @@
 // picks up the sphere. All in one process, under the real libusb, so that a session keeps its millisecond.
 #include <fmt/format.h>
 
-#include "tasks/app/app.h"
-#include "tasks/app/process.h"
-#include "tests/emulation/emulated_bus.h"
-#include "tests/emulation/emulated_hand.h"
+#include "pincer/tasks/app/app.h"
+#include "pincer/tasks/app/process.h"
+#include "pincer/tests/emulation/emulated_bus.h"
+#include "pincer/tests/emulation/emulated_hand.h"
 
 namespace pincer::emulation {
 namespace {

@@ -1,4 +1,4 @@
-#include "tests/emulation/remote_port.h"
+#include "pincer/tests/emulation/remote_port.h"
 
 #include <fcntl.h>
 #include <sys/socket.h>

@@ -5,8 +5,8 @@
 #include <memory>
 #include <string>
 
-#include "tests/emulation/usbfs_device.h"
-#include "tests/emulation/usbfs_wire.h"
+#include "pincer/tests/emulation/usbfs_device.h"
+#include "pincer/tests/emulation/usbfs_wire.h"
 
 namespace pincer::emulation {
 

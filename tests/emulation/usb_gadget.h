@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "devices/usb/frame.h"
+#include "pincer/devices/usb/frame.h"
 
 namespace pincer::emulation {
 

@@ -1,4 +1,4 @@
-#include "tests/emulation/usbfs_device.h"
+#include "pincer/tests/emulation/usbfs_device.h"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -8,7 +8,7 @@
 #include <cstring>
 #include <vector>
 
-#include "devices/usb/byte_order.h"
+#include "pincer/devices/usb/byte_order.h"
 
 namespace pincer::emulation {
 namespace {

@@ -15,7 +15,7 @@
 #include <optional>
 #include <set>
 
-#include "tests/emulation/usb_gadget.h"
+#include "pincer/tests/emulation/usb_gadget.h"
 
 namespace pincer::emulation {
 

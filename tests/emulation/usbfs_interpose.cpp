@@ -1,4 +1,4 @@
-#include "tests/emulation/usbfs_interpose.h"
+#include "pincer/tests/emulation/usbfs_interpose.h"
 
 #include <array>
 #include <atomic>
@@ -66,4 +66,4 @@ void denyUsbfs(bool deny) { table().denied = deny; }
 
 }  // namespace pincer::emulation
 
-#include "tests/emulation/usbfs_symbols.h"
+#include "pincer/tests/emulation/usbfs_symbols.h"

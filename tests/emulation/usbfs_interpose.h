@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "tests/emulation/usbfs_device.h"
+#include "pincer/tests/emulation/usbfs_device.h"
 
 namespace pincer::emulation {
 

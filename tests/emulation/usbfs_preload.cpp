@@ -12,8 +12,8 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "tests/emulation/usbfs_device.h"
-#include "tests/emulation/usbfs_wire.h"
+#include "pincer/tests/emulation/usbfs_device.h"
+#include "pincer/tests/emulation/usbfs_wire.h"
 
 namespace pincer::emulation {
 namespace {
@@ -162,4 +162,4 @@ void closeUsbfs(int fd) {
 }  // namespace
 }  // namespace pincer::emulation
 
-#include "tests/emulation/usbfs_symbols.h"
+#include "pincer/tests/emulation/usbfs_symbols.h"

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "grasp/step.h"
+#include "pincer/grasp/step.h"
 
 namespace {
 

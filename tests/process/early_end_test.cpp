@@ -10,16 +10,16 @@
 #include <system_error>
 #include <thread>
 
-#include "tasks/app/app.h"
-#include "tasks/app/measure_command.h"
-#include "tasks/measure/child_process.h"
-#include "tasks/measure/interrupted.h"
-#include "tasks/measure/threads.h"
-#include "tasks/scene/strict_json.h"
-#include "tasks/session/csv_export.h"
-#include "tests/support/spawned.h"
-#include "tests/support/synthetic_session.h"
-#include "tests/support/temporary_directory.h"
+#include "pincer/tasks/app/app.h"
+#include "pincer/tasks/app/commands/measure_command.h"
+#include "pincer/tasks/run/files/strict_json.h"
+#include "pincer/tasks/run/process/child_process.h"
+#include "pincer/tasks/run/process/interrupted.h"
+#include "pincer/tasks/run/process/threads.h"
+#include "pincer/tasks/run/session/csv_export.h"
+#include "pincer/tests/support/spawned.h"
+#include "pincer/tests/support/synthetic_session.h"
+#include "pincer/tests/support/temporary_directory.h"
 
 namespace pincer::tasks {
 namespace {
@@ -29,7 +29,7 @@ using tests::Spawned;
 using tests::spawnPincer;
 using tests::TemporaryDirectory;
 
-const std::atomic<bool> kNever{false};
+bool never() { return false; }
 
 void writeSession(const std::string& path) {
   auto writer = SessionWriter::create(path, tests::SyntheticSession::info(), {.block_when_full = true});
@@ -69,9 +69,9 @@ TEST(InterruptedExport, LeavesNoPartOfATable) {
 
 TEST(ChildProcess, SaysHowItEnded) {
   const TemporaryDirectory directory;
-  EXPECT_EQ(ChildProcess({"sh", "-c", "echo heard; pwd; exit 7"}, directory.path(), "log").wait(kNever), 7);
+  EXPECT_EQ(ChildProcess({"sh", "-c", "echo heard; pwd; exit 7"}, directory.path(), "log").wait(never), 7);
   EXPECT_EQ(readFile(directory / "log"), "heard\n" + directory.path() + "\n");
-  EXPECT_EQ(ChildProcess({"sh", "-c", "kill -TERM $$"}, directory.path(), "log").wait(kNever), 128 + SIGTERM);
+  EXPECT_EQ(ChildProcess({"sh", "-c", "kill -TERM $$"}, directory.path(), "log").wait(never), 128 + SIGTERM);
   EXPECT_THROW(ChildProcess({"no-such-program"}, directory.path(), "log"), std::system_error);
   EXPECT_THROW(ChildProcess({"sh"}, directory / "none", "log"), std::system_error);
 }
@@ -86,10 +86,20 @@ TEST(ChildProcess, NeverOutlivesItsUser) {
   {
     ChildProcess child({"sh", "-c", "trap '' TERM; echo $$; while :; do sleep 0.1; done"}, directory.path(),
                        "log");  // which doesn't listen
-    EXPECT_THROW(child.wait(interrupted), Interrupted);
+    EXPECT_THROW(child.wait([&] { return interrupted.load(); }), Interrupted);
   }
   user.join();
   EXPECT_EQ(::kill(std::atoi(readFile(directory / "log").c_str()), 0), -1);
+}
+
+TEST(ChildProcess, IsHeardLineByLine) {
+  ChildProcess child({"sh", "-c", "printf 'one\\n\\ntwo '; sleep 0.1; printf 'three'; exit 2"});
+  std::vector<std::string> lines;
+  for (std::string line; child.readLine(line, never);) lines.push_back(line);
+  EXPECT_EQ(lines, (std::vector<std::string>{"one", "", "two three"}));
+  EXPECT_EQ(child.wait(never), 2);
+  std::string line;
+  EXPECT_THROW(ChildProcess({"sleep", "600"}).readLine(line, [] { return true; }), Interrupted);
 }
 
 TEST(Threads, AllDoTheWorkAndTheCallerToo) {

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "tasks/session/session_store.h"
-#include "tests/support/effort.h"
-#include "tests/support/spawned.h"
-#include "tests/support/temporary_directory.h"
+#include "pincer/tasks/run/session_store.h"
+#include "pincer/tests/support/effort.h"
+#include "pincer/tests/support/spawned.h"
+#include "pincer/tests/support/temporary_directory.h"
 
 namespace pincer::tasks {
 namespace {

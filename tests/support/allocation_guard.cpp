@@ -1,9 +1,9 @@
-#include "tests/support/allocation_guard.h"
+#include "pincer/tests/support/allocation_guard.h"
 
 #include <cerrno>
 #include <cstddef>
 
-#include "tests/support/effort.h"
+#include "pincer/tests/support/effort.h"
 
 namespace pincer::tests {
 namespace {

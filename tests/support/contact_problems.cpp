@@ -1,4 +1,4 @@
-#include "tests/support/contact_problems.h"
+#include "pincer/tests/support/contact_problems.h"
 
 #include <cmath>
 

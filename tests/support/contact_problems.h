@@ -4,7 +4,7 @@
 #include <random>
 #include <vector>
 
-#include "engine/solve/cascade.h"
+#include "pincer/engine/solve/cascade.h"
 
 namespace pincer::tests {
 

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "devices/falcon/falcon_arm.h"
+#include "pincer/devices/falcon/falcon_arm.h"
 
 namespace pincer::tests {
 

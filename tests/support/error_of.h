@@ -3,7 +3,7 @@
 #include <functional>
 #include <string>
 
-#include "contact/error.h"
+#include "pincer/contact/error.h"
 
 namespace pincer::tests {
 

@@ -2,7 +2,7 @@
 #pragma once
 #include <utility>
 
-#include "contact/triangle_mesh.h"
+#include "pincer/contact/triangle_mesh.h"
 
 namespace pincer::tests {
 

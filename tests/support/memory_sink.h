@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "tasks/experiments/record_sink.h"
+#include "pincer/tasks/lab/experiments/record_sink.h"
 
 namespace pincer::tests {
 

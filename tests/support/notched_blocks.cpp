@@ -1,4 +1,4 @@
-#include "tests/support/notched_blocks.h"
+#include "pincer/tests/support/notched_blocks.h"
 
 #include <map>
 #include <utility>

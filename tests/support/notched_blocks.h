@@ -3,8 +3,8 @@
 #include <array>
 #include <functional>
 
-#include "contact/math.h"
-#include "contact/triangle_mesh.h"
+#include "pincer/contact/math.h"
+#include "pincer/contact/triangle_mesh.h"
 
 namespace pincer::tests {
 

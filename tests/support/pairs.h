@@ -4,10 +4,10 @@
 #include <limits>
 #include <set>
 
-#include "contact/pair_query.h"
-#include "contact/shape/separation.h"
-#include "contact/surface/patch_cache.h"
-#include "tests/support/random_poses.h"
+#include "pincer/contact/pair_query.h"
+#include "pincer/contact/shape/separation.h"
+#include "pincer/contact/surface/patch_cache.h"
+#include "pincer/tests/support/random_poses.h"
 
 namespace pincer::tests {
 

@@ -1,7 +1,7 @@
 // random_poses: directions and rotations drawn evenly, and rotations about an axis.
 #pragma once
-#include "contact/math.h"
-#include "tests/support/random_numbers.h"
+#include "pincer/contact/math.h"
+#include "pincer/tests/support/random_numbers.h"
 
 namespace pincer::tests {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "tasks/app/app.h"
+#include "pincer/tasks/app/app.h"
 
 namespace pincer::tests {
 

@@ -1,4 +1,4 @@
-#include "tests/support/sampled_surface.h"
+#include "pincer/tests/support/sampled_surface.h"
 
 #include <algorithm>
 #include <limits>

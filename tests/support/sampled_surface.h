@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
-#include "contact/math.h"
-#include "contact/polytope.h"
-#include "contact/shape.h"
-#include "contact/surface/patch.h"
+#include "pincer/contact/math.h"
+#include "pincer/contact/polytope.h"
+#include "pincer/contact/shape.h"
+#include "pincer/contact/surface/patch.h"
 
 namespace pincer::tests {
 

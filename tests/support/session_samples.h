@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 
-#include "tasks/session/session_store.h"
+#include "pincer/tasks/run/session_store.h"
 
 namespace pincer::tests {
 

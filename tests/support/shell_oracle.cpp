@@ -1,4 +1,4 @@
-#include "tests/support/shell_oracle.h"
+#include "pincer/tests/support/shell_oracle.h"
 
 #include <fmt/format.h>
 

@@ -15,10 +15,10 @@
 #include <string>
 #include <vector>
 
-#include "contact/math.h"
-#include "contact/mesh/connectivity.h"
-#include "contact/surface_contact.h"
-#include "contact/triangle_mesh.h"
+#include "pincer/contact/math.h"
+#include "pincer/contact/mesh/connectivity.h"
+#include "pincer/contact/surface_contact.h"
+#include "pincer/contact/triangle_mesh.h"
 
 namespace pincer::tests {
 

@@ -1,4 +1,4 @@
-#include "tests/support/spawned.h"
+#include "pincer/tests/support/spawned.h"
 
 #include <fcntl.h>
 #include <sys/wait.h>
@@ -6,7 +6,7 @@
 
 #include <cerrno>
 
-#include "tests/support/temporary_directory.h"
+#include "pincer/tests/support/temporary_directory.h"
 
 namespace pincer::tests {
 namespace {

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "tasks/session/session_store.h"
+#include "pincer/tasks/run/session_store.h"
 
 namespace pincer::tests {
 

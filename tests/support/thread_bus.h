@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "devices/usb/usb_bus.h"
-#include "tests/emulation/usb_gadget.h"
+#include "pincer/devices/usb/usb_bus.h"
+#include "pincer/tests/emulation/usb_gadget.h"
 
 namespace pincer::tests {
 

@@ -1,7 +1,7 @@
 // touch: the main contact of a finger on a mesh, for tests that need no other; with a cache per thread.
 #pragma once
-#include "contact/smooth_mesh.h"
-#include "contact/surface/patch_cache.h"
+#include "pincer/contact/smooth_mesh.h"
+#include "pincer/contact/surface/patch_cache.h"
 
 namespace pincer::contact {
 

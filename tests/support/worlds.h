@@ -3,8 +3,8 @@
 #include <cmath>
 #include <vector>
 
-#include "engine/world/budget.h"
-#include "grasp/step.h"
+#include "pincer/engine/world/budget.h"
+#include "pincer/grasp/step.h"
 
 namespace pincer::tests {
 

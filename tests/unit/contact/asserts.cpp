@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-#include "contact/functions/invariants.h"
+#include "pincer/contact/functions/invariants.h"
 
 namespace pincer {
 namespace {

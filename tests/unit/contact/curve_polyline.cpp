@@ -2,8 +2,8 @@
 
 #include <limits>
 
-#include "contact/curve/polyline.h"
-#include "contact/error.h"
+#include "pincer/contact/curve/polyline.h"
+#include "pincer/contact/error.h"
 
 namespace pincer::contact {
 namespace {

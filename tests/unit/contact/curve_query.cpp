@@ -3,10 +3,10 @@
 
 #include <limits>
 
-#include "contact/curve/curve.h"
-#include "contact/error.h"
-#include "tests/support/allocation_guard.h"
-#include "tests/support/random_numbers.h"
+#include "pincer/contact/curve/curve.h"
+#include "pincer/contact/error.h"
+#include "pincer/tests/support/allocation_guard.h"
+#include "pincer/tests/support/random_numbers.h"
 
 namespace pincer::contact {
 namespace {

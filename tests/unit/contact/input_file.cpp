@@ -1,5 +1,5 @@
 // Files are read whole, bounded, and from files only.
-#include "contact/io/input_file.h"
+#include "pincer/contact/io/input_file.h"
 
 #include <gtest/gtest.h>
 #include <sys/socket.h>
@@ -10,9 +10,9 @@
 #include <chrono>
 #include <fstream>
 
-#include "contact/mesh_reader.h"
-#include "tests/support/error_of.h"
-#include "tests/support/temporary_directory.h"
+#include "pincer/contact/mesh_reader.h"
+#include "pincer/tests/support/error_of.h"
+#include "pincer/tests/support/temporary_directory.h"
 
 namespace pincer {
 namespace {
@@ -95,7 +95,7 @@ TEST_F(InputFiles, ANulByteDoesNotEndATextInSilence) {
   std::string_view line;
   EXPECT_TRUE(lines.nextLine(line));
   EXPECT_TRUE(holds(errorOf([&] { lines.nextLine(line); }), "nul:2: a NUL byte"));
-  const std::string mesh = write("m.obj", std::string("v 0 0 0\nv 1 0 0\nv 0 1 0\n# a\0b\nf 1 2 3\n", 40));
+  const std::string mesh = write("m.obj", std::string("v 0 0 0\nv 1 0 0\nv 0 1 0\n# a\0b\nf 1 2 3\n", 38));
   EXPECT_TRUE(holds(errorOf([&] { contact::readMesh(mesh); }), "m.obj:4: the line holds a NUL byte"));
 }
 

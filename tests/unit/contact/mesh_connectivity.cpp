@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
-#include "contact/generated_meshes.h"
-#include "contact/mesh/connectivity.h"
-#include "tests/support/constants.h"
+#include "pincer/contact/generated_meshes.h"
+#include "pincer/contact/mesh/connectivity.h"
+#include "pincer/tests/support/constants.h"
 
 namespace pincer::contact {
 namespace {

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cstring>
 
-#include "contact/generated_meshes.h"
-#include "contact/mesh/mesh_writer.h"
-#include "contact/mesh_reader.h"
-#include "contact/mesh_report.h"
-#include "tests/support/effort.h"
-#include "tests/support/random_numbers.h"
+#include "pincer/contact/generated_meshes.h"
+#include "pincer/contact/mesh/mesh_writer.h"
+#include "pincer/contact/mesh_reader.h"
+#include "pincer/contact/mesh_report.h"
+#include "pincer/tests/support/effort.h"
+#include "pincer/tests/support/random_numbers.h"
 
 namespace pincer::contact {
 namespace {

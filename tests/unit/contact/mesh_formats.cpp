@@ -7,8 +7,8 @@
 #include <fstream>
 #include <limits>
 
-#include "contact/mesh_reader.h"
-#include "tests/support/temporary_directory.h"
+#include "pincer/contact/mesh_reader.h"
+#include "pincer/tests/support/temporary_directory.h"
 
 namespace pincer::contact {
 namespace {

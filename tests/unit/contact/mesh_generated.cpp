@@ -1,8 +1,8 @@
 // The generated meshes are what they say: closed, of the right size, their vertices on the surface.
 #include <gtest/gtest.h>
 
-#include "contact/generated_meshes.h"
-#include "contact/mesh_report.h"
+#include "pincer/contact/generated_meshes.h"
+#include "pincer/contact/mesh_report.h"
 
 namespace pincer::contact {
 namespace {

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "contact/mesh/lathe.h"
-#include "contact/mesh_report.h"
-#include "tests/support/error_of.h"
+#include "pincer/contact/mesh/lathe.h"
+#include "pincer/contact/mesh_report.h"
+#include "pincer/tests/support/error_of.h"
 
 namespace pincer::contact {
 namespace {

@@ -4,7 +4,7 @@
 #include <limits>
 #include <sstream>
 
-#include "contact/mesh_reader.h"
+#include "pincer/contact/mesh_reader.h"
 
 namespace pincer::contact {
 namespace {
@@ -162,7 +162,7 @@ TEST(ObjReader, NamesEveryDefectWithItsLine) {
       {"v 0 0 0\nv 1 1 0\nv 1 0 0\nv 0 1 0\nf 1 2 3 4\n", {":5:", "4 corners", "crosses itself"}},
       {kTriangle + "curv 0 1 1 2\nf 1 2 3\n", {":4:", "free-form"}},
       {"solid part\nfacet normal 0 0 1\n", {":1:", "\"solid\"", "not a keyword", "OBJ"}},
-      {std::string("\x7f\x45LF\0\1\2", 7), {":1:", "not a keyword", "\"?ELF???\""}},
+      {std::string("\x7f\x45LF\0\1\2", 7), {":1:", "a NUL byte", "export it again"}},
       {kTriangle + "f 1 2 3\nf 1 2", {":5:", "2 corners", "ends in the middle of this line"}},
       {kTriangle + "f 1 \\\n 2 \\\n x\n", {":4:", "\"x\""}},
   };

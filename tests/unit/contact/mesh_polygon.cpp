@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "contact/mesh/polygon.h"
-#include "tests/support/random_numbers.h"
+#include "pincer/contact/mesh/polygon.h"
+#include "pincer/tests/support/random_numbers.h"
 
 namespace pincer::contact {
 namespace {

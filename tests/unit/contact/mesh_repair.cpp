@@ -1,4 +1,4 @@
-#include "contact/mesh_repair.h"
+#include "pincer/contact/mesh_repair.h"
 
 #include <gtest/gtest.h>
 
@@ -6,10 +6,10 @@
 #include <filesystem>
 #include <random>
 
-#include "contact/generated_meshes.h"
-#include "contact/mesh_reader.h"
-#include "contact/mesh_report.h"
-#include "tests/support/inside_out.h"
+#include "pincer/contact/generated_meshes.h"
+#include "pincer/contact/mesh_reader.h"
+#include "pincer/contact/mesh_report.h"
+#include "pincer/tests/support/inside_out.h"
 
 namespace pincer::contact {
 namespace {

@@ -1,10 +1,10 @@
-#include "contact/mesh_report.h"
+#include "pincer/contact/mesh_report.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "contact/generated_meshes.h"
+#include "pincer/contact/generated_meshes.h"
 
 namespace pincer::contact {
 namespace {

@@ -3,12 +3,12 @@
 #include <cmath>
 #include <functional>
 
-#include "contact/generated_meshes.h"
-#include "contact/mesh/round_edges.h"
-#include "contact/mesh_report.h"
-#include "contact/smooth_mesh.h"
-#include "contact/surface/surface_net.h"
-#include "tests/support/inside_out.h"
+#include "pincer/contact/generated_meshes.h"
+#include "pincer/contact/mesh/round_edges.h"
+#include "pincer/contact/mesh_report.h"
+#include "pincer/contact/smooth_mesh.h"
+#include "pincer/contact/surface/surface_net.h"
+#include "pincer/tests/support/inside_out.h"
 
 namespace pincer::contact {
 namespace {

@@ -1,13 +1,13 @@
-#include "contact/mesh/mesh_writer.h"
+#include "pincer/contact/mesh/mesh_writer.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <filesystem>
 
-#include "contact/generated_meshes.h"
-#include "contact/mesh_reader.h"
-#include "tests/support/temporary_directory.h"
+#include "pincer/contact/generated_meshes.h"
+#include "pincer/contact/mesh_reader.h"
+#include "pincer/tests/support/temporary_directory.h"
 
 namespace pincer::contact {
 namespace {

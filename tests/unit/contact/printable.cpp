@@ -1,10 +1,10 @@
 // Text of others is shown and not obeyed.
-#include "contact/io/printable.h"
+#include "pincer/contact/io/printable.h"
 
 #include <gtest/gtest.h>
 
-#include "contact/io/counted.h"
-#include "tests/support/random_numbers.h"
+#include "pincer/contact/io/counted.h"
+#include "pincer/tests/support/random_numbers.h"
 
 namespace pincer {
 namespace {

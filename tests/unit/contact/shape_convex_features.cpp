@@ -3,13 +3,13 @@
 
 #include <random>
 
-#include "contact/error.h"
-#include "contact/polytope.h"
-#include "contact/shape/closed_forms.h"
-#include "contact/shape/convex_features.h"
-#include "tests/support/random_numbers.h"
-#include "tests/support/random_poses.h"
-#include "tests/support/sampled_surface.h"
+#include "pincer/contact/error.h"
+#include "pincer/contact/polytope.h"
+#include "pincer/contact/shape/closed_forms.h"
+#include "pincer/contact/shape/convex_features.h"
+#include "pincer/tests/support/random_numbers.h"
+#include "pincer/tests/support/random_poses.h"
+#include "pincer/tests/support/sampled_surface.h"
 
 namespace pincer::contact {
 namespace {

@@ -7,18 +7,18 @@
 #include <numbers>
 #include <set>
 
-#include "contact/pair_query.h"
-#include "contact/polytope.h"
-#include "contact/shape/closed_forms.h"
-#include "contact/shape/separation.h"
-#include "contact/surface/patch_cache.h"
-#include "tests/support/allocation_guard.h"
-#include "tests/support/constants.h"
-#include "tests/support/effort.h"
-#include "tests/support/pairs.h"
-#include "tests/support/random_numbers.h"
-#include "tests/support/random_poses.h"
-#include "tests/support/sampled_surface.h"
+#include "pincer/contact/pair_query.h"
+#include "pincer/contact/polytope.h"
+#include "pincer/contact/shape/closed_forms.h"
+#include "pincer/contact/shape/separation.h"
+#include "pincer/contact/surface/patch_cache.h"
+#include "pincer/tests/support/allocation_guard.h"
+#include "pincer/tests/support/constants.h"
+#include "pincer/tests/support/effort.h"
+#include "pincer/tests/support/pairs.h"
+#include "pincer/tests/support/random_numbers.h"
+#include "pincer/tests/support/random_poses.h"
+#include "pincer/tests/support/sampled_surface.h"
 
 namespace pincer::contact {
 namespace {

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "contact/finger_query.h"
-#include "contact/pair_query.h"
-#include "contact/surface/patch_cache.h"
-#include "tests/support/constants.h"
-#include "tests/support/sampled_surface.h"
+#include "pincer/contact/finger_query.h"
+#include "pincer/contact/pair_query.h"
+#include "pincer/contact/surface/patch_cache.h"
+#include "pincer/tests/support/constants.h"
+#include "pincer/tests/support/sampled_surface.h"
 
 namespace pincer::contact {
 namespace {

@@ -5,18 +5,18 @@
 #include <cmath>
 #include <set>
 
-#include "contact/generated_meshes.h"
-#include "contact/pair_query.h"
-#include "contact/polytope.h"
-#include "contact/shape/closed_forms.h"
-#include "contact/shape/contact_candidates.h"
-#include "contact/smooth_mesh.h"
-#include "contact/surface/patch_cache.h"
-#include "tasks/exact/convex_gap.h"
-#include "tests/support/constants.h"
-#include "tests/support/pairs.h"
-#include "tests/support/random_numbers.h"
-#include "tests/support/random_poses.h"
+#include "pincer/contact/generated_meshes.h"
+#include "pincer/contact/pair_query.h"
+#include "pincer/contact/polytope.h"
+#include "pincer/contact/shape/closed_forms.h"
+#include "pincer/contact/shape/contact_candidates.h"
+#include "pincer/contact/smooth_mesh.h"
+#include "pincer/contact/surface/patch_cache.h"
+#include "pincer/tasks/judge/exact/convex_gap.h"
+#include "pincer/tests/support/constants.h"
+#include "pincer/tests/support/pairs.h"
+#include "pincer/tests/support/random_numbers.h"
+#include "pincer/tests/support/random_poses.h"
 
 namespace pincer::contact {
 namespace {

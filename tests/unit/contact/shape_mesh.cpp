@@ -1,11 +1,11 @@
 // A mesh as a body: it stands on the corners of its hull, and fingertips and balls meet its surface.
 #include <gtest/gtest.h>
 
-#include "contact/finger_query.h"
-#include "contact/pair_query.h"
-#include "contact/smooth_mesh.h"
-#include "contact/surface/patch_cache.h"
-#include "tests/support/pairs.h"
+#include "pincer/contact/finger_query.h"
+#include "pincer/contact/pair_query.h"
+#include "pincer/contact/smooth_mesh.h"
+#include "pincer/contact/surface/patch_cache.h"
+#include "pincer/tests/support/pairs.h"
 
 namespace pincer::contact {
 namespace {

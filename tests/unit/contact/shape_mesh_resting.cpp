@@ -5,12 +5,12 @@
 #include <set>
 #include <vector>
 
-#include "contact/generated_meshes.h"
-#include "contact/pair_query.h"
-#include "contact/smooth_mesh.h"
-#include "contact/surface/patch_cache.h"
-#include "tests/support/constants.h"
-#include "tests/support/pairs.h"
+#include "pincer/contact/generated_meshes.h"
+#include "pincer/contact/pair_query.h"
+#include "pincer/contact/smooth_mesh.h"
+#include "pincer/contact/surface/patch_cache.h"
+#include "pincer/tests/support/constants.h"
+#include "pincer/tests/support/pairs.h"
 
 namespace pincer::contact {
 namespace {

@@ -4,12 +4,12 @@
 
 #include <chrono>
 
-#include "contact/generated_meshes.h"
-#include "contact/pair_query.h"
-#include "contact/shape/separation.h"
-#include "contact/smooth_mesh.h"
-#include "contact/surface/patch_cache.h"
-#include "tests/support/sampled_surface.h"
+#include "pincer/contact/generated_meshes.h"
+#include "pincer/contact/pair_query.h"
+#include "pincer/contact/shape/separation.h"
+#include "pincer/contact/smooth_mesh.h"
+#include "pincer/contact/surface/patch_cache.h"
+#include "pincer/tests/support/sampled_surface.h"
 
 namespace pincer::contact {
 namespace {

@@ -6,13 +6,13 @@
 #include <random>
 #include <vector>
 
-#include "contact/finger_query.h"
-#include "contact/pair_query.h"
-#include "contact/shape/convex_features.h"
-#include "tests/support/constants.h"
-#include "tests/support/effort.h"
-#include "tests/support/pairs.h"
-#include "tests/support/sampled_surface.h"
+#include "pincer/contact/finger_query.h"
+#include "pincer/contact/pair_query.h"
+#include "pincer/contact/shape/convex_features.h"
+#include "pincer/tests/support/constants.h"
+#include "pincer/tests/support/effort.h"
+#include "pincer/tests/support/pairs.h"
+#include "pincer/tests/support/sampled_surface.h"
 
 namespace pincer::contact {
 namespace {

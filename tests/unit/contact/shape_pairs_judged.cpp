@@ -1,17 +1,17 @@
-// Pairs of convex solids, judged by trying every direction that may be the best (tasks/exact/convex_gap.h): near, touching, overlapping, at
+// Pairs of convex solids, judged by trying every direction that may be the best (tasks/judge/exact/convex_gap.h): near, touching, overlapping, at
 // any scale, begun anew or from the last answer.
 #include <gtest/gtest.h>
 
-#include "contact/pair_query.h"
-#include "contact/shape/convex_features.h"
-#include "contact/shape/separation.h"
-#include "contact/surface/patch_cache.h"
-#include "tasks/exact/convex_gap.h"
-#include "tests/support/effort.h"
-#include "tests/support/pairs.h"
-#include "tests/support/random_numbers.h"
-#include "tests/support/random_poses.h"
-#include "tests/support/sampled_surface.h"
+#include "pincer/contact/pair_query.h"
+#include "pincer/contact/shape/convex_features.h"
+#include "pincer/contact/shape/separation.h"
+#include "pincer/contact/surface/patch_cache.h"
+#include "pincer/tasks/judge/exact/convex_gap.h"
+#include "pincer/tests/support/effort.h"
+#include "pincer/tests/support/pairs.h"
+#include "pincer/tests/support/random_numbers.h"
+#include "pincer/tests/support/random_poses.h"
+#include "pincer/tests/support/sampled_surface.h"
 
 namespace pincer::contact {
 namespace {

@@ -7,15 +7,15 @@
 #include <set>
 #include <vector>
 
-#include "contact/pair_query.h"
-#include "contact/shape/direction.h"
-#include "contact/shape/extreme_points.h"
-#include "contact/shape/point_choice.h"
-#include "contact/shape/support.h"
-#include "contact/surface/patch_cache.h"
-#include "tests/support/constants.h"
-#include "tests/support/pairs.h"
-#include "tests/support/random_poses.h"
+#include "pincer/contact/pair_query.h"
+#include "pincer/contact/shape/direction.h"
+#include "pincer/contact/shape/extreme_points.h"
+#include "pincer/contact/shape/point_choice.h"
+#include "pincer/contact/shape/support.h"
+#include "pincer/contact/surface/patch_cache.h"
+#include "pincer/tests/support/constants.h"
+#include "pincer/tests/support/pairs.h"
+#include "pincer/tests/support/random_poses.h"
 
 namespace pincer::contact {
 namespace {

@@ -3,14 +3,14 @@
 
 #include <algorithm>
 
-#include "contact/generated_meshes.h"
-#include "contact/surface/near_parts.h"
-#include "contact/surface/shell_face.h"
-#include "contact/surface/surface_search.h"
-#include "tests/support/constants.h"
-#include "tests/support/effort.h"
-#include "tests/support/notched_blocks.h"
-#include "tests/support/random_numbers.h"
+#include "pincer/contact/generated_meshes.h"
+#include "pincer/contact/surface/near_parts.h"
+#include "pincer/contact/surface/shell_face.h"
+#include "pincer/contact/surface/surface_search.h"
+#include "pincer/tests/support/constants.h"
+#include "pincer/tests/support/effort.h"
+#include "pincer/tests/support/notched_blocks.h"
+#include "pincer/tests/support/random_numbers.h"
 
 namespace pincer::contact {
 namespace {

@@ -3,11 +3,11 @@
 
 #include <filesystem>
 
-#include "contact/mesh_reader.h"
-#include "contact/mesh_report.h"
-#include "contact/smooth_mesh.h"
-#include "contact/surface/shell_edge.h"
-#include "tests/support/constants.h"
+#include "pincer/contact/mesh_reader.h"
+#include "pincer/contact/mesh_report.h"
+#include "pincer/contact/smooth_mesh.h"
+#include "pincer/contact/surface/shell_edge.h"
+#include "pincer/tests/support/constants.h"
 
 namespace pincer::contact {
 namespace {

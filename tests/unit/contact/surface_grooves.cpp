@@ -6,13 +6,13 @@
 
 #include <functional>
 
-#include "contact/generated_meshes.h"
-#include "contact/smooth_mesh.h"
-#include "contact/surface/patch_cache.h"
-#include "tests/support/constants.h"
-#include "tests/support/effort.h"
-#include "tests/support/notched_blocks.h"
-#include "tests/support/random_numbers.h"
+#include "pincer/contact/generated_meshes.h"
+#include "pincer/contact/smooth_mesh.h"
+#include "pincer/contact/surface/patch_cache.h"
+#include "pincer/tests/support/constants.h"
+#include "pincer/tests/support/effort.h"
+#include "pincer/tests/support/notched_blocks.h"
+#include "pincer/tests/support/random_numbers.h"
 
 namespace pincer::contact {
 namespace {

@@ -1,14 +1,14 @@
 // Every answer of the query judged by brute force (tests/support/shell_oracle.h), on tame meshes and on hostile ones.
 #include <gtest/gtest.h>
 
-#include "contact/generated_meshes.h"
-#include "contact/smooth_mesh.h"
-#include "contact/surface/patch_cache.h"
-#include "tests/support/constants.h"
-#include "tests/support/effort.h"
-#include "tests/support/random_numbers.h"
-#include "tests/support/random_poses.h"
-#include "tests/support/shell_oracle.h"
+#include "pincer/contact/generated_meshes.h"
+#include "pincer/contact/smooth_mesh.h"
+#include "pincer/contact/surface/patch_cache.h"
+#include "pincer/tests/support/constants.h"
+#include "pincer/tests/support/effort.h"
+#include "pincer/tests/support/random_numbers.h"
+#include "pincer/tests/support/random_poses.h"
+#include "pincer/tests/support/shell_oracle.h"
 
 namespace pincer::contact {
 namespace {

@@ -1,15 +1,15 @@
-#include "contact/surface/surface_net.h"
+#include "pincer/contact/surface/surface_net.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <set>
 
-#include "contact/generated_meshes.h"
-#include "contact/mesh_report.h"
-#include "contact/smooth_mesh.h"
-#include "contact/surface/edge_cubic.h"
-#include "tests/support/constants.h"
+#include "pincer/contact/generated_meshes.h"
+#include "pincer/contact/mesh_report.h"
+#include "pincer/contact/smooth_mesh.h"
+#include "pincer/contact/surface/edge_cubic.h"
+#include "pincer/tests/support/constants.h"
 
 namespace pincer::contact {
 namespace {

@@ -5,14 +5,14 @@
 #include <filesystem>
 #include <limits>
 
-#include "contact/generated_meshes.h"
-#include "contact/mesh_reader.h"
-#include "contact/mesh_report.h"
-#include "contact/smooth_mesh.h"
-#include "contact/surface/surface_net.h"
-#include "tests/support/random_numbers.h"
-#include "tests/support/random_poses.h"
-#include "tests/support/touch.h"
+#include "pincer/contact/generated_meshes.h"
+#include "pincer/contact/mesh_reader.h"
+#include "pincer/contact/mesh_report.h"
+#include "pincer/contact/smooth_mesh.h"
+#include "pincer/contact/surface/surface_net.h"
+#include "pincer/tests/support/random_numbers.h"
+#include "pincer/tests/support/random_poses.h"
+#include "pincer/tests/support/touch.h"
 
 namespace pincer::contact {
 namespace {

@@ -3,14 +3,14 @@
 #include <limits>
 #include <thread>
 
-#include "contact/generated_meshes.h"
-#include "contact/mesh/mesh_writer.h"
-#include "contact/mesh_reader.h"
-#include "contact/smooth_mesh.h"
-#include "contact/surface/patch_cache.h"
-#include "tests/support/allocation_guard.h"
-#include "tests/support/constants.h"
-#include "tests/support/touch.h"
+#include "pincer/contact/generated_meshes.h"
+#include "pincer/contact/mesh/mesh_writer.h"
+#include "pincer/contact/mesh_reader.h"
+#include "pincer/contact/smooth_mesh.h"
+#include "pincer/contact/surface/patch_cache.h"
+#include "pincer/tests/support/allocation_guard.h"
+#include "pincer/tests/support/constants.h"
+#include "pincer/tests/support/touch.h"
 
 namespace pincer::contact {
 namespace {

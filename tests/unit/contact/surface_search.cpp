@@ -1,15 +1,15 @@
 // The search for places that face a point, against a look at every triangle.
-#include "contact/surface/surface_search.h"
+#include "pincer/contact/surface/surface_search.h"
 
 #include <gtest/gtest.h>
 
 #include <map>
 #include <set>
 
-#include "contact/generated_meshes.h"
-#include "contact/surface/outward_float.h"
-#include "tests/support/constants.h"
-#include "tests/support/random_numbers.h"
+#include "pincer/contact/generated_meshes.h"
+#include "pincer/contact/surface/outward_float.h"
+#include "pincer/tests/support/constants.h"
+#include "pincer/tests/support/random_numbers.h"
 
 namespace pincer::contact {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <Eigen/LU>
 
-#include "contact/generated_meshes.h"
-#include "contact/surface/self_crossings.h"
-#include "tests/support/random_numbers.h"
+#include "pincer/contact/generated_meshes.h"
+#include "pincer/contact/surface/self_crossings.h"
+#include "pincer/tests/support/random_numbers.h"
 
 namespace pincer::contact {
 namespace {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "contact/surface/turns.h"
-#include "tests/support/random_numbers.h"
+#include "pincer/contact/surface/turns.h"
+#include "pincer/tests/support/random_numbers.h"
 
 namespace pincer::contact {
 namespace {

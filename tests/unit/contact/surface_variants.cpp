@@ -2,15 +2,15 @@
 // how often the published iteration takes how long, and where it fails.
 #include <gtest/gtest.h>
 
-#include "contact/generated_meshes.h"
-#include "contact/smooth_mesh.h"
-#include "contact/surface/surface_net.h"
-#include "contact/surface/surface_variant.h"
-#include "tests/support/allocation_guard.h"
-#include "tests/support/constants.h"
-#include "tests/support/random_numbers.h"
-#include "tests/support/random_poses.h"
-#include "tests/support/touch.h"
+#include "pincer/contact/generated_meshes.h"
+#include "pincer/contact/smooth_mesh.h"
+#include "pincer/contact/surface/surface_net.h"
+#include "pincer/contact/surface/surface_variant.h"
+#include "pincer/tests/support/allocation_guard.h"
+#include "pincer/tests/support/constants.h"
+#include "pincer/tests/support/random_numbers.h"
+#include "pincer/tests/support/random_poses.h"
+#include "pincer/tests/support/touch.h"
 
 namespace pincer::contact {
 namespace {

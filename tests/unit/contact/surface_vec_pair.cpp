@@ -3,7 +3,7 @@
 
 #include <random>
 
-#include "contact/surface/edge_cubic.h"
+#include "pincer/contact/surface/edge_cubic.h"
 
 namespace pincer::contact {
 namespace {

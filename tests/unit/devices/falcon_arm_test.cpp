@@ -1,5 +1,5 @@
 // A Novint Falcon that isn't there: loading its firmware, homing, forces. Two threads meet in it. (Also run under ThreadSanitizer.)
-#include "devices/falcon/falcon_arm.h"
+#include "pincer/devices/falcon/falcon_arm.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "tests/support/emulated_falcon.h"
+#include "pincer/tests/support/emulated_falcon.h"
 
 namespace pincer::devices::falcon {
 namespace {

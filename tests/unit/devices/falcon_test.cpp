@@ -1,10 +1,10 @@
 // A Novint Falcon's geometry and packets.
 #include <gtest/gtest.h>
 
-#include "devices/falcon/falcon_kinematics.h"
-#include "devices/falcon/falcon_packet.h"
-#include "tests/support/constants.h"
-#include "tests/support/random_numbers.h"
+#include "pincer/devices/falcon/falcon_kinematics.h"
+#include "pincer/devices/falcon/falcon_packet.h"
+#include "pincer/tests/support/constants.h"
+#include "pincer/tests/support/random_numbers.h"
 
 namespace pincer::devices::falcon {
 namespace {

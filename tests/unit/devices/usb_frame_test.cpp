@@ -5,10 +5,10 @@
 #include <iterator>
 #include <set>
 
-#include "devices/usb/byte_order.h"
-#include "devices/usb/frame.h"
-#include "devices/usb/frame_order.h"
-#include "tests/support/random_numbers.h"
+#include "pincer/devices/usb/byte_order.h"
+#include "pincer/devices/usb/frame.h"
+#include "pincer/devices/usb/frame_order.h"
+#include "pincer/tests/support/random_numbers.h"
 
 namespace pincer::devices::usb {
 namespace {

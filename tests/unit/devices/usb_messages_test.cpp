@@ -1,9 +1,9 @@
 #include <gtest/gtest.h>
 
-#include "devices/usb/byte_order.h"
-#include "devices/usb/messages.h"
-#include "tests/support/constants.h"
-#include "tests/support/random_numbers.h"
+#include "pincer/devices/usb/byte_order.h"
+#include "pincer/devices/usb/messages.h"
+#include "pincer/tests/support/constants.h"
+#include "pincer/tests/support/random_numbers.h"
 
 namespace pincer::devices::usb {
 namespace {

@@ -5,9 +5,9 @@
 #include <functional>
 #include <thread>
 
-#include "devices/usb/usb_host.h"
-#include "tests/emulation/firmware.h"
-#include "tests/support/thread_bus.h"
+#include "pincer/devices/usb/usb_host.h"
+#include "pincer/tests/emulation/firmware.h"
+#include "pincer/tests/support/thread_bus.h"
 
 namespace pincer::devices::usb {
 namespace {

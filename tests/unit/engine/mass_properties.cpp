@@ -5,9 +5,9 @@
 #include <limits>
 #include <random>
 
-#include "contact/error.h"
-#include "engine/motion/mass.h"
-#include "tests/support/constants.h"
+#include "pincer/contact/error.h"
+#include "pincer/engine/motion/mass.h"
+#include "pincer/tests/support/constants.h"
 
 namespace pincer::engine {
 namespace {

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include "engine/motion/free_motion.h"
+#include "pincer/engine/motion/free_motion.h"
 
 namespace pincer::engine {
 namespace {

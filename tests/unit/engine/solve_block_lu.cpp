@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/solve/block_lu.h"
+#include "pincer/engine/solve/block_lu.h"
 
 namespace pincer::engine {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <limits>
 
-#include "engine/solve/cone.h"
-#include "tests/support/constants.h"
-#include "tests/support/contact_problems.h"
+#include "pincer/engine/solve/cone.h"
+#include "pincer/tests/support/constants.h"
+#include "pincer/tests/support/contact_problems.h"
 
 namespace pincer::engine {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <limits>
 
-#include "engine/solve/cone.h"
-#include "tests/support/contact_problems.h"
+#include "pincer/engine/solve/cone.h"
+#include "pincer/tests/support/contact_problems.h"
 
 namespace pincer::engine {
 namespace {

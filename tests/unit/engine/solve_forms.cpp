@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <numeric>
 
-#include "engine/solve/contact_equations.h"
-#include "tests/support/contact_problems.h"
+#include "pincer/engine/solve/contact_equations.h"
+#include "pincer/tests/support/contact_problems.h"
 
 namespace pincer::engine {
 namespace {

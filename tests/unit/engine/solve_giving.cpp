@@ -1,8 +1,8 @@
 // Contacts that contradict each other, and give way.
 #include <gtest/gtest.h>
 
-#include "engine/solve/cascade.h"
-#include "tests/support/contact_problems.h"
+#include "pincer/engine/solve/cascade.h"
+#include "pincer/tests/support/contact_problems.h"
 
 namespace pincer::engine {
 namespace {

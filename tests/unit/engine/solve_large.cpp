@@ -1,11 +1,11 @@
 // Contacts too many for Newton's method: accelerated sweeps.
 #include <gtest/gtest.h>
 
-#include "engine/solve/gauss_seidel.h"
-#include "engine/solve/large_problem.h"
-#include "engine/solve/local_contact.h"
-#include "engine/solve/residual.h"
-#include "tests/support/contact_problems.h"
+#include "pincer/engine/solve/gauss_seidel.h"
+#include "pincer/engine/solve/large_problem.h"
+#include "pincer/engine/solve/local_contact.h"
+#include "pincer/engine/solve/residual.h"
+#include "pincer/tests/support/contact_problems.h"
 
 namespace pincer::engine {
 namespace {

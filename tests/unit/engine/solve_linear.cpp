@@ -5,9 +5,9 @@
 #include <Eigen/Dense>
 #include <vector>
 
-#include "engine/solve/linear.h"
-#include "engine/solve/lorentz.h"
-#include "tests/support/contact_problems.h"
+#include "pincer/engine/solve/linear.h"
+#include "pincer/engine/solve/lorentz.h"
+#include "pincer/tests/support/contact_problems.h"
 
 namespace pincer::engine {
 namespace {

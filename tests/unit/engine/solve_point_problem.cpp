@@ -4,10 +4,10 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "engine/solve/cone.h"
-#include "engine/solve/point_problem.h"
-#include "engine/solve/residual.h"
-#include "tests/support/contact_problems.h"
+#include "pincer/engine/solve/cone.h"
+#include "pincer/engine/solve/point_problem.h"
+#include "pincer/engine/solve/residual.h"
+#include "pincer/tests/support/contact_problems.h"
 
 namespace pincer::engine {
 namespace {

@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "engine/solve/cone.h"
-#include "engine/solve/gauss_seidel.h"
-#include "engine/solve/local_contact.h"
-#include "tests/support/allocation_guard.h"
-#include "tests/support/contact_problems.h"
+#include "pincer/engine/solve/cone.h"
+#include "pincer/engine/solve/gauss_seidel.h"
+#include "pincer/engine/solve/local_contact.h"
+#include "pincer/tests/support/allocation_guard.h"
+#include "pincer/tests/support/contact_problems.h"
 
 namespace pincer::engine {
 namespace {
@@ -139,8 +139,8 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         Family{"two fingers", [](RandomScenes& s) { return s.grasp(2, 1, false); }, 1000, 1},
         Family{"two fingers, mass ratio 1e4", [](RandomScenes& s) { return s.grasp(2, 1e4, false); }, 1000, 1},
-        // Of 12,000 others 15 don't; whether one is among these 300 is the compiler's choice, which orders the draws of a call.
-        Family{"two to ten fingers", [](RandomScenes& s) { return s.grasp(s.integer(2, 10), 1e3, false); }, 300, 0.996},
+        // Of 12,000 15 don't; how many are among these 1,200 is chance, of the compiler, which orders the draws of a call, and of round-off.
+        Family{"two to ten fingers", [](RandomScenes& s) { return s.grasp(s.integer(2, 10), 1e3, false); }, 1200, 0.996},
         Family{"soft fingers", [](RandomScenes& s) { return s.grasp(s.integer(2, 5), 1, true); }, 500, 0.999},
         Family{"box on corners", [](RandomScenes& s) { return s.stack(1, 1, std::pow(10, s.uniform(-4, 0))); }, 1000, 0.999},
         Family{"ring of redundant contacts", [](RandomScenes& s) { return s.ring(s.integer(4, 12), 0.01); }, 300, 0.999},

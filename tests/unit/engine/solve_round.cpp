@@ -1,11 +1,11 @@
 // Contacts between balls in their short form do what A does.
 #include <gtest/gtest.h>
 
-#include "engine/solve/large_problem.h"
-#include "engine/solve/mobility.h"
-#include "engine/solve/residual.h"
-#include "engine/solve/round_contact.h"
-#include "tests/support/contact_problems.h"
+#include "pincer/engine/solve/large_problem.h"
+#include "pincer/engine/solve/mobility.h"
+#include "pincer/engine/solve/residual.h"
+#include "pincer/engine/solve/round_contact.h"
+#include "pincer/tests/support/contact_problems.h"
 
 namespace pincer::engine {
 namespace {

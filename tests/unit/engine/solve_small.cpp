@@ -1,8 +1,8 @@
 // One to three contacts: Newton's method in fixed sizes against the general one.
 #include <gtest/gtest.h>
 
-#include "engine/solve/small_problem.h"
-#include "tests/support/contact_problems.h"
+#include "pincer/engine/solve/small_problem.h"
+#include "pincer/tests/support/contact_problems.h"
 
 namespace pincer::engine {
 namespace {

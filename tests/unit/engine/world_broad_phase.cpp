@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <random>
 
-#include "engine/state.h"
-#include "engine/step.h"
-#include "engine/world/broad_phase.h"
-#include "engine/world/scratch.h"
-#include "tests/support/allocation_guard.h"
+#include "pincer/engine/state.h"
+#include "pincer/engine/step.h"
+#include "pincer/engine/world/broad_phase.h"
+#include "pincer/engine/world/scratch.h"
+#include "pincer/tests/support/allocation_guard.h"
 
 namespace pincer::engine {
 namespace {

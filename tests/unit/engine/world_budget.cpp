@@ -3,11 +3,11 @@
 
 #include <cmath>
 
-#include "contact/error.h"
-#include "engine/solve/gauss_seidel.h"
-#include "engine/step.h"
-#include "tests/support/contact_problems.h"
-#include "tests/support/worlds.h"
+#include "pincer/contact/error.h"
+#include "pincer/engine/solve/gauss_seidel.h"
+#include "pincer/engine/step.h"
+#include "pincer/tests/support/contact_problems.h"
+#include "pincer/tests/support/worlds.h"
 
 namespace pincer::engine {
 namespace {

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/motion/driven_motion.h"
-#include "engine/step.h"
-#include "tests/support/constants.h"
-#include "tests/support/worlds.h"
+#include "pincer/engine/motion/driven_motion.h"
+#include "pincer/engine/step.h"
+#include "pincer/tests/support/constants.h"
+#include "pincer/tests/support/worlds.h"
 
 namespace pincer::engine {
 namespace {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/step.h"
-#include "tests/support/worlds.h"
+#include "pincer/engine/step.h"
+#include "pincer/tests/support/worlds.h"
 
 namespace pincer::engine {
 namespace {

@@ -1,8 +1,8 @@
 // Loops of bodies whose gaps and stick offsets ask for what no motion gives.
 #include <gtest/gtest.h>
 
-#include "engine/step.h"
-#include "tests/support/worlds.h"
+#include "pincer/engine/step.h"
+#include "pincer/tests/support/worlds.h"
 
 namespace pincer::engine {
 namespace {

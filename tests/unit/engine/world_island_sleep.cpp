@@ -3,10 +3,10 @@
 
 #include <cmath>
 
-#include "engine/step.h"
-#include "tests/support/allocation_guard.h"
-#include "tests/support/random_numbers.h"
-#include "tests/support/worlds.h"
+#include "pincer/engine/step.h"
+#include "pincer/tests/support/allocation_guard.h"
+#include "pincer/tests/support/random_numbers.h"
+#include "pincer/tests/support/worlds.h"
 
 namespace pincer::engine {
 namespace {

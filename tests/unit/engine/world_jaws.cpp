@@ -3,10 +3,10 @@
 
 #include <algorithm>
 
-#include "engine/step.h"
-#include "engine/world/scratch.h"
-#include "tests/support/constants.h"
-#include "tests/support/worlds.h"
+#include "pincer/engine/step.h"
+#include "pincer/engine/world/scratch.h"
+#include "pincer/tests/support/constants.h"
+#include "pincer/tests/support/worlds.h"
 
 namespace pincer::engine {
 namespace {

@@ -3,13 +3,13 @@
 
 #include <cmath>
 
-#include "engine/motion/driven_motion.h"
-#include "engine/motion/one_freedom.h"
-#include "engine/step.h"
-#include "engine/world/joints.h"
-#include "tests/support/allocation_guard.h"
-#include "tests/support/constants.h"
-#include "tests/support/worlds.h"
+#include "pincer/engine/motion/driven_motion.h"
+#include "pincer/engine/motion/one_freedom.h"
+#include "pincer/engine/step.h"
+#include "pincer/engine/world/joints.h"
+#include "pincer/tests/support/allocation_guard.h"
+#include "pincer/tests/support/constants.h"
+#include "pincer/tests/support/worlds.h"
 
 namespace pincer::engine {
 namespace {

@@ -5,14 +5,14 @@
 #include <filesystem>
 #include <string>
 
-#include "contact/generated_meshes.h"
-#include "contact/mesh_reader.h"
-#include "contact/mesh_report.h"
-#include "contact/smooth_mesh.h"
-#include "engine/motion/mass.h"
-#include "engine/state.h"
-#include "engine/step.h"
-#include "engine/world/scratch.h"
+#include "pincer/contact/generated_meshes.h"
+#include "pincer/contact/mesh_reader.h"
+#include "pincer/contact/mesh_report.h"
+#include "pincer/contact/smooth_mesh.h"
+#include "pincer/engine/motion/mass.h"
+#include "pincer/engine/state.h"
+#include "pincer/engine/step.h"
+#include "pincer/engine/world/scratch.h"
 
 namespace pincer::engine {
 namespace {

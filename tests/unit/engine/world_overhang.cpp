@@ -1,13 +1,13 @@
 // Bodies over the rim of a table that is a mesh, however its top is cut: they stand while their centre of mass is over it, and tip otherwise.
 #include <gtest/gtest.h>
 
-#include "contact/generated_meshes.h"
-#include "contact/polytope.h"
-#include "contact/smooth_mesh.h"
-#include "engine/state.h"
-#include "engine/step.h"
-#include "engine/world/scratch.h"
-#include "tests/support/constants.h"
+#include "pincer/contact/generated_meshes.h"
+#include "pincer/contact/polytope.h"
+#include "pincer/contact/smooth_mesh.h"
+#include "pincer/engine/state.h"
+#include "pincer/engine/step.h"
+#include "pincer/engine/world/scratch.h"
+#include "pincer/tests/support/constants.h"
 
 namespace pincer::engine {
 namespace {

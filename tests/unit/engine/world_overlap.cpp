@@ -3,11 +3,11 @@
 
 #include <cmath>
 
-#include "engine/step.h"
-#include "engine/world/contact_rows.h"
-#include "engine/world/push_out.h"
-#include "engine/world/stages.h"
-#include "tests/support/worlds.h"
+#include "pincer/engine/step.h"
+#include "pincer/engine/world/contact_rows.h"
+#include "pincer/engine/world/push_out.h"
+#include "pincer/engine/world/stages.h"
+#include "pincer/tests/support/worlds.h"
 
 namespace pincer::engine {
 namespace {

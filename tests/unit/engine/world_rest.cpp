@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "engine/step.h"
-#include "tests/support/worlds.h"
+#include "pincer/engine/step.h"
+#include "pincer/tests/support/worlds.h"
 
 namespace pincer::engine {
 namespace {

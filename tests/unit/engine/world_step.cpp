@@ -4,11 +4,11 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/step.h"
-#include "tests/support/allocation_guard.h"
-#include "tests/support/constants.h"
-#include "tests/support/error_of.h"
-#include "tests/support/worlds.h"
+#include "pincer/engine/step.h"
+#include "pincer/tests/support/allocation_guard.h"
+#include "pincer/tests/support/constants.h"
+#include "pincer/tests/support/error_of.h"
+#include "pincer/tests/support/worlds.h"
 
 namespace pincer::engine {
 namespace {

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/step.h"
-#include "tests/support/allocation_guard.h"
-#include "tests/support/constants.h"
-#include "tests/support/worlds.h"
+#include "pincer/engine/step.h"
+#include "pincer/tests/support/allocation_guard.h"
+#include "pincer/tests/support/constants.h"
+#include "pincer/tests/support/worlds.h"
 
 namespace pincer::engine {
 namespace {

@@ -4,12 +4,12 @@
 #include <array>
 #include <cmath>
 
-#include "grasp/baseline.h"
-#include "grasp/baseline/nearest_outside.h"
-#include "grasp/tick/scratch.h"
-#include "tests/support/allocation_guard.h"
-#include "tests/support/random_poses.h"
-#include "tests/support/worlds.h"
+#include "pincer/grasp/baseline.h"
+#include "pincer/grasp/baseline/nearest_outside.h"
+#include "pincer/grasp/tick/scratch.h"
+#include "pincer/tests/support/allocation_guard.h"
+#include "pincer/tests/support/random_poses.h"
+#include "pincer/tests/support/worlds.h"
 
 namespace pincer::grasp {
 namespace {

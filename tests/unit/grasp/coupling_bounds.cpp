@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <complex>
 
-#include "grasp/hold_bounds.h"
-#include "tests/support/constants.h"
+#include "pincer/grasp/hold_bounds.h"
+#include "pincer/tests/support/constants.h"
 
 namespace pincer::grasp {
 namespace {

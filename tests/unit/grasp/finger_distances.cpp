@@ -1,9 +1,9 @@
 // How far fingers are from bodies, and where the two are nearest.
 #include <gtest/gtest.h>
 
-#include "grasp/finger_distance.h"
-#include "grasp/tick/scratch.h"
-#include "tests/support/worlds.h"
+#include "pincer/grasp/finger_distance.h"
+#include "pincer/grasp/tick/scratch.h"
+#include "pincer/tests/support/worlds.h"
 
 namespace pincer::grasp {
 namespace {

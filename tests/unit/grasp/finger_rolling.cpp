@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "grasp/tick/scratch.h"
-#include "tests/support/worlds.h"
+#include "pincer/grasp/tick/scratch.h"
+#include "pincer/tests/support/worlds.h"
 
 namespace pincer::grasp {
 namespace {

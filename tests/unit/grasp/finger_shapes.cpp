@@ -4,17 +4,17 @@
 #include <algorithm>
 #include <array>
 
-#include "contact/finger_query.h"
-#include "contact/generated_meshes.h"
-#include "contact/polytope.h"
-#include "contact/shape/closed_forms.h"
-#include "contact/smooth_mesh.h"
-#include "grasp/tick/scratch.h"
-#include "tests/support/constants.h"
-#include "tests/support/effort.h"
-#include "tests/support/error_of.h"
-#include "tests/support/random_poses.h"
-#include "tests/support/worlds.h"
+#include "pincer/contact/finger_query.h"
+#include "pincer/contact/generated_meshes.h"
+#include "pincer/contact/polytope.h"
+#include "pincer/contact/shape/closed_forms.h"
+#include "pincer/contact/smooth_mesh.h"
+#include "pincer/grasp/tick/scratch.h"
+#include "pincer/tests/support/constants.h"
+#include "pincer/tests/support/effort.h"
+#include "pincer/tests/support/error_of.h"
+#include "pincer/tests/support/random_poses.h"
+#include "pincer/tests/support/worlds.h"
 
 namespace pincer::contact {
 namespace {

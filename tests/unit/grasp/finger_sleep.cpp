@@ -1,8 +1,8 @@
 // A held object sleeps, with what the fingers feel unchanged, and wakes when a finger or its force moves.
 #include <gtest/gtest.h>
 
-#include "grasp/tick/scratch.h"
-#include "tests/support/worlds.h"
+#include "pincer/grasp/tick/scratch.h"
+#include "pincer/tests/support/worlds.h"
 
 namespace pincer::grasp {
 namespace {

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <memory>
 
-#include "contact/generated_meshes.h"
-#include "contact/smooth_mesh.h"
-#include "grasp/step.h"
-#include "grasp/tick/scratch.h"
-#include "tests/support/notched_blocks.h"
-#include "tests/support/worlds.h"
+#include "pincer/contact/generated_meshes.h"
+#include "pincer/contact/smooth_mesh.h"
+#include "pincer/grasp/step.h"
+#include "pincer/grasp/tick/scratch.h"
+#include "pincer/tests/support/notched_blocks.h"
+#include "pincer/tests/support/worlds.h"
 
 namespace pincer::grasp {
 namespace {

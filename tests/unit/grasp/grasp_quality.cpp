@@ -1,16 +1,16 @@
 // Quality of a grasp against closed forms, and against the support function searched at random.
-#include "grasp/grasp_quality.h"
+#include "pincer/grasp/grasp_quality.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "grasp/quality/wrench_set.h"
-#include "grasp/tick/scratch.h"
-#include "tests/support/constants.h"
-#include "tests/support/random_poses.h"
-#include "tests/support/worlds.h"
+#include "pincer/grasp/quality/wrench_set.h"
+#include "pincer/grasp/tick/scratch.h"
+#include "pincer/tests/support/constants.h"
+#include "pincer/tests/support/random_poses.h"
+#include "pincer/tests/support/worlds.h"
 
 namespace pincer::grasp {
 namespace {

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <vector>
 
-#include "grasp/energy_ledger.h"
-#include "grasp/passivity.h"
-#include "grasp/tick/scratch.h"
-#include "tests/support/allocation_guard.h"
-#include "tests/support/error_of.h"
-#include "tests/support/random_numbers.h"
-#include "tests/support/worlds.h"
+#include "pincer/grasp/energy_ledger.h"
+#include "pincer/grasp/passivity.h"
+#include "pincer/grasp/tick/scratch.h"
+#include "pincer/tests/support/allocation_guard.h"
+#include "pincer/tests/support/error_of.h"
+#include "pincer/tests/support/random_numbers.h"
+#include "pincer/tests/support/worlds.h"
 
 namespace pincer::grasp {
 namespace {

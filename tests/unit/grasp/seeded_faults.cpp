@@ -7,25 +7,28 @@
 #include <string_view>
 #include <vector>
 
-#include "contact/mesh/half_edges.h"
-#include "contact/shape/closed_forms.h"
-#include "contact/shape/convex_features.h"
-#include "contact/pair_query.h"
-#include "contact/surface/short_list.h"
-#include "contact/surface/aabb_tree.h"
-#include "engine/motion/one_freedom.h"
-#include "grasp/energy_ledger.h"
-#include "grasp/passivity.h"
-#include "grasp/finger_distance.h"
-#include "grasp/grasp_quality.h"
-#include "tests/support/worlds.h"
+#include "pincer/contact/mesh/half_edges.h"
+#include "pincer/contact/pair_query.h"
+#include "pincer/contact/shape/closed_forms.h"
+#include "pincer/contact/shape/convex_features.h"
+#include "pincer/contact/surface/aabb_tree.h"
+#include "pincer/contact/surface/patch_cache.h"
+#include "pincer/contact/surface/short_list.h"
+#include "pincer/engine/motion/free_motion.h"
+#include "pincer/engine/motion/mass.h"
+#include "pincer/engine/motion/one_freedom.h"
+#include "pincer/engine/world/stages.h"
+#include "pincer/grasp/energy_ledger.h"
+#include "pincer/grasp/finger_distance.h"
+#include "pincer/grasp/grasp_quality.h"
+#include "pincer/grasp/passivity.h"
+#include "pincer/grasp/tick/scratch.h"
+#include "pincer/tests/support/worlds.h"
 
 namespace pincer::grasp {
 namespace {
 
 using tests::startAt;
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 // Two fingers that hold a ball, ready to be stepped.
 struct Pinch {
@@ -51,33 +54,6 @@ struct Table {
 
   void step(engine::ContactSource* source = nullptr) { engine::step(model, state, scratch, {{}, motions}, source); }
 };
-
-// Adds contacts of the ball with the table as `change` leaves them.
-class FaultyContacts final : public engine::ContactSource {
- public:
-  explicit FaultyContacts(void (*change)(engine::Contact& first, engine::Contact& second)) : change_(change) {}
-  void addContacts(engine::WorldScratch& scratch) override {
-    engine::Contact* all[2] = {engine::addContact(scratch, 0), engine::addContact(scratch, 0)};
-    for (int i = 0; i < 2; ++i) {
-      engine::Contact& c = *all[i];
-      c.id = engine::contactId(0, 0, 1, 100 + static_cast<std::uint32_t>(i));
-      c.a = {engine::SideKind::kBody, 0};
-      c.b = {engine::SideKind::kBody, 1};
-      c.p_W = Vec3(0.001 * i, 0, 0.01);
-      c.R_WC.col(2) = -Vec3::UnitZ();
-    }
-    change_(*all[0], *all[1]);
-  }
-
- private:
-  void (*change_)(engine::Contact&, engine::Contact&);
-};
-
-void stepWith(void (*change)(engine::Contact& first, engine::Contact& second)) {
-  Table table;
-  FaultyContacts source(change);
-  table.step(&source);
-}
 
 struct SeededFault {
   const char* name;
@@ -173,6 +149,33 @@ const SeededFault kOfTheCaller[] = {
 INSTANTIATE_TEST_SUITE_P(Seeded, FaultOfTheCaller, testing::ValuesIn(kOfTheCaller), nameOf);
 
 #ifdef PINCER_ASSERTS
+// Adds contacts of the ball with the table as `change` leaves them.
+class FaultyContacts final : public engine::ContactSource {
+ public:
+  explicit FaultyContacts(void (*change)(engine::Contact& first, engine::Contact& second)) : change_(change) {}
+  void addContacts(engine::WorldScratch& scratch) override {
+    engine::Contact* all[2] = {engine::addContact(scratch, 0), engine::addContact(scratch, 0)};
+    for (int i = 0; i < 2; ++i) {
+      engine::Contact& c = *all[i];
+      c.id = engine::contactId(0, 0, 1, 100 + static_cast<std::uint32_t>(i));
+      c.a = {engine::SideKind::kBody, 0};
+      c.b = {engine::SideKind::kBody, 1};
+      c.p_W = Vec3(0.001 * i, 0, 0.01);
+      c.R_WC.col(2) = -Vec3::UnitZ();
+    }
+    change_(*all[0], *all[1]);
+  }
+
+ private:
+  void (*change_)(engine::Contact&, engine::Contact&);
+};
+
+void stepWith(void (*change)(engine::Contact& first, engine::Contact& second)) {
+  Table table;
+  FaultyContacts source(change);
+  table.step(&source);
+}
+
 class FaultOfOurs : public testing::TestWithParam<SeededFault> {};
 TEST_P(FaultOfOurs, IsCaughtInAssertingBuilds) { EXPECT_DEATH(GetParam().seed(), literally(GetParam().caught_by)); }
 
@@ -271,7 +274,7 @@ const SeededFault kOfOurs[] = {
     {"PoseThatIsNoNumber", "X_WF.p.allFinite() && isUnit(X_WF.q)",
      [] {
        Pinch p;
-       p.world.state.world.points[1].p_W.x() = kNaN;
+       p.world.state.world.points[1].p_W.x() = std::numeric_limits<double>::quiet_NaN();
        fingerDistances(p.world.model, p.world.state);
      }},
     {"LeftHandedFrame", "isRotation(contact.R_WC)",

@@ -3,11 +3,11 @@
 
 #include <cmath>
 
-#include "grasp/tick/scratch.h"
-#include "tests/support/allocation_guard.h"
-#include "tests/support/constants.h"
-#include "tests/support/error_of.h"
-#include "tests/support/worlds.h"
+#include "pincer/grasp/tick/scratch.h"
+#include "pincer/tests/support/allocation_guard.h"
+#include "pincer/tests/support/constants.h"
+#include "pincer/tests/support/error_of.h"
+#include "pincer/tests/support/worlds.h"
 
 namespace pincer::grasp {
 namespace {

@@ -1,9 +1,9 @@
 // What a user reads of a tick, with the public headers alone: fingers' reports and contacts.
 #include <gtest/gtest.h>
 
-#include "grasp/step.h"
-#include "tests/support/constants.h"
-#include "tests/support/worlds.h"
+#include "pincer/grasp/step.h"
+#include "pincer/tests/support/constants.h"
+#include "pincer/tests/support/worlds.h"
 
 namespace pincer::grasp {
 namespace {

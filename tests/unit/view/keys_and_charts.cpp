@@ -4,9 +4,9 @@
 #include <set>
 #include <sstream>
 
-#include "tasks/view/history.h"
-#include "tasks/view/keys.h"
-#include "tasks/view/strip_chart.h"
+#include "pincer/tasks/view/history.h"
+#include "pincer/tasks/view/keys.h"
+#include "pincer/tasks/view/strip_chart.h"
 
 namespace pincer::tasks {
 namespace {

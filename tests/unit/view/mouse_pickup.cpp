@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
-#include "tasks/app/sim_view.h"
-#include "tasks/scene/builtin_scenes.h"
-#include "tasks/view/viewer.h"
+#include "pincer/tasks/run/scene/builtin_scenes.h"
+#include "pincer/tasks/view/sim_view.h"
+#include "pincer/tasks/view/viewer.h"
 
 namespace pincer::tasks {
 namespace {

@@ -3,10 +3,10 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "contact/generated_meshes.h"
-#include "contact/smooth_mesh.h"
-#include "grasp/tick/scratch.h"
-#include "tasks/view/viewer.h"
+#include "pincer/contact/generated_meshes.h"
+#include "pincer/contact/smooth_mesh.h"
+#include "pincer/grasp/tick/scratch.h"
+#include "pincer/tasks/view/viewer.h"
 
 namespace pincer::tasks {
 namespace {

@@ -1,10 +1,10 @@
 #include <gtest/gtest.h>
 
-#include "tasks/app/trial_recording.h"
-#include "tasks/experiments/manipulation_study.h"
-#include "tasks/experiments/simulated_trial.h"
-#include "tasks/view/viewer.h"
-#include "tests/support/memory_sink.h"
+#include "pincer/tasks/lab/experiments/manipulation_study.h"
+#include "pincer/tasks/lab/experiments/simulated_trial.h"
+#include "pincer/tasks/view/trial_recording.h"
+#include "pincer/tasks/view/viewer.h"
+#include "pincer/tests/support/memory_sink.h"
 
 namespace pincer::tasks {
 namespace {

@@ -1,4 +1,4 @@
-#include "devices/arm/premium_dynamics.h"
+#include "pincer/devices/arm/premium_dynamics.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <array>
 #include <cmath>
 
-#include "devices/arm/premium_kinematics.h"
-#include "tests/support/random_numbers.h"
+#include "pincer/devices/arm/premium_kinematics.h"
+#include "pincer/tests/support/random_numbers.h"
 
 namespace pincer::devices::premium {
 namespace {

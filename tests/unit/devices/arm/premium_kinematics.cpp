@@ -1,4 +1,4 @@
-#include "devices/arm/premium_kinematics.h"
+#include "pincer/devices/arm/premium_kinematics.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "tests/support/random_numbers.h"
+#include "pincer/tests/support/random_numbers.h"
 
 namespace pincer::devices::premium {
 namespace {

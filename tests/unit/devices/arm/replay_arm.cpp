@@ -1,10 +1,10 @@
-#include "devices/arm/replay_arm.h"
+#include "pincer/devices/arm/replay_arm.h"
 
 #include <gtest/gtest.h>
 
 #include <stdexcept>
 
-#include "tests/support/constants.h"
+#include "pincer/tests/support/constants.h"
 
 namespace pincer::devices {
 namespace {

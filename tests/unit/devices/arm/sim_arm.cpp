@@ -1,4 +1,4 @@
-#include "devices/arm/sim_arm.h"
+#include "pincer/devices/arm/sim_arm.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <limits>
 #include <stdexcept>
 
-#include "tests/support/constants.h"
-#include "tests/support/random_numbers.h"
+#include "pincer/tests/support/constants.h"
+#include "pincer/tests/support/random_numbers.h"
 
 namespace pincer::devices {
 namespace {

@@ -1,12 +1,12 @@
-#include "devices/cld/pad_policy.h"
+#include "pincer/devices/cld/pad_policy.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "tests/support/constants.h"
-#include "tests/support/random_numbers.h"
+#include "pincer/tests/support/constants.h"
+#include "pincer/tests/support/random_numbers.h"
 
 namespace pincer::devices {
 namespace {

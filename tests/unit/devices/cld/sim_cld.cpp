@@ -1,4 +1,4 @@
-#include "devices/cld/sim_cld.h"
+#include "pincer/devices/cld/sim_cld.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <set>
 #include <stdexcept>
 
-#include "tests/support/constants.h"
-#include "tests/support/random_numbers.h"
+#include "pincer/tests/support/constants.h"
+#include "pincer/tests/support/random_numbers.h"
 
 namespace pincer::devices {
 namespace {

@@ -1,4 +1,4 @@
-#include "devices/cld/sim_one_dof_cld.h"
+#include "pincer/devices/cld/sim_one_dof_cld.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "tests/support/constants.h"
+#include "pincer/tests/support/constants.h"
 
 namespace pincer::devices {
 namespace {

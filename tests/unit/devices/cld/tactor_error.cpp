@@ -1,11 +1,11 @@
-#include "devices/cld/tactor_error.h"
+#include "pincer/devices/cld/tactor_error.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "devices/cld/sim_cld.h"
-#include "tests/support/constants.h"
+#include "pincer/devices/cld/sim_cld.h"
+#include "pincer/tests/support/constants.h"
 
 namespace pincer::devices {
 namespace {

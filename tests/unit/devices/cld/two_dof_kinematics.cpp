@@ -1,12 +1,12 @@
-#include "devices/cld/two_dof_kinematics.h"
+#include "pincer/devices/cld/two_dof_kinematics.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <stdexcept>
 
-#include "tests/support/constants.h"
-#include "tests/support/random_numbers.h"
+#include "pincer/tests/support/constants.h"
+#include "pincer/tests/support/random_numbers.h"
 
 namespace pincer::devices {
 namespace {

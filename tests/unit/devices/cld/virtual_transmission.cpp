@@ -1,11 +1,11 @@
-#include "devices/cld/virtual_transmission.h"
+#include "pincer/devices/cld/virtual_transmission.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "tests/support/allocation_guard.h"
-#include "tests/support/constants.h"
+#include "pincer/tests/support/allocation_guard.h"
+#include "pincer/tests/support/constants.h"
 
 namespace pincer::devices {
 namespace {

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 
-#include "devices/arm/sim_arm.h"
-#include "devices/cld/pad_policy.h"
-#include "devices/cld/sim_cld.h"
-#include "devices/gate/force_gate.h"
-#include "tests/support/allocation_guard.h"
+#include "pincer/devices/arm/sim_arm.h"
+#include "pincer/devices/cld/pad_policy.h"
+#include "pincer/devices/cld/sim_cld.h"
+#include "pincer/devices/gate/force_gate.h"
+#include "pincer/tests/support/allocation_guard.h"
 
 namespace pincer::devices {
 namespace {

@@ -1,4 +1,4 @@
-#include "devices/gate/force_gate.h"
+#include "pincer/devices/gate/force_gate.h"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <limits>
 #include <set>
 
-#include "tests/support/constants.h"
-#include "tests/support/effort.h"
-#include "tests/support/random_numbers.h"
+#include "pincer/tests/support/constants.h"
+#include "pincer/tests/support/effort.h"
+#include "pincer/tests/support/random_numbers.h"
 
 namespace pincer::devices {
 namespace {

@@ -1,4 +1,4 @@
-#include "devices/gate/watchdog.h"
+#include "pincer/devices/gate/watchdog.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "devices/window/mouse_hand.h"
+#include "pincer/devices/window/mouse_hand.h"
 
 #include <gtest/gtest.h>
 

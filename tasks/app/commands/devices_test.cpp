@@ -1,0 +1,156 @@
+#include <fmt/format.h>
+#include <time.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "pincer/contact/io/printable.h"
+#include "pincer/devices/gate/force_gate.h"
+#include "pincer/devices/usb/usb_host.h"
+#include "pincer/tasks/app/app.h"
+#include "pincer/tasks/app/commands/devices_commands.h"
+#include "pincer/tasks/app/interrupt.h"
+#include "pincer/tasks/app/print.h"
+#include "pincer/tasks/run/servo/hand_devices_parts.h"
+#include "pincer/tasks/run/servo/servo.h"
+#include "pincer/tasks/run/servo/servo_text.h"
+
+namespace pincer::tasks {
+namespace {
+
+using devices::usb::LinkCounts;
+using devices::usb::UsbArm;
+using devices::usb::UsbDisplay;
+using devices::usb::UsbHost;
+
+struct DevicesTestArguments {
+  std::string serial;
+  double seconds = 3, force = 0;
+  double watchdog_ms = 5;
+};
+
+// Streams and commands for a while: zero force (or a small one along z), tactors on a slow circle.
+class DeviceTest final : public ServoCycle {
+ public:
+  DeviceTest(UsbHost& host, std::vector<UsbArm*> arms, std::vector<UsbDisplay*> displays, const DevicesTestArguments& arguments)
+      : host_(host), arms_(std::move(arms)), displays_(std::move(displays)), arguments_(arguments), gates_(arms_.size()) {
+    for (UsbArm* arm : arms_) {
+      before_.push_back(arm->counts());
+      devices::GateLimits limits;
+      limits.watchdog_time = 1e-3 * kOldestSample * arguments.watchdog_ms;
+      limits_.push_back(devices::within(limits, arm->capabilities()));
+      arm->setDeadline(1e-3 * kArmDeadline * arguments.watchdog_ms);
+    }
+    for (UsbDisplay* display : displays_) before_.push_back(display->counts());
+    if (arguments.force == 0) return;
+    for (std::size_t i = 0; i < arms_.size(); ++i) devices::arm(gates_[i]), arms_[i]->arm();
+  }
+  bool tick(double now) override {
+    const std::int64_t epoch = devices::usb::monotonicNs() - static_cast<std::int64_t>(1e9 * now);
+    if (ticks_ == 0 || epoch < epoch_) host_.setEpoch(epoch_ = epoch);
+    for (std::size_t i = 0; i < arms_.size(); ++i) drive(i, now);
+    for (UsbDisplay* display : displays_) {
+      const double angle = 2 * 3.14159265358979 * 0.5 * now;
+      display->command(
+          {false, 0.6 * Vec2(display->capabilities().reach.x() * math::cos(angle), display->capabilities().reach.y() * math::sin(angle))});
+    }
+    ++ticks_;
+    return now < arguments_.seconds;
+  }
+  void cutForces() noexcept override {
+    for (UsbArm* arm : arms_) arm->stop();
+  }
+  // One line per device; whether all of them are well.
+  bool report() {
+    bool well = true;
+    for (std::size_t i = 0; i < arms_.size(); ++i) {
+      well &= line(*arms_[i], before_[i]);
+      if (gates_[i].trip == devices::Trip::kNone) continue;
+      print("  {}\n", devices::describe(limits_[i], gates_[i]));
+      well = false;
+    }
+    for (std::size_t i = 0; i < displays_.size(); ++i) well &= line(*displays_[i], before_[arms_.size() + i]);
+    return well;
+  }
+
+ private:
+  void drive(std::size_t i, double now) {
+    devices::GateInput in;
+    in.sample = arms_[i]->sample();
+    in.now = now;
+    in.f_D = Vec3(0, 0, arguments_.force);
+    arms_[i]->commandForce(devices::gateForce(limits_[i], in, gates_[i]));
+  }
+  template <typename Device>
+  bool line(Device& device, const LinkCounts& before) {
+    const LinkCounts now = device.counts();
+    const std::int64_t bad = now.bad - before.bad, lost = now.lost - before.lost, answers = now.answers - before.answers;
+    const bool well = device.linkState() == devices::DeviceState::kReady && bad == 0 && lost == 0 && answers > 0;
+    print("{:<10} {:<26} {} frames, {} lost, {} unsound, {} of {} commands answered, last round trip {:.2f} ms\n",
+          devices::nameOf(device.linkState()), device.identity(), now.accepted - before.accepted, lost, bad, answers, ticks_,
+          1e-6 * static_cast<double>(now.round_trip_ns));
+    const std::string faults = devices::usb::describeFaults(device.status().faults);
+    if (!faults.empty()) print("  it reports: {}\n", faults);
+    return well;
+  }
+
+  UsbHost& host_;
+  std::vector<UsbArm*> arms_;
+  std::vector<UsbDisplay*> displays_;
+  const DevicesTestArguments& arguments_;
+  std::vector<devices::GateLimits> limits_;
+  std::vector<devices::GateState> gates_;
+  std::vector<LinkCounts> before_;
+  std::int64_t epoch_ = 0, ticks_ = 0;
+};
+
+template <typename Device>
+std::vector<Device*> withSerial(const std::vector<Device*>& all, const std::string& serial) {
+  std::vector<Device*> some;
+  for (Device* device : all) {
+    if ((serial.empty() || device->deviceIdentity().serial == serial) && device->linkState() == devices::DeviceState::kReady)
+      some.push_back(device);
+  }
+  return some;
+}
+
+int testDevices(const DevicesTestArguments& arguments) {
+  const std::atomic<bool>& interrupted = interruptFlag();
+  const auto usb = startUsb();
+  UsbHost& host = *usb;
+  host.waitFor(16, 16, 1);  // whatever answers within a second
+  const auto arms = withSerial(host.arms(), arguments.serial);
+  const auto displays = withSerial(host.displays(), arguments.serial);
+  for (const std::string& problem : host.problems()) print("{}\n", printableMessage(problem));
+  if (arms.empty() && displays.empty()) {
+    throw DeviceError(arguments.serial.empty()
+                          ? "No device is ready on USB. See what is there: pincer devices list"
+                          : fmt::format("No device {} is ready on USB. See what is there: pincer devices list", arguments.serial));
+  }
+  DeviceTest test(host, arms, displays, arguments);
+  const ServoOptions servo{.clock = ServoClock::kReal, .watchdog = 1e-3 * arguments.watchdog_ms};
+  const ServoReport report = runServo(servo, test, interrupted);
+  test.cutForces();
+  print("{}\n", servoText(report, 1 / servo.rate));
+  if (!test.report()) return kExitDevice;
+  return report.interrupted ? kExitInterrupted : kExitOk;
+}
+
+}  // namespace
+
+void addDevicesTest(CLI::App& devices, int& exit_code) {
+  auto arguments = std::make_shared<DevicesTestArguments>();
+  CLI::App* command = devices.add_subcommand("test", "Streams and commands for a few seconds, and counts what goes wrong");
+  command->add_option("serial", arguments->serial, "Of the device (default: all)");
+  command->add_option("--seconds", arguments->seconds, "How long [s]")->check(CLI::Range(0.1, 3600.0))->capture_default_str();
+  command->add_option("--force", arguments->force, "Pushes along the arm's z axis, through the gate [N]; nobody may wear it")
+      ->check(CLI::Range(-1.0, 1.0))
+      ->capture_default_str();
+  command->add_option("--watchdog", arguments->watchdog_ms, "So long may the program stall before forces are cut [ms]")
+      ->check(CLI::Range(2.0, 100.0))
+      ->capture_default_str();
+  command->footer("\nThe tactors move; without --force the arms don't.\n\nExample:\n  pincer devices test --seconds 10");
+  command->callback([arguments, &exit_code] { exit_code = testDevices(*arguments); });
+}
+
+}  // namespace pincer::tasks

@@ -1,0 +1,71 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "pincer/tasks/app/app.h"
+#include "pincer/tasks/app/commands/commands.h"
+#include "pincer/tasks/app/print.h"
+#include "pincer/tasks/app/schema_reference.h"
+#include "pincer/tasks/lab/experiments/study_schema.h"
+#include "pincer/tasks/run/scene/builtin_scenes.h"
+
+namespace pincer::tasks {
+namespace {
+
+struct FileKind {
+  std::string_view name;
+  std::string (*schema)();
+};
+
+template <class Study>
+std::string studySchema(std::string_view task, const Study& published) {
+  return SchemaWriter().schemaOf(fmt::format("pincer study, {}, version 1", task), published);
+}
+
+constexpr FileKind kFileKinds[] = {
+    {"scene", [] { return std::string(sceneSchema()); }},
+    {"manipulation", [] { return studySchema("manipulation", ManipulationStudy{}); }},
+    {"smoothness-discrimination", [] { return studySchema("smoothness-discrimination", smoothnessStudy()); }},
+    {"backlash-discrimination", [] { return studySchema("backlash-discrimination", backlashStudy()); }},
+    {"delay-discrimination", [] { return studySchema("delay-discrimination", delayStudy()); }},
+    {"repeated-localisation", [] { return studySchema("repeated-localisation", LocalisationStudy{}); }},
+    {"shape-identification", [] { return studySchema("shape-identification", ShapeStudy{}); }},
+};
+
+std::vector<std::string> kindNames() {
+  std::vector<std::string> names;
+  for (const FileKind& kind : kFileKinds) names.emplace_back(kind.name);
+  return names;
+}
+
+void printSchema(const std::string& name, bool markdown) {
+  for (const FileKind& kind : kFileKinds) {
+    if (kind.name != name) continue;
+    const std::string schema = kind.schema();
+    if (!markdown) return print("{}", schema);
+    print("{}Made by `pincer schema {} --markdown`.\n", schemaMarkdown(parseJson(schema, name + ".schema.json")), name);
+  }
+}
+
+}  // namespace
+
+void addSchemaCommand(CLI::App& app, int& exit_code) {
+  struct Arguments {
+    std::string name;
+    bool markdown = false;
+  };
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("schema", "Every key of a scene or study file: a JSON Schema for editors, or tables to read");
+  command->add_option("file", arguments->name, "scene, or the study: manipulation, delay-discrimination, ...")
+      ->required()
+      ->check(CLI::IsMember(kindNames()));
+  command->add_flag("--markdown", arguments->markdown, "Tables, as in docs/reference");
+  command->footer("\nExample:\n  pincer schema delay-discrimination > delay.schema.json");
+  command->callback([arguments, &exit_code] {
+    printSchema(arguments->name, arguments->markdown);
+    exit_code = kExitOk;
+  });
+}
+
+}  // namespace pincer::tasks

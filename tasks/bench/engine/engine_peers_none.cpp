@@ -1,7 +1,0 @@
-#include "tasks/bench/engine/bench_world.h"
-
-namespace pincer::tasks {
-
-std::vector<Contestant> enginePeers() { return {}; }
-
-}  // namespace pincer::tasks

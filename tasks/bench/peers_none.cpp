@@ -1,7 +1,0 @@
-#include "tasks/bench/peers.h"
-
-namespace pincer::tasks {
-
-std::vector<std::unique_ptr<MeshPeer>> meshPeers(const contact::TriangleMesh&, double) { return {}; }
-
-}  // namespace pincer::tasks

@@ -1,0 +1,84 @@
+#include "pincer/tasks/judge/exact/pinch.h"
+
+#include <cmath>
+
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/tasks/judge/exact/runge_kutta.h"
+
+namespace pincer::exact {
+namespace {
+
+struct Target {
+  double height, velocity;
+};
+
+Target minimumJerk(double height, double reach_time, double t) {
+  if (t <= 0) return {0, 0};
+  if (t >= reach_time) return {height, 0};
+  const double s = t / reach_time;
+  return {height * s * s * s * (10 - 15 * s + 6 * s * s), height / reach_time * 30 * s * s * (1 - s) * (1 - s)};
+}
+
+}  // namespace
+
+double SlidingPinch::acceleration(double d, double v) const {
+  const double L = sphere_radius + finger_radius;
+  PINCER_ASSERT(std::abs(d) < L);  // else the fingers have met
+  const double x = std::sqrt(L * L - d * d);
+  const double s = d / L, c = x / L;
+  // [sphere_mass, -2 (s - mu c); finger_mass d/x, c + mu s] [d''; N] = [sphere_mass g; F - finger_mass (v^2/x + d^2 v^2/x^3)]
+  const double a12 = -2 * (s - mu * c), a21 = finger_mass * d / x, a22 = c + mu * s;
+  const double b1 = sphere_mass * g, b2 = force - finger_mass * v * v * (1 / x + d * d / (x * x * x));
+  return (b1 * a22 - a12 * b2) / (sphere_mass * a22 - a12 * a21);
+}
+
+double SlidingPinch::dropTime(double depth) const {
+  using State = Vec2;  // (d, d')
+  const auto slope = [this](double, const State& y) { return State(y[1], acceleration(y[0], y[1])); };
+  return integrateUntil<State>(State::Zero(), 1e-5, slope, [&](const State& y) { return y[0] - depth; }).t;
+}
+
+std::vector<double> StuckLift::rises(int ticks, double h) const {
+  using State = Vec2;  // (z, z')
+  const auto slope = [this](double t, const State& y) {
+    const Target target = minimumJerk(height, reach_time, t - start_time);
+    return State(y[1], 2 / total_mass * (stiffness * (target.height - y[0]) + damping * (target.velocity - y[1])));
+  };
+  constexpr int kSteps = 20;
+  std::vector<double> heights;
+  State y = State::Zero();
+  for (int i = 0; i < ticks; ++i) {
+    for (int k = 0; k < kSteps; ++k) y = rungeKutta(y, h * (i + static_cast<double>(k) / kSteps), h / kSteps, slope);
+    heights.push_back(y[0]);
+  }
+  return heights;
+}
+
+double leastFrictionOfOffsetPlate(double mass, double offset, double torsion_radius, double force, double g) {
+  return 0.5 * mass * g * math::hypot(1.0, offset / torsion_radius) / force;
+}
+
+PlateRest slidingSpinningPlate(double mass, double inertia, double torsion_radius, double friction_force, const Vec2& v0, double w0) {
+  using State = Eigen::Matrix<double, 6, 1>;                                                       // (p, angle, v, w)
+  const auto slip = [&](const State& y) { return Vec2(y[3] + y[5] * y[1], y[4] - y[5] * y[0]); };  // v + w x (-p)
+  const auto speed = [&](const State& y) { return math::hypot(slip(y).norm(), torsion_radius * y[5]); };
+  const auto slope = [&](double, const State& y) {
+    const Vec2 f = -friction_force / speed(y) * slip(y);
+    const double moment = -friction_force * torsion_radius * torsion_radius * y[5] / speed(y) - y[0] * f[1] + y[1] * f[0];
+    State dy;
+    dy << y[3], y[4], y[5], f / mass, moment / inertia;
+    return dy;
+  };
+  State y;
+  y << 0, 0, 0, v0, w0;
+  constexpr double kStep = 2e-6, kAtRest = 1e-7;
+  double t = 0;
+  for (double s = speed(y); s > kAtRest; s = speed(y)) {
+    const double h = std::min(kStep, 0.1 * s * mass / friction_force);  // finer towards the end, where the direction may still turn
+    y = rungeKutta(y, t, h, slope);
+    t += h;
+  }
+  return {y.head<2>(), y[2], t};
+}
+
+}  // namespace pincer::exact

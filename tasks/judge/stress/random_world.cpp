@@ -1,0 +1,232 @@
+#include "pincer/tasks/judge/stress/random_world.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "pincer/contact/pair_query.h"
+
+namespace pincer::tasks {
+namespace {
+
+// Each draw is a statement of its own: the order in which arguments are evaluated is the compiler's, and a seed must mean the same world to all.
+// It is the order that g++ takes, last arguments first: tests hold on to seeds that once failed so.
+double logUniform(Random& random, double low, double high) { return low * math::pow(high / low, random.uniform()); }
+
+double friction(Random& random) { return random.below(8) == 0 ? 0 : random.uniform(0, 5); }
+
+Vec3 anyVector(Random& random, double low, double high) {
+  Vec3 v;
+  for (int i = 2; i >= 0; --i) v[i] = random.uniform(low, high);
+  return v;
+}
+
+Quat anyRotation(Random& random) {
+  const Vec3 a = random.normal3();
+  const Vec3 b = random.normal3();
+  return Quat(a.x(), a.y(), a.z(), b.x()).normalized();
+}
+
+contact::Shape anyShape(Random& random, double size) {
+  switch (random.below(3)) {
+    case 0:
+      return contact::Sphere{size / 2};
+    case 1:
+      return contact::Box{size / 2 * anyVector(random, 0.3, 1)};
+    default:
+      return contact::Capsule{size / 4, size / 4};
+  }
+}
+
+// Collects what a class draws, and builds the model from it.
+class Draft {
+ public:
+  Draft(StressClass kind, Random& random) : kind_(kind), random_(random) {
+    options.h = kind == StressClass::kTick ? logUniform(random, 1e-4, 1e-2) : 1e-3;
+    options.max_contacts = 128;
+    material.mu_s = friction(random);
+    material.mu_d = material.mu_s * random.uniform(0.5, 1);
+    material.torsion_radius = random.below(3) == 0 ? random.uniform(0, 5e-3) : 0;
+    draw();
+  }
+
+  engine::WorldOptions options;
+  engine::Material material;
+  std::vector<engine::BodySpec> bodies;
+  std::vector<engine::BodyStart> starts;
+  std::vector<grasp::FingerModel> fingers;
+  std::vector<Vec3> devices;
+  double allowed_lift = 0;
+
+ private:
+  void draw() {
+    addPlane(Pose{});
+    switch (kind_) {
+      case StressClass::kMassRatio:
+        return drawStack();
+      case StressClass::kRedundant:
+        return drawCorner();
+      case StressClass::kOverlap:
+        return drawOverlap();
+      case StressClass::kSpin:
+        return drawFalling(2, 500, logUniform(random_, 1e-2, 0.3));
+      case StressClass::kTick:
+        return drawFalling(3, 20, logUniform(random_, 1e-2, 0.1));
+      case StressClass::kInertia:
+        return drawSlivers();
+      case StressClass::kHeap:
+        return drawFalling(6 + static_cast<int>(random_.below(7)), 10, 0.05);
+      default:
+        return drawHeld();
+    }
+  }
+
+  void addPlane(const Pose& X) {
+    bodies.push_back({fmt::format("plane{}", bodies.size()), contact::HalfSpace{}, false, 0, material});
+    starts.push_back({X, Vec3::Zero(), Vec3::Zero()});
+  }
+
+  engine::BodyStart& add(contact::Shape shape, double mass, const Pose& X) {
+    bodies.push_back({fmt::format("body{}", bodies.size()), std::move(shape), true, mass, material});
+    starts.push_back({X, Vec3::Zero(), Vec3::Zero()});
+    return starts.back();
+  }
+
+  void drawStack() {
+    const double edge = logUniform(random_, 0.01, 0.1);
+    const int count = 2 + static_cast<int>(random_.below(4));
+    double z = 0;
+    for (int i = 0; i < count; ++i) {
+      const double x = edge * random_.uniform(-0.1, 0.1);
+      const double y = edge * random_.uniform(-0.1, 0.1);
+      const double mass = logUniform(random_, 1e-4, 100);
+      add(contact::Box{Vec3::Constant(edge / 2)}, mass, {Quat::Identity(), {x, y, z + edge / 2}});
+      z += edge;
+    }
+  }
+
+  // A trihedral corner whose planes lean by up to 0.3 rad.
+  void drawCorner() {
+    for (const Vec3& n : {Vec3(1, 0, 0), Vec3(0, 1, 0)}) {
+      const Vec3 leaning = (n + 0.3 * Vec3(0, 0, random_.uniform(0, 1))).normalized();
+      addPlane({Quat(frameFromNormal(leaning)).normalized(), Vec3::Zero()});
+    }
+    const double size = logUniform(random_, 0.01, 0.1);
+    const int count = 1 + static_cast<int>(random_.below(2));
+    for (int i = 0; i < count; ++i) {
+      const double mass = logUniform(random_, 1e-3, 1);
+      const double height = random_.uniform(0.5, 1);
+      const double depth = random_.uniform(0.5, 1);
+      engine::BodyStart& start =
+          add(contact::Box{size / 2 * Vec3(1, depth, height)}, mass, {Quat::Identity(), size * Vec3(0.9, 0.9, 0.7 + 1.3 * i)});
+      start.v_W = Vec3(-1, -1, -1) * random_.uniform(0, 1);
+    }
+  }
+
+  void drawOverlap() {
+    const int count = 1 + static_cast<int>(random_.below(4));
+    for (int i = 0; i < count; ++i) {
+      const double size = logUniform(random_, 5e-3, 0.2);
+      const double mass = logUniform(random_, 1e-4, 100);
+      const Quat q = anyRotation(random_);
+      const double z = random_.uniform(0, 0.6);
+      const double y = random_.uniform(0, 0.5);
+      const double x = random_.uniform(0, 0.5);
+      add(anyShape(random_, size), mass, {q, size * Vec3(x, y, z)});
+    }
+    double mass = 0, reach = 0;
+    for (std::size_t i = 1; i < bodies.size(); ++i) {
+      mass += bodies[i].mass;
+      reach += 2 * contact::boundingRadius(bodies[i].shape);
+    }
+    allowed_lift = mass * options.gravity_W.norm() * reach;
+  }
+
+  void drawFalling(int count, double spin, double size) {
+    double z = size;
+    for (int i = 0; i < count; ++i) {
+      const double y = 0.3 * size * random_.uniform(-1, 1);
+      const double x = 0.3 * size * random_.uniform(-1, 1);
+      const Quat q = anyRotation(random_);
+      const double mass = logUniform(random_, 1e-3, 1);
+      const double own_size = size * random_.uniform(0.5, 1);
+      engine::BodyStart& start = add(anyShape(random_, own_size), mass, {q, Vec3(x, y, z)});
+      start.v_W = 0.5 * random_.normal3();
+      start.w_W = anySpin(spin);
+      z += 1.8 * size;
+    }
+  }
+
+  void drawSlivers() {
+    double z = 0;
+    for (int i = 0; i < 2; ++i) {
+      const double length = logUniform(random_, 0.02, 0.5);
+      const double a = length * logUniform(random_, 1e-3, 1);
+      const double b = length * logUniform(random_, 1e-3, 1);
+      const double reach = 0.5 * Vec3(length, a, b).norm();
+      const Quat q = anyRotation(random_);
+      const double mass = logUniform(random_, 1e-3, 1);
+      engine::BodyStart& start = add(contact::Box{Vec3(length, a, b) / 2}, mass, {q, Vec3(0, 0, z + 1.1 * reach)});
+      z += 2.2 * reach;
+      start.w_W = anySpin(50);
+    }
+  }
+
+  Vec3 anySpin(double fastest) {
+    const Vec3 axis = random_.normal3().normalized();
+    return random_.uniform(0, fastest) * axis;
+  }
+
+  void drawHeld() {
+    const double size = logUniform(random_, 0.01, 0.1);
+    const Quat q = anyRotation(random_);
+    const double mass = logUniform(random_, 1e-3, 1);
+    add(anyShape(random_, size), mass, {q, Vec3(0, 0, size)});
+    const int count = 2 + static_cast<int>(random_.below(3));
+    for (int i = 0; i < count; ++i) {
+      grasp::FingerModel finger;
+      finger.name = fmt::format("finger{}", i);
+      finger.coupling.mass = random_.below(2) == 0 ? 0 : logUniform(random_, 1e-3, 0.1);
+      finger.coupling.stiffness = Vec3::Constant(kind_ == StressClass::kStiffness ? logUniform(random_, 10, 1e6) : 1000);
+      finger.coupling.damping = Vec3::Constant(random_.uniform(0, 10));
+      fingers.push_back(finger);
+      const double angle = 2 * M_PI * i / count;
+      devices.push_back(Vec3(math::cos(angle), math::sin(angle), 0) * (size + 0.01) + Vec3(0, 0, size));
+    }
+  }
+
+  StressClass kind_;
+  Random& random_;
+};
+
+}  // namespace
+
+StressWorld::StressWorld(StressClass kind, std::uint64_t seed, int threads)
+    : kind_(kind), random_(seedFor(seed, static_cast<std::uint64_t>(kind))) {
+  Draft draft(kind, random_);
+  draft.options.threads = threads;
+  engine::WorldBuilder builder(draft.options);
+  for (const engine::BodySpec& body : draft.bodies) builder.addBody(body);
+  model = grasp::buildGrasp(std::move(builder), std::move(draft.fingers));
+  starts = std::move(draft.starts);
+  allowed_lift = draft.allowed_lift;
+  devices_ = std::move(draft.devices);
+  inputs_.resize(devices_.size());
+  for (std::size_t i = 0; i < devices_.size(); ++i) inputs_[i].p_WF = devices_[i];
+}
+
+std::span<const grasp::FingerInput> StressWorld::nextInputs() {
+  const double h = model.world.options.h;
+  const Vec3 middle(0, 0, devices_.empty() ? 0 : devices_[0].z());
+  const double closing = std::min(1.0, static_cast<double>(++tick_) / 100);
+  for (std::size_t i = 0; i < devices_.size(); ++i) {
+    Vec3 p = devices_[i] + closing * 0.6 * (middle - devices_[i]);
+    if (kind_ == StressClass::kTeleport && random_.below(20) == 0) p += 0.05 * anyVector(random_, -1, 1);
+    if (kind_ == StressClass::kNoise) p += 1e-3 * anyVector(random_, -1, 1);
+    inputs_[i].v_WF = (p - inputs_[i].p_WF) / h;
+    inputs_[i].p_WF = p;
+  }
+  return inputs_;
+}
+
+}  // namespace pincer::tasks

@@ -1,0 +1,17 @@
+#include "pincer/tasks/judge/verify/verify.h"
+
+#include <iterator>
+
+namespace pincer::tasks {
+
+std::vector<Measurement> verifyMeasurements() {
+  std::vector<Measurement> all;
+  for (const auto part :
+       {verifyPinches, verifySliding, verifyRolling, verifyFreeBodies, verifyToppling, verifyBouncing, verifyMasonry, verifyInvariance}) {
+    std::vector<Measurement> some = part();
+    std::move(some.begin(), some.end(), std::back_inserter(all));
+  }
+  return all;
+}
+
+}  // namespace pincer::tasks

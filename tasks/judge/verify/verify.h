@@ -1,0 +1,23 @@
+// verify: the accuracy suite. Named scenes whose exact answer is known (tasks/judge/exact), run and compared; `pincer verify` shows it, the tests
+// run it, and its bounds are what pincer promises.
+#pragma once
+#include <vector>
+
+#include "pincer/tasks/run/measure/measurement.h"
+
+namespace pincer::tasks {
+
+// All of it, in the order of docs/accuracy.md. Names: "pinch/hold", "slide/incline", ...
+std::vector<Measurement> verifyMeasurements();
+
+// Its parts, one source file each.
+std::vector<Measurement> verifyPinches();
+std::vector<Measurement> verifySliding();
+std::vector<Measurement> verifyRolling();
+std::vector<Measurement> verifyFreeBodies();
+std::vector<Measurement> verifyToppling();
+std::vector<Measurement> verifyBouncing();
+std::vector<Measurement> verifyMasonry();
+std::vector<Measurement> verifyInvariance();
+
+}  // namespace pincer::tasks

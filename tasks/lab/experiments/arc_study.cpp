@@ -1,0 +1,240 @@
+#include "pincer/tasks/lab/experiments/arc_study.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "pincer/contact/error.h"
+#include "pincer/contact/io/printable.h"
+#include "pincer/tasks/lab/experiments/study_parameters.h"
+#include "pincer/tasks/lab/participants/random.h"
+#include "pincer/tasks/lab/study/counterbalance.h"
+
+namespace pincer::tasks {
+namespace {
+
+using contact::SurfaceVariant;
+
+constexpr double kBeyond = 0.15;                            // of the arc's ends over the strokes' [rad]
+constexpr double kLargestTurn = 0.5;                        // of a polygon that still covers the strokes [rad]
+constexpr double kBladeFlank = 0.03;                        // length of its sides [m]
+constexpr double kBladeTurn = 0.1;                          // from segment to segment of its tip [rad]
+constexpr std::uint64_t kWhichInterval = 1, kWhoFeels = 2;  // parts of a trial's seed
+
+StaircaseRule smoothnessRule() {
+  return {.start = 12 * kDegree,
+          .large_step = 0.5,
+          .small_step = 0.15,
+          .steps_are_ratios = true,
+          .large_reversals = 3,
+          .reversals = 11,
+          .averaged = 6,
+          .lowest = 0.02 * kDegree,
+          .highest = kLargestTurn,
+          .most_trials = 200};
+}
+
+StaircaseRule backlashRule() {
+  return {.start = 1.5e-3,
+          .large_step = 0.3e-3,
+          .small_step = 0.06e-3,
+          .large_reversals = 4,
+          .reversals = 14,
+          .averaged = 10,
+          .lowest = 0,
+          .highest = 12e-3,
+          .most_trials = 200};
+}
+
+StaircaseRule delayRule() {
+  return {.start = 0.15,
+          .large_step = 0.015,
+          .small_step = 0.006,
+          .large_reversals = 4,
+          .reversals = 14,
+          .averaged = 10,
+          .lowest = 0,
+          .highest = 0.5,
+          .most_trials = 200};
+}
+
+std::shared_ptr<const contact::Curve> sharedCurve(const contact::Polyline& polyline, SurfaceVariant variant) {
+  return std::make_shared<const contact::Curve>(polyline, variant);
+}
+
+// What a condition's levels may be.
+void validate(const ArcStudy& study, std::size_t index) {
+  const ArcCondition& c = study.conditions[index];
+  const std::string of = fmt::format("{}: condition {}", study.task, printable(c.name)), path = fmt::format("conditions[{}]", index);
+  const std::string of_staircase = of + ": staircase", staircase = path + ".staircase";
+  visitParameters(c, RangeCheck(of, path));
+  visitParameters(c.staircase, RangeCheck(of_staircase, staircase));
+  const std::string problem = problemWith(c.staircase);
+  if (!problem.empty()) throw ParameterError(staircase, fmt::format("{}: {}.", of_staircase, problem));
+  const bool turns = study.quantity == ArcQuantity::kTurn;
+  const double most = turns ? kLargestTurn : study.quantity == ArcQuantity::kDelay ? 0.512 : 0.05;
+  if (c.staircase.highest <= most && c.staircase.lowest >= (turns ? 1e-5 : 0)) return;
+  throw ParameterError(
+      staircase,
+      fmt::format("{}: staircase: levels from {} to {} can't all be shown: a turn in [0.00001, 0.5] rad, a backlash in [0, 0.05] m, a "
+                  "delay in [0, 0.512] s.",
+                  of, c.staircase.lowest, c.staircase.highest));
+}
+
+}  // namespace
+
+ArcStudy smoothnessStudy() {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  ArcStudy study;
+  study.task = "smoothness-discrimination";
+  const StaircaseRule rule = smoothnessRule();
+  const auto smooth = SurfaceVariant::smooth, facet = SurfaceVariant::facet, force = SurfaceVariant::force;
+  study.conditions = {{"C1", "facets, force only", facet, {}, false, 1, rule, 0.5 * kDegree},
+                      {"C2", "force shading, force only", force, {}, false, 1, rule, 3.4 * kDegree},
+                      {"C3", "force shading + facets on the tactor", force, facet, false, 1, rule, 0.2 * kDegree},
+                      {"C4", "force and tactile shading", force, smooth, false, 1, rule, 3.5 * kDegree},
+                      {"P1", "2D algorithm, force only (pilot)", smooth, {}, false, 1, rule, 14.8 * kDegree},
+                      {"P2", "2D algorithm, force and tactor (pilot)", smooth, smooth, false, 1, rule, kNone}};
+  return study;
+}
+
+ArcStudy backlashStudy() {
+  ArcStudy study;
+  study.task = "backlash-discrimination";
+  study.quantity = ArcQuantity::kBacklash;
+  study.finger_radius = 0.013;
+  study.arc_radius = 0.095;
+  const auto smooth = SurfaceVariant::smooth;
+  study.conditions = {{"low-curvature", "95 mm cylinder", smooth, smooth, false, 1, backlashRule(), 0.46e-3},
+                      {"edge", "2-degree edge", smooth, smooth, true, 1, backlashRule(), 0.93e-3}};
+  return study;
+}
+
+ArcStudy delayStudy() {
+  ArcStudy study = backlashStudy();
+  study.task = "delay-discrimination";
+  study.quantity = ArcQuantity::kDelay;
+  const auto smooth = SurfaceVariant::smooth;
+  study.conditions = {{"whole", "whole travel", smooth, smooth, false, 1, delayRule(), 0.061},
+                      {"front-end", "tactor held at two thirds of its travel", smooth, smooth, false, 2. / 3, delayRule(), 0.132}};
+  return study;
+}
+
+void validate(const ArcStudy& study) {
+  const RangeCheck check(study.task);
+  visitParameters(study, check);
+  if (study.tactor_reach > study.finger_radius)
+    throw ParameterError("tactor_reach",
+                         fmt::format("{}: tactor_reach = {} is out of range (0, finger_radius]: a radian of stroke either way. {}",
+                                     study.task, study.tactor_reach, kAsPublished));
+  if (study.strokes % 2 != 0)
+    throw ParameterError(
+        "strokes", fmt::format("{}: strokes = {} is odd, but every stroke has its way back. {}", study.task, study.strokes, kAsPublished));
+  if (study.conditions.empty()) throw ParameterError("conditions", study.task + ": conditions is empty. Give at least one.");
+  for (std::size_t i = 0; i < study.conditions.size(); ++i) validate(study, i);
+}
+
+ArcExperiment::ArcExperiment(const ArcStudy& study, const ServoOptions& servo, int stride) : study_(study), servo_(servo), stride_(stride) {
+  validate(study);
+}
+
+std::vector<StudyRun> ArcExperiment::runs() const {
+  std::vector<StudyRun> runs;
+  const auto rows = carryOverSquare(static_cast<int>(study_.conditions.size()));
+  for (int p = 0; p < study_.participants; ++p) {
+    std::int64_t place = 0;
+    for (const int c : rows[static_cast<std::size_t>(p) % rows.size()]) {
+      const ArcCondition& condition = study_.conditions[static_cast<std::size_t>(c)];
+      runs.push_back({p, place++, condition.name, condition.staircase, {}});
+    }
+  }
+  return runs;
+}
+
+std::optional<ResponseRecord> ArcExperiment::present(const StudyTrial& trial, StudySink& sink, const std::atomic<bool>& interrupted,
+                                                     ServoReport& served) {
+  const int comparison = 1 + static_cast<int>(Random(seedFor(trial.seed, kWhichInterval)).below(2));
+  StrokeObserver observer(trial.person_seed);
+  observer.begin(cuesOf(trial));
+  ArcTrial cycle(setupOf(trial, comparison), observer, sink);
+  const ServoReport report = runServo(servo_, cycle, interrupted);
+  served.add(report);
+  if (report.interrupted) return std::nullopt;
+  ResponseRecord response;
+  response.level = trial.stimulus.level;
+  response.interval = comparison;
+  const int answer = cycle.answered() ? observer.answer() : 0;
+  response.answer = std::to_string(answer);
+  response.answer_value = answer;
+  response.correct = answer == comparison;
+  cycle.measure(response);
+  return response;
+}
+
+const ArcCondition& ArcExperiment::conditionOf(const StudyTrial& trial) const {
+  return *std::find_if(study_.conditions.begin(), study_.conditions.end(),
+                       [&](const ArcCondition& c) { return c.name == trial.run->condition; });
+}
+
+double ArcExperiment::pathRadius(const ArcCondition& condition) const {
+  return study_.finger_radius + (condition.edge ? study_.edge_radius : study_.arc_radius);
+}
+
+StrokeCues ArcExperiment::cuesOf(const StudyTrial& trial) const {
+  StrokeCues cues;
+  cues.seed = seedFor(trial.seed, kWhoFeels);
+  cues.radius = pathRadius(conditionOf(trial));
+  const Pose X_WD = arcArmBase(cues.radius);
+  cues.q_WD = X_WD.q;
+  cues.p_WD = X_WD.p;
+  cues.half_angle = study_.tactor_reach / study_.finger_radius;
+  cues.strokes = study_.strokes;
+  cues.question = study_.quantity == ArcQuantity::kTurn ? StrokeQuestion::kRougher : StrokeQuestion::kLater;
+  return cues;
+}
+
+ArcTrialSetup ArcExperiment::setupOf(const StudyTrial& trial, int comparison) const {
+  const ArcCondition& condition = conditionOf(trial);
+  ArcTrialSetup setup;
+  setup.finger_radius = study_.finger_radius;
+  setup.path_radius = pathRadius(condition);
+  setup.start_angle = -study_.tactor_reach / study_.finger_radius;
+  setup.stiffness = study_.stiffness;
+  for (int i = 1; i <= 2; ++i) setup.intervals.push_back(intervalOf(condition, i == comparison ? trial.stimulus.level : 0));
+  setup.trial = trial.trial;
+  setup.stride = stride_;
+  return setup;
+}
+
+// `level` 0: the reference.
+ArcInterval ArcExperiment::intervalOf(const ArcCondition& condition, double level) const {
+  const bool turned = study_.quantity == ArcQuantity::kTurn && level > 0;
+  const double sweep = 2 * (study_.tactor_reach / study_.finger_radius + kBeyond);
+  const contact::Polyline polyline =
+      condition.edge ? blade() : contact::arcPolygon(study_.arc_radius, turned ? level : study_.reference_turn, sweep);
+  ArcInterval interval;
+  interval.shown.force = sharedCurve(polyline, turned ? condition.force : SurfaceVariant::smooth);
+  if (condition.tactile) interval.shown.tactile = sharedCurve(polyline, turned ? *condition.tactile : SurfaceVariant::smooth);
+  interval.shown.largest_place = condition.travel_share * study_.tactor_reach;
+  if (study_.quantity == ArcQuantity::kBacklash) interval.transmission.backlash = level;
+  if (study_.quantity == ArcQuantity::kDelay) interval.transmission.delay = static_cast<int>(std::lround(1000 * level));
+  return interval;
+}
+
+// Up one side and down the other, the body on the left: from the right flank over the tip to the left one.
+contact::Polyline ArcExperiment::blade() const {
+  const double lean = 0.5 * (std::numbers::pi - study_.edge_angle);  // of a flank's normal from +z
+  contact::Polyline polyline;
+  const int segments = static_cast<int>(std::ceil(2 * lean / kBladeTurn));
+  const auto onTip = [&](double a) { return Vec2(study_.edge_radius * Vec2(-math::sin(a), math::cos(a))); };
+  const auto along = [&](double a) { return Vec2(-math::cos(a), -math::sin(a)); };  // counter-clockwise
+  polyline.vertices.push_back(onTip(-lean) - kBladeFlank * along(-lean));
+  for (int k = 0; k <= segments; ++k) polyline.vertices.push_back(onTip(lean * (2.0 * k / segments - 1)));
+  polyline.vertices.push_back(onTip(lean) + kBladeFlank * along(lean));
+  return polyline;
+}
+
+}  // namespace pincer::tasks

@@ -1,0 +1,177 @@
+#include "pincer/tasks/lab/experiments/manipulation_study.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "pincer/tasks/lab/experiments/cylinder_trial.h"
+#include "pincer/tasks/lab/experiments/pickup_trial.h"
+#include "pincer/tasks/lab/experiments/simulated_hands.h"
+#include "pincer/tasks/lab/experiments/study_parameters.h"
+
+namespace pincer::tasks {
+namespace {
+
+constexpr std::uint64_t kAlignmentSeed = 0x616c69676e, kTrainingSeed = 0x747261696e;  // "align", "train"
+
+SpherePickupOptions pickupOf(const ManipulationStudy& study, bool training) {
+  SpherePickupOptions options = study.pickup;
+  options.conditions = study.conditions;
+  options.participants = study.participants;
+  options.seed = training ? seedFor(study.seed, kTrainingSeed) : study.seed;
+  return options;
+}
+
+class TrialList {
+ public:
+  explicit TrialList(const ManipulationStudy& study)
+      : study_(study), counted_(pickupTrials(pickupOf(study, false))), trained_(pickupTrials(pickupOf(study, true))) {}
+
+  std::vector<ManipulationTrial> take() {
+    for (std::int64_t person = 0; person < study_.participants; ++person) {
+      index_ = 0;
+      for (std::size_t half = 0; half < study_.conditions.size(); ++half) addHalf(person, half);
+    }
+    return std::move(trials_);
+  }
+
+ private:
+  void addHalf(std::int64_t person, std::size_t half) {
+    const std::size_t place = person % 2 == 1 ? study_.conditions.size() - 1 - half : half;
+    const PickupCondition condition = study_.conditions[place];
+    if (has(study_, HandTask::kPickup)) {
+      addPickups(trained_, person, condition, study_.training.pickups, true);
+      addPickups(counted_, person, condition, std::numeric_limits<int>::max(), false);
+    }
+    if (has(study_, HandTask::kAlignment)) {
+      addAlignments(person, condition, study_.training.alignments, true);
+      addAlignments(person, condition, study_.alignment.repetitions, false);
+    }
+  }
+
+  void addPickups(const std::vector<PickupTrialSpec>& all, std::int64_t person, PickupCondition condition, int most, bool training) {
+    int added = 0;
+    for (const PickupTrialSpec& spec : all) {
+      if (spec.participant != person || spec.condition != condition || added == most) continue;
+      ManipulationTrial trial;
+      trial.pickup = spec;
+      trial.pickup.trial = next();
+      trial.pickup.index = index_++;
+      trial.pickup.training = training;
+      trials_.push_back(trial);
+      ++added;
+    }
+  }
+
+  void addAlignments(std::int64_t person, PickupCondition condition, int count, bool training) {
+    const std::uint64_t person_seed = seedFor(seedFor(study_.seed, static_cast<std::uint64_t>(person)), kAlignmentSeed);
+    const std::uint64_t block_seed = seedFor(person_seed, 2 * static_cast<std::uint64_t>(condition) + (training ? 1 : 0));
+    const std::vector<double> starts = startAngles(study_.alignment, count, block_seed);
+    for (std::size_t k = 0; k < starts.size(); ++k) {
+      ManipulationTrial trial;
+      trial.task = HandTask::kAlignment;
+      trial.alignment = {next(), person, index_++, condition, starts[k], seedFor(block_seed, k), training};
+      trials_.push_back(trial);
+    }
+  }
+
+  std::int64_t next() const { return static_cast<std::int64_t>(trials_.size()); }
+
+  const ManipulationStudy& study_;
+  std::vector<PickupTrialSpec> counted_, trained_;
+  std::vector<ManipulationTrial> trials_;
+  std::int64_t index_ = 0;
+};
+
+}  // namespace
+
+void validate(const ManipulationStudy& study) {
+  visitParameters(study, RangeCheck("study"));
+  visitParameters(study.training, RangeCheck("study: training", "training"));
+  visitParameters(study.people, RangeCheck("study: people", "people"));
+  if (study.tasks.empty()) throw ParameterError("tasks", "study: tasks is empty. Give sphere-pickup, cylinder-alignment, or both.");
+  validate(pickupOf(study, false));
+  CylinderAlignmentOptions alignment = study.alignment;
+  alignment.conditions = study.conditions;
+  validate(alignment);
+}
+
+bool has(const ManipulationStudy& study, HandTask task) {
+  return std::find(study.tasks.begin(), study.tasks.end(), task) != study.tasks.end();
+}
+
+std::string taskName(const ManipulationStudy& study) {
+  if (has(study, HandTask::kPickup) && has(study, HandTask::kAlignment)) return "manipulation";
+  return has(study, HandTask::kPickup) ? "sphere-pickup" : "cylinder-alignment";
+}
+
+std::vector<ManipulationTrial> manipulationTrials(const ManipulationStudy& study) {
+  validate(study);
+  return TrialList(study).take();
+}
+
+std::unique_ptr<HandTrial> makeTrial(const ManipulationStudy& study, const PickupObject& object, const ManipulationTrial& trial,
+                                     RecordSink& sink) {
+  std::unique_ptr<HandTrial> made;
+  if (trial.task == HandTask::kPickup) {
+    made = std::make_unique<PickupTrial>(study.pickup, object, trial.pickup, sink);
+  } else {
+    made = std::make_unique<CylinderTrial>(study.alignment, trial.alignment, sink);
+  }
+  if (study.frozen_tactor) made->parkTactors();
+  return made;
+}
+
+std::unique_ptr<Participant> makeParticipant(const ManipulationStudy& study, const ManipulationTrial& trial) {
+  const std::uint64_t seed = seedFor(study.seed, static_cast<std::uint64_t>(trial.participant()));
+  return makeParticipant(study.people, trial.task, seed, trial.condition() == PickupCondition::kCldForce);
+}
+
+namespace {
+
+// One trial by whoever does it. `fault`: why a gate tripped; empty: none did.
+struct DoneTrial {
+  ServoReport servo;
+  std::string fault;
+};
+DoneTrial runTrial(const ManipulationStudy& study, HandTrial& trial, const ManipulationTrial& spec, const ServoOptions& servo,
+                   const std::atomic<bool>& interrupted, const StudyHooks& hooks, const TrialProgress& at) {
+  const std::unique_ptr<Participant> participant = makeParticipant(study, spec);
+  const std::unique_ptr<Hands> hands =
+      hooks.host.hands ? hooks.host.hands(trial) : std::make_unique<SimulatedHands>(trial.scene(), *participant);
+  trial.begin();
+  HandsCycle cycle(trial, *hands, servo.clock != ServoClock::kVirtual);
+  DoneTrial done;
+  done.servo = hooks.host.serve ? hooks.host.serve(cycle, at.done, at.total) : runServo(servo, cycle, interrupted);
+  hands->stop();
+  done.fault = trial.fault();
+  return done;
+}
+
+}  // namespace
+
+std::size_t runManipulationStudy(const ManipulationStudy& study, const ServoOptions& servo, RecordSink& sink,
+                                 const std::atomic<bool>& interrupted, const StudyHooks& hooks) {
+  const auto trials = manipulationTrials(study);
+  const PickupObject object = makePickupObject(study.pickup);
+  const auto report = [&](std::size_t done) {
+    if (hooks.progress) hooks.progress({done, trials.size()});
+  };
+  std::size_t done = hooks.finished.size();
+  if (hooks.host.arm && !hooks.host.arm("The session begins.")) return done;
+  report(done);
+  for (const ManipulationTrial& spec : trials) {
+    if (hooks.finished.contains(spec.trial())) continue;
+    const std::unique_ptr<HandTrial> trial = makeTrial(study, object, spec, sink);
+    const DoneTrial ended = runTrial(study, *trial, spec, servo, interrupted, hooks, {done, trials.size()});
+    if (hooks.served) hooks.served(ended.servo);
+    if (ended.servo.interrupted) break;
+    trial->finish();
+    report(++done);
+    const bool goes_on = ended.fault.empty() || done == trials.size() || !hooks.host.arm || hooks.host.arm(ended.fault);
+    if (!goes_on) break;
+  }
+  return done;
+}
+
+}  // namespace pincer::tasks

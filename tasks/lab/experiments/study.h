@@ -1,0 +1,73 @@
+// study: what all psychophysical experiments share: whom is shown what in which order, answers into records, trial by trial.
+//
+// A study is a list of runs, one participant's each: a staircase, which chooses its next level from the answers, or a list of trials. All
+// that happens in a trial follows from the study's parameters, the trial's place and the seed: the same seed gives the same session, and a
+// session that was cut short goes on where it ended, its finished answers fed to the staircases again.
+#pragma once
+#include <atomic>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pincer/tasks/lab/study/staircase.h"
+#include "pincer/tasks/run/records.h"
+#include "pincer/tasks/run/servo/servo.h"
+
+namespace pincer::tasks {
+
+struct ListedStimulus {
+  std::string name;
+  double level = 0;
+  std::string condition = {};  // where a run mixes them; else empty
+};
+
+struct StudyRun {
+  std::int64_t participant = 0, run = 0;
+  std::string condition;  // of all its trials; empty: each has its own
+  std::optional<StaircaseRule> staircase;
+  std::vector<ListedStimulus> list;  // where there is no staircase
+};
+
+// One trial to be presented.
+struct StudyTrial {
+  std::int64_t trial = 0, index = 0;  // in the session, in the run
+  const StudyRun* run = nullptr;
+  ListedStimulus stimulus;
+  std::uint64_t seed = 0;         // of the trial
+  std::uint64_t person_seed = 0;  // of the participant
+};
+
+class StudySink {
+ public:
+  virtual ~StudySink() = default;
+  virtual void sample(const SampleRecord& sample) = 0;        // from the tick: must not block in real time
+  virtual void event(const EventRecord& event) = 0;           // after a trial, before its response()
+  virtual void response(const ResponseRecord& response) = 0;  // after a trial; durable on return
+};
+
+class Experiment {
+ public:
+  virtual ~Experiment() = default;
+  virtual std::vector<StudyRun> runs() const = 0;
+  // Shows the trial to its participant and takes the answer: stimulus, level, interval, answer, correct, outcome and what is measured; the
+  // rest is filled in by the caller. Absent if `interrupted` turned true. Adds what the servo says to `served`.
+  virtual std::optional<ResponseRecord> present(const StudyTrial& trial, StudySink& sink, const std::atomic<bool>& interrupted,
+                                                ServoReport& served) = 0;
+};
+
+struct StudyProgress {
+  double share = 0;  // of the study that is done
+};
+
+struct StudyOutcome {
+  std::int64_t trials = 0;  // finished, earlier ones included
+  bool interrupted = false;
+  ServoReport servo;
+};
+
+// Runs the study from the first trial that isn't among `earlier`, which are an earlier session's, in order. Throws InputError where they don't fit it.
+StudyOutcome runStudy(Experiment& experiment, std::uint64_t seed, const std::vector<ResponseRecord>& earlier, StudySink& sink,
+                      const std::atomic<bool>& interrupted, const std::function<void(const StudyProgress&)>& progress = {});
+
+}  // namespace pincer::tasks

@@ -1,0 +1,20 @@
+// one_finger: somebody who touches with one finger and answers a question. Behind the wall, as all participants (participant.h).
+#pragma once
+#include "pincer/tasks/lab/participants/participant.h"
+
+namespace pincer::tasks {
+
+struct OneFingerAction {
+  devices::HandPull pull;
+  bool interval_over = false;  // what was to be felt has been felt: for one tick
+  bool answered = false;
+};
+
+class OneFingerObserver {
+ public:
+  virtual ~OneFingerObserver() = default;
+  // One millisecond. Each kStart begins an interval. Allocates nothing, throws nothing.
+  virtual OneFingerAction act(const FingerPercept& finger, double time, Cue cue) = 0;
+};
+
+}  // namespace pincer::tasks

@@ -1,0 +1,63 @@
+// figures: the pictures of a sphere-pickup session, as gnuplot scripts with their data.
+//
+// Data files keep SI units but for what is drawn in mm (then the column says so). Colours: M. Okabe, K. Ito, "Color universal design",
+// 2008, distinguishable with any colour vision; finger 0 is the index finger, finger 1 the thumb.
+#pragma once
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pincer/tasks/lab/report/gnuplot.h"
+#include "pincer/tasks/lab/report/summary.h"
+
+namespace pincer::tasks {
+
+// A measure over friction: each trial as a dot, each cell's mean with its interval. `measure` is a place in kMeasures.
+Figure measureFigure(const SessionSummary& summary, const std::vector<TrialRecord>& trials, std::size_t measure);
+
+// The condition's trial with the median number of squeezes (of two middle ones the lower; of equals the earliest), faults left out.
+std::optional<TrialRecord> representativeTrial(const std::vector<TrialRecord>& trials, const std::string& condition);
+
+struct TrialTrace {
+  TrialRecord trial;
+  std::vector<SampleRecord> samples;
+  std::vector<EventRecord> events;
+};
+TrialTrace traceOf(const SessionReader& session, const TrialRecord& trial);
+
+// Over the trial's time: events, height, grip forces, each finger's friction against its limit. `trace` must hold a sample.
+Figure trialFigure(const TrialTrace& trace);
+
+// Where the tactors were told to be on the fingerpads and where they were. `trace` must hold a sample.
+Figure tactorFigure(const TrialTrace& trace);
+
+// "trial 7 (participant 0, µₛ 0.45)".
+std::string trialWords(const TrialRecord& trial);
+
+// Error and time of alignment, each trial as a dot, one column per condition, means beside them.
+Figure alignmentFigure(const SessionSummary& summary, const std::vector<TrialRecord>& trials);
+
+// Over a trial of alignment: events, direction of the flat from its target, grip forces. `trace` must hold a sample.
+Figure turnFigure(const TrialTrace& trace);
+
+// How long the ticks took: histogram and percentiles. Nothing if no tick was timed.
+std::optional<Figure> tickFigure(const SessionReader& session);
+
+// A file name's part from any text: other than letters, digits and - becomes _.
+std::string fileNamePart(const std::string& text);
+
+namespace palette {
+constexpr const char *kBlue = "#0072B2", *kVermillion = "#D55E00", *kGreen = "#009E73", *kPurple = "#CC79A7", *kOrange = "#E69F00",
+                     *kInk = "#222222", *kGrey = "#999999";
+}  // namespace palette
+
+struct FingerStyle {
+  const char *name, *colour;
+};
+constexpr std::array<FingerStyle, kRecordedFingers> kFingers{{{"index finger", palette::kBlue}, {"thumb", palette::kVermillion}}};
+
+// Lines and letters that all figures share; `data` is then the figure's table, <name>.csv.
+std::string figurePrelude(const std::string& name);
+
+}  // namespace pincer::tasks

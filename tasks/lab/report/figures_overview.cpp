@@ -1,0 +1,116 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <map>
+
+#include "pincer/tasks/lab/report/figures.h"
+#include "pincer/tasks/run/csv.h"
+
+namespace pincer::tasks {
+
+namespace {
+
+// On the category axis, whose unit is the step from one friction to the next.
+constexpr double kDodge = 0.30;       // from one condition to the next
+constexpr double kDotsAside = -0.10;  // the trials' dots stand left of their mean
+constexpr double kSpread = 0.12;      // and fill this width
+
+double positionOf(const SessionSummary& s, double mu_s, std::size_t condition) {
+  const auto friction = std::lower_bound(s.frictions.begin(), s.frictions.end(), mu_s) - s.frictions.begin();
+  return static_cast<double>(friction) + kDodge * (static_cast<double>(condition) - 0.5 * static_cast<double>(s.conditions.size() - 1));
+}
+
+std::size_t placeOf(const SessionSummary& s, const std::string& condition) {
+  return static_cast<std::size_t>(std::find(s.conditions.begin(), s.conditions.end(), condition) - s.conditions.begin());
+}
+
+std::string meansCsv(const SessionSummary& s, std::size_t m) {
+  PlotTable table{"condition", "condition_index", "mu_s", "position", "trials", "mean", "ci95_low", "ci95_high", "lower_bound"};
+  for (const CellSummary& c : s.cells) {
+    if (c.allFrictions()) continue;
+    const Estimate& e = c.measures[m];
+    const double half = e.n < 2 ? 0 : e.half_width;
+    const std::size_t k = placeOf(s, c.condition);
+    table.row(c.condition, k, c.mu_s, positionOf(s, c.mu_s, k), c.trials, e.mean, e.mean - half, e.mean + half, c.timeouts > 0 ? 1 : 0);
+  }
+  return table.take();
+}
+
+// The dots of a cell stand side by side in the order of the trials, so that equal counts don't hide each other.
+std::string trialsCsv(const SessionSummary& s, const std::vector<TrialRecord>& trials, std::size_t m) {
+  PlotTable table{"trial", "participant", "condition", "condition_index", "mu_s", "position", "outcome", "value"};
+  std::map<std::pair<std::size_t, double>, std::vector<TrialRecord>> cells;
+  for (const TrialRecord& t : trials) cells[{placeOf(s, t.condition), t.mu_s}].push_back(t);
+  for (const auto& [cell, of_cell] : cells) {
+    for (std::size_t i = 0; i < of_cell.size(); ++i) {
+      const TrialRecord& t = of_cell[i];
+      const double share = of_cell.size() < 2 ? 0 : static_cast<double>(i) / static_cast<double>(of_cell.size() - 1) - 0.5;
+      table.row(t.trial, t.participant, t.condition, cell.first, t.mu_s, positionOf(s, t.mu_s, cell.first) + kDotsAside + kSpread * share,
+                t.outcome, kMeasures[m].of(t));
+    }
+  }
+  return table.take();
+}
+
+std::string frictionTics(const SessionSummary& s) {
+  std::string tics;
+  for (std::size_t i = 0; i < s.frictions.size(); ++i) tics += fmt::format("{}'{:.2f}' {}", i ? ", " : "", s.frictions[i], i);
+  return fmt::format("set xtics ({}) scale 0\nset xrange [-0.6:{}]\n", tics, static_cast<double>(s.frictions.size()) - 0.4);
+}
+
+// Open circles are drawn over the means that are lower bounds.
+std::string conditionPlots(const SessionSummary& s, const std::string& name) {
+  constexpr std::array<const char*, 4> kColours{palette::kBlue, palette::kVermillion, palette::kGreen, palette::kPurple};
+  std::string plots;
+  for (std::size_t k = 0; k < s.conditions.size(); ++k) {
+    const char* colour = kColours[k % kColours.size()];
+    plots += fmt::format("{} '{}_trials.csv' skip 1 using ($4=={} ? $6 : NaN):8 with points pt 7 ps 1.6 lc rgb '#90{}' notitle",
+                         k ? "," : "plot", name, k, colour + 1);
+    plots += fmt::format(", data skip 1 using ($2=={} ? $4 : NaN):6:7:8 with yerrorbars pt {} ps 2.6 lw 2 lc rgb '{}' title {}", k,
+                         k % 2 ? 5 : 7, colour, gnuplotString(conditionLabel(s.conditions[k])));
+    plots += fmt::format(", data skip 1 using ($2=={} && $9==1 ? $4 : NaN):6 with points pt 7 ps 1.3 lc rgb '#ffffff' notitle", k);
+  }
+  return plots + "\n";
+}
+
+}  // namespace
+
+std::string figurePrelude(const std::string& name) {
+  return fmt::format(
+      "set encoding utf8\nset datafile separator comma\nset datafile missing 'nan'\n"
+      "set border 3 lw 0.7 lc rgb '{0}'\nset tics nomirror out textcolor rgb '{0}'\n"
+      "set grid ytics lt 1 lw 0.5 lc rgb '#e2e2e2'\nset key outside top center horizontal Left reverse samplen 1.5 textcolor rgb '{0}'\n"
+      "set xlabel textcolor rgb '{0}'\nset ylabel textcolor rgb '{0}'\ndata = '{1}.csv'\n",
+      palette::kInk, name);
+}
+
+std::string fileNamePart(const std::string& text) {
+  std::string name = text;
+  for (char& c : name) {
+    if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-') c = '_';
+  }
+  return name;
+}
+
+Figure measureFigure(const SessionSummary& s, const std::vector<TrialRecord>& trials, std::size_t m) {
+  const bool is_time = m == kTime;
+  Figure figure;
+  figure.name = is_time ? "time" : kMeasures[m].key;
+  figure.title = fmt::format("{} per condition and friction", is_time ? "Time" : "Squeezes");
+  figure.caption = fmt::format(
+      "Small dots: single trials. Large marks: means with their 95 % confidence intervals (Student t). A white centre marks a lower bound: "
+      "a "
+      "trial of the cell timed out.{}",
+      is_time ? "" : " A squeeze is counted when both normal forces exceed 0.2 N with the intent to lift.");
+  figure.data = {{figure.name + ".csv", meansCsv(s, m)}, {figure.name + "_trials.csv", trialsCsv(s, trials, m)}};
+  figure.script = figurePrelude(figure.name) + frictionTics(s) +
+                  "set xlabel 'friction coefficient µₛ [-]'\nset yrange [0:*]\nset offsets 0, 0, graph 0.03, 0\n" +
+                  fmt::format("set ylabel '{}'\n", is_time ? "time of a trial [s]" : "squeezes per trial [-]") +
+                  conditionPlots(s, figure.name);
+  return figure;
+}
+
+}  // namespace pincer::tasks

@@ -1,0 +1,80 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "pincer/tasks/lab/report/html_page.h"
+
+namespace pincer::tasks {
+
+namespace {
+
+std::string facts(const SessionSummary& s) {
+  const std::vector<std::pair<std::string, std::string>> rows{{"task", s.info.task},
+                                                              {"seed", std::to_string(s.info.seed)},
+                                                              {"started (UTC)", s.started_utc},
+                                                              {"state of the session", s.state},
+                                                              {"participants", std::to_string(s.participants)},
+                                                              {"finished trials", std::to_string(s.trials)},
+                                                              {"pincer", s.info.version},
+                                                              {"build", buildFacts(s.info)},
+                                                              {"participants' parameters", s.info.participants_hash},
+                                                              {"session file", s.path}};
+  return htmlFacts(rows);
+}
+
+std::string cellTable(const SessionSummary& s) {
+  if (s.cells.empty()) return s.trials > 0 ? "" : "<p>No trial was finished.</p>\n";
+  std::string html = "<div class=\"wide\"><table>\n" + htmlRow(tableHeads(), "th");
+  for (const CellSummary& cell : s.cells) html += htmlRow(tableRow(cell), "td", cell.allFrictions() ? " class=\"all\"" : "");
+  return fmt::format("{}</table></div>\n<p class=\"note\">{}</p>\n", html, escaped(tableNote(s)));
+}
+
+std::string pairTable(const SessionSummary& s) {
+  if (s.pairs.empty()) return "";
+  std::string html = "<h2>The conditions compared</h2>\n<div class=\"wide\"><table>\n" + htmlRow(pairHeads(), "th");
+  for (const PairedRow& row : s.pairs) html += htmlRow(pairTexts(row), "td");
+  return html +
+         "</table></div>\n<p class=\"note\">Means over the participants with their 95 % intervals (Student t); difference: CLD + force "
+         "minus force "
+         "only; d_z: mean over standard deviation of the participants' differences; paired t-test and Wilcoxon's signed ranks (exact). "
+         "Time-outs are censored: counts and times are per success.</p>\n";
+}
+
+std::string number(double value, double scale, int digits) {
+  return std::isfinite(value) ? fmt::format("{:.{}f}", scale * value, digits) : "–";
+}
+
+std::string trialList(const std::vector<TrialRecord>& trials) {
+  std::string html = "<h2>All trials</h2>\n<div class=\"wide\"><table>\n" +
+                     htmlRow({"trial", "task", "participant", "condition", "µₛ", "outcome", "squeezes", "lifts", "tries > 5 mm", "time [s]",
+                              "slips", "drops", "peak grip [N]", "grip ratio [-]", "offset [mm]", "error [deg]", "regrasps"},
+                             "th");
+  for (const TrialRecord& t : trials) {
+    const auto text = [](std::int64_t n) { return std::to_string(n); };
+    html += htmlRow({text(t.trial), t.training ? t.task + " (training)" : t.task, text(t.participant), conditionLabel(t.condition),
+                     number(t.mu_s, 1, 2), t.outcome, text(t.squeezes), text(t.lifts), text(t.tries_5mm), number(t.duration, 1, 2),
+                     text(t.slips), text(t.drops), number(t.peak_grip, 1, 2), number(t.grip_ratio, 1, 2),
+                     number(t.offset_at_squeeze, 1e3, 1), number(t.error, 57.29577951308232, 1), text(t.regrasps)},
+                    "td", fmt::format(" id=\"trial-{}\"", t.trial));
+  }
+  return html +
+         "</table></div>\n<p class=\"note\">Grip ratio: grip while held over the smallest that holds, m g / (2 µₛ). Offset: of the "
+         "contacts from "
+         "the antipodal line at the last squeeze.</p>\n";
+}
+
+}  // namespace
+
+std::string reportHtml(const SessionSummary& s, const std::vector<TrialRecord>& trials, const std::vector<Picture>& pictures,
+                       const std::string& figures_name, const std::string& devices) {
+  const std::string title = fmt::format("{}, seed {}", s.info.task, s.info.seed);
+  std::string html = htmlHead(title, s.warning);
+  html += facts(s) + (s.cells.empty() ? "" : "<h2>Per condition and friction</h2>\n") + cellTable(s) + pairTable(s);
+  for (const Picture& picture : pictures) html += htmlFigure(picture, figures_name);
+  html += devices;
+  if (!trials.empty()) html += trialList(trials);
+  return html + htmlFoot(s.info);
+}
+
+}  // namespace pincer::tasks

@@ -1,0 +1,124 @@
+#include "pincer/tasks/lab/report/html_page.h"
+
+#include <fmt/format.h>
+
+namespace pincer::tasks {
+
+namespace {
+
+constexpr const char* kStyle = R"(
+body { margin: 2rem auto; max-width: 60rem; padding: 0 1rem; }
+body { background: #fff; color: #222; font: 16px/1.5 "DejaVu Sans", Verdana, sans-serif; }
+h1 { font-size: 1.6rem; } h2 { font-size: 1.2rem; margin-top: 2.5rem; }
+table { border-collapse: collapse; font-size: 0.8rem; font-variant-numeric: tabular-nums; }
+td, th { padding: 0.25rem 0.55rem; text-align: right; border-bottom: 1px solid #e2e2e2; white-space: nowrap; }
+td:first-child, th:first-child { text-align: left; }
+tr.all td { font-weight: bold; border-bottom: 2px solid #999; }
+tr:target td { background: #fff3cd; }
+.facts th { text-align: left; font-weight: normal; color: #666; }
+.facts td { text-align: left; white-space: normal; overflow-wrap: anywhere; }
+.wide { overflow-x: auto; }
+figure { margin: 1rem 0; } img { width: 100%; height: auto; } figcaption, .note { font-size: 0.85rem; color: #444; }
+.warning { border-left: 0.4rem solid #D55E00; background: #fdf1e9; padding: 0.6rem 1rem; }
+pre { background: #f6f6f6; padding: 0.6rem; overflow-x: auto; font-size: 0.8rem; }
+a { color: #0072B2; }
+)";
+
+// RFC 4648, section 4.
+std::string base64(const std::string& bytes) {
+  constexpr const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve(bytes.size() / 3 * 4 + 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::size_t n = std::min<std::size_t>(3, bytes.size() - i);
+    std::uint32_t group = 0;
+    for (std::size_t k = 0; k < 3; ++k) group = group << 8 | (k < n ? static_cast<unsigned char>(bytes[i + k]) : 0u);
+    for (std::size_t k = 0; k < 4; ++k) text += k <= n ? kDigits[group >> (18 - 6 * k) & 63] : '=';
+  }
+  return text;
+}
+
+// Apart from tabs and line ends, which pages may hold.
+bool isControl(char c) { return (c >= 0 && c < ' ' && c != '\t' && c != '\n' && c != '\r') || c == 0x7f; }
+
+}  // namespace
+
+std::string escaped(const std::string& text) {
+  std::string html;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        html += "&amp;";
+        break;
+      case '<':
+        html += "&lt;";
+        break;
+      case '>':
+        html += "&gt;";
+        break;
+      case '"':
+        html += "&quot;";
+        break;
+      default:
+        html += isControl(c) ? ' ' : c;
+    }
+  }
+  return html;
+}
+
+std::string htmlRow(const std::vector<std::string>& fields, const char* tag, const std::string& attributes) {
+  std::string html = fmt::format("<tr{}>", attributes);
+  for (const std::string& field : fields) html += fmt::format("<{0}>{1}</{0}>", tag, escaped(field));
+  return html + "</tr>\n";
+}
+
+std::string htmlFacts(const std::vector<std::pair<std::string, std::string>>& rows) {
+  std::string html = "<table class=\"facts\">\n";
+  for (const auto& [name, value] : rows) html += fmt::format("<tr><th>{}</th><td>{}</td></tr>\n", escaped(name), escaped(value));
+  return html + "</table>\n";
+}
+
+std::string htmlFigure(const Picture& p, const std::string& figures_name) {
+  std::string links = fmt::format("<a href=\"{0}/{1}.png\">PNG</a>, <a href=\"{0}/{1}.svg\">SVG</a>", escaped(figures_name), p.figure.name);
+  for (const auto& [name, content] : p.figure.data) links += fmt::format(", <a href=\"{}/{}\">{}</a>", escaped(figures_name), name, name);
+  if (!p.anchor_trial.empty()) links += fmt::format("; <a href=\"#trial-{0}\">trial {0} in the list</a>", p.anchor_trial);
+  return fmt::format(
+      "<h2>{}</h2>\n<figure id=\"figure-{}\">\n<img alt=\"{}\" width=\"{}\" height=\"{}\" src=\"data:image/png;base64,{}\">\n"
+      "<figcaption>{} <span class=\"note\">({})</span></figcaption>\n</figure>\n",
+      escaped(p.figure.title), p.figure.name, escaped(p.figure.title), p.figure.width / 2, p.figure.height / 2, base64(p.png),
+      escaped(p.figure.caption), links);
+}
+
+std::string buildFacts(const SessionInfo& info) {
+  std::string facts = info.build;
+  for (const std::string* more : {&info.flags, &info.c_library, &info.processor, &info.commit}) {
+    if (!more->empty()) facts += (more == &info.commit ? "; commit " : "; ") + *more;
+  }
+  return facts;
+}
+
+std::string htmlNotDrawn(const std::vector<std::string>& titles) {
+  if (titles.empty()) return "";
+  return fmt::format("<p class=\"note\">Not drawn, since no finished trial has numbers for it: {}.</p>\n",
+                     escaped(fmt::format("{}", fmt::join(titles, "; "))));
+}
+
+std::string htmlDetails(const char* title, const std::string& json) {
+  return json.empty() ? "" : fmt::format("<details><summary>{}</summary><pre>{}</pre></details>\n", title, escaped(json));
+}
+
+std::string htmlHead(const std::string& title, const std::string& warning) {
+  std::string html = fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
+      "content=\"width=device-width\">\n<title>{0}</title>\n<style>{1}</style>\n</head>\n<body>\n<h1>{0}</h1>\n",
+      escaped(title), kStyle);
+  if (!warning.empty()) html += fmt::format("<p class=\"warning\">{}</p>\n", escaped(warning));
+  return html;
+}
+
+std::string htmlFoot(const SessionInfo& info) {
+  return "<h2>What was run</h2>\n" + htmlDetails("scene", info.scene_json) + htmlDetails("protocol", info.protocol_json) +
+         htmlDetails("devices", info.devices_json) + htmlDetails("participants", info.participants_json) + "</body>\n</html>\n";
+}
+
+}  // namespace pincer::tasks

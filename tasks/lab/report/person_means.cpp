@@ -1,0 +1,92 @@
+#include "pincer/tasks/lab/report/person_means.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+namespace pincer::tasks {
+namespace {
+
+constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
+constexpr double kDegrees = 57.29577951308232;
+
+struct Sums {
+  double tries = 0, lifts = 0, pickup_time = 0, error = 0, signed_error = 0, alignment_time = 0, regrasps = 0;
+  int pickups = 0, picked_up = 0, alignments = 0, answered = 0;
+
+  void add(const TrialRecord& t) {
+    const bool success = t.outcome == "success";
+    if (t.task == "sphere-pickup") {
+      ++pickups;
+      picked_up += success;
+      tries += static_cast<double>(t.squeezes);
+      lifts += static_cast<double>(t.lifts);
+      pickup_time += t.duration;
+      return;
+    }
+    ++alignments;
+    alignment_time += t.duration;
+    regrasps += static_cast<double>(t.regrasps);
+    if (!success) return;
+    ++answered;
+    error += kDegrees * std::abs(t.error);
+    signed_error += kDegrees * t.error;
+  }
+
+  std::vector<double> means() const {
+    const auto per = [](double sum, int n) { return n > 0 ? sum / n : kNoValue; };
+    const int successes = std::max(picked_up, pickups > 0 ? 1 : 0), answers = std::max(answered, alignments > 0 ? 1 : 0);
+    return {per(tries, successes), per(lifts, successes),       per(pickup_time, successes),  per(100.0 * picked_up, pickups),
+            per(error, answered),  per(signed_error, answered), per(alignment_time, answers), per(regrasps, alignments)};
+  }
+};
+
+}  // namespace
+
+const std::vector<FindingMeasure>& findingMeasures() {
+  static const std::vector<FindingMeasure> measures = {
+      {"tries", "squeezes per sphere picked up", "", "significantly fewer with the CLD", PublishedEffect::kLess, true},
+      {"lifts", "lifts per sphere picked up", "", "(not published apart from tries)", PublishedEffect::kNone, true},
+      {"pickup_time", "time per sphere picked up", "s", "no change", PublishedEffect::kSame, true},
+      {"picked_up", "spheres picked up within the time", "%", "(not published)", PublishedEffect::kNone, true},
+      {"alignment_error", "mean absolute alignment error", "deg", "no change", PublishedEffect::kSame, false},
+      {"alignment_bias", "mean signed alignment error", "deg", "(not published)", PublishedEffect::kNone, false},
+      {"alignment_time", "time per alignment answered", "s", "7 s more with the CLD", PublishedEffect::kMore, false},
+      {"regrasps", "regrasps per alignment", "", "(not published)", PublishedEffect::kNone, false},
+  };
+  return measures;
+}
+
+PersonMeans personMeans(const std::vector<TrialRecord>& trials) {
+  Sums force, cld;
+  for (const TrialRecord& t : trials) {
+    if (t.training == 0 && t.outcome != "fault") (t.condition == "force" ? force : cld).add(t);
+  }
+  return {force.means(), cld.means()};
+}
+
+std::vector<PairedRow> pairedRows(const std::vector<TrialRecord>& trials) {
+  std::map<std::int64_t, std::vector<TrialRecord>> of_person;
+  for (const TrialRecord& t : trials) of_person[t.participant].push_back(t);
+  std::vector<PersonMeans> people;
+  for (const auto& [person, own] : of_person) people.push_back(personMeans(own));
+  std::vector<PairedRow> rows;
+  for (std::size_t m = 0; m < findingMeasures().size(); ++m) {
+    std::vector<double> force, cld;
+    for (const PersonMeans& person : people) {
+      force.push_back(person.force[m]);
+      cld.push_back(person.cld[m]);
+    }
+    const auto known = [](const std::vector<double>& values) {
+      std::vector<double> kept;
+      std::copy_if(values.begin(), values.end(), std::back_inserter(kept), [](double x) { return std::isfinite(x); });
+      return estimateMean(kept);
+    };
+    const PairedRow row{m, known(force), known(cld), comparePairs(force, cld)};
+    if (row.force.n + row.cld.n > 0) rows.push_back(row);
+  }
+  return rows;
+}
+
+}  // namespace pincer::tasks

@@ -1,0 +1,59 @@
+#include <nlohmann/json.hpp>
+
+#include "pincer/tasks/lab/report/summary.h"
+
+namespace pincer::tasks {
+
+namespace {
+
+using Json = nlohmann::ordered_json;  // keys in the order of the table
+
+Json asJson(const CellSummary& cell) {
+  Json json{{"condition", cell.condition},       {"mu_s", nullptr},           {"trials", cell.trials},
+            {"successes", cell.successes},       {"timeouts", cell.timeouts}, {"faults", cell.faults},
+            {"success_rate", cell.successRate()}};
+  if (!cell.allFrictions()) json["mu_s"] = cell.mu_s;
+  for (std::size_t m = 0; m < kMeasures.size(); ++m) {
+    const Estimate& e = cell.measures[m];
+    json[kMeasures[m].key] = Json{{"n", e.n}, {"mean", e.mean}, {"ci95_half_width", e.half_width}, {"lower_bound", cell.timeouts > 0}};
+  }
+  return json;
+}
+
+}  // namespace
+
+std::string summaryJson(const SessionSummary& s) {
+  Json json{{"session", s.path},
+            {"task", s.info.task},
+            {"seed", s.info.seed},
+            {"version", s.info.version},
+            {"build", s.info.build},
+            {"commit", s.info.commit},
+            {"processor", s.info.processor},
+            {"c_library", s.info.c_library},
+            {"flags", s.info.flags},
+            {"state", s.state},
+            {"warning", s.warning},
+            {"started_utc", s.started_utc},
+            {"participants", s.participants},
+            {"trials", s.trials},
+            {"cells", Json::array()}};
+  for (const CellSummary& cell : s.cells) json["cells"].push_back(asJson(cell));
+  json["pairs"] = Json::array();
+  for (const PairedRow& row : s.pairs) {
+    const FindingMeasure& m = findingMeasures()[row.measure];
+    json["pairs"].push_back({{"measure", m.key},
+                             {"unit", m.unit},
+                             {"force", row.force.mean},
+                             {"cld", row.cld.mean},
+                             {"n", row.test.n},
+                             {"difference", row.test.difference.mean},
+                             {"ci95_half_width", row.test.difference.half_width},
+                             {"d_z", row.test.effect},
+                             {"p_t", row.test.p_t},
+                             {"p_wilcoxon", row.test.p_wilcoxon}});
+  }
+  return json.dump(2, ' ', false, Json::error_handler_t::replace);  // a name may hold bytes that are no UTF-8
+}
+
+}  // namespace pincer::tasks

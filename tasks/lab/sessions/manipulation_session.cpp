@@ -1,0 +1,138 @@
+#include "pincer/tasks/lab/sessions/manipulation_session.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <new>
+
+#include "pincer/contact/error.h"
+#include "pincer/tasks/lab/experiments/manipulation_file.h"
+#include "pincer/tasks/run/files/json_writer.h"
+#include "pincer/tasks/run/session/build_info.h"
+
+namespace pincer::tasks {
+namespace {
+
+class StudySessionSink final : public RecordSink {
+ public:
+  // Keeps every `stride`-th tick; 0: none.
+  // `inputs`: and the inputs of all, of hands that nothing else can bring back.
+  StudySessionSink(SessionWriter& writer, std::int64_t stride, bool inputs) : writer_(writer), stride_(stride), inputs_(inputs) {}
+  bool wantsInputs() const override { return inputs_; }
+  void hands(const HandsRecord& hands) override { writer_.addHands(hands); }
+  void input(const InputRecord& input) override { writer_.pushInput(input); }  // a lost one is a gap in the ticks, which a replay names
+  bool wantsSample(std::int64_t tick) const override { return stride_ > 0 && tick % stride_ == 0; }
+  void sample(const SampleRecord& sample) override { writer_.pushSample(sample); }  // a lost one is counted by the store
+  void event(const EventRecord& event) override { writer_.addEvent(event); }
+  void reading(const ReadingRecord& reading) override { writer_.addReading(reading); }
+  void trial(const TrialRecord& trial) override { writer_.finishTrial(trial); }
+
+ private:
+  SessionWriter& writer_;
+  const std::int64_t stride_;
+  const bool inputs_;
+};
+
+std::string devicesJson(const ManipulationSessionOptions& o) {
+  JsonWriter json;
+  json.beginObject()
+      .key("arms")
+      .value(o.devices)
+      .key("tactile_displays")
+      .value(o.devices == "mouse" ? "simulated" : o.devices)
+      .key("rate")
+      .value(o.servo.rate);
+  return json.key("sample_rate").value(o.sample_rate).key("real_time").value(o.servo.clock != ServoClock::kVirtual).endObject().text();
+}
+
+ManipulationSessionResult runInto(SessionWriter& writer, const ManipulationSessionOptions& options, StudyHooks hooks,
+                                  const std::atomic<bool>& interrupted) {
+  const std::int64_t stride = options.sample_rate > 0 ? std::lround(options.servo.rate) / options.sample_rate : 0;
+  StudySessionSink sink(writer, stride, static_cast<bool>(options.host.hands));
+  ManipulationSessionResult result;
+  hooks.host = options.host;
+  hooks.served = [&](const ServoReport& trial) { result.servo.add(trial); };
+  bool refused = false;  // the operator didn't switch the forces on
+  if (hooks.host.arm) {
+    hooks.host.arm = [&refused, ask = hooks.host.arm](const std::string& why) {
+      refused = !ask(why);
+      return !refused;
+    };
+  }
+  try {
+    result.trials = runManipulationStudy(options.study, options.servo, sink, interrupted, hooks);
+  } catch (const std::bad_alloc&) {
+    writer.abort("not enough memory");
+    throw;
+  }
+  result.interrupted = result.servo.interrupted || refused;
+  result.interrupted ? writer.abort("interrupted by the user") : writer.close();
+  return result;
+}
+
+std::set<std::int64_t> finishedTrials(const SessionReader& session, std::size_t planned) {
+  std::set<std::int64_t> finished;
+  for (const TrialRecord& trial : session.trials()) {
+    requirePlanned(session, trial.trial, planned);
+    finished.insert(trial.trial);
+  }
+  return finished;
+}
+
+SessionOptions storeOptions(const ServoOptions& servo) {
+  SessionOptions store;
+  store.block_when_full = servo.clock != ServoClock::kReal;
+  return store;
+}
+
+}  // namespace
+
+SessionInfo manipulationSessionInfo(const ManipulationSessionOptions& o) {
+  SessionInfo info;
+  info.task = taskName(o.study);
+  info.seed = o.study.seed;
+  tellBuild(info);
+  info.protocol_json = studyFile(o.study);
+  info.devices_json = devicesJson(o);
+  info.participants_json = describe(o.study.people);
+  info.participants_hash = hashOf(o.study.people);
+  return info;
+}
+
+void requirePlanned(const SessionReader& session, std::int64_t trial, std::size_t planned) {
+  if (trial >= 0 && trial < static_cast<std::int64_t>(planned)) return;
+  throw InputError(
+      fmt::format("{}: trial {} isn't one of its plan, which has trials 0 to {}. The file is damaged, or something else than pincer "
+                  "changed it. Take a copy of before.",
+                  session.path(), trial, static_cast<std::int64_t>(planned) - 1));
+}
+
+void validate(const ManipulationSessionOptions& options) {
+  validate(options.study);
+  const int rate = options.sample_rate;
+  if (rate == 0 || (rate >= 1 && rate <= 1000 && std::fmod(options.servo.rate, rate) == 0)) return;
+  throw InputError(
+      fmt::format("run: sample_rate = {} is out of range: 0 for none, or an integer in [1, 1000] Hz that divides the {:g} "
+                  "ticks of a second. Take for example 1000, 500, 200 or 100.",
+                  rate, options.servo.rate));
+}
+
+ManipulationSessionResult runManipulationSession(const ManipulationSessionOptions& options, const std::string& path,
+                                                 const std::atomic<bool>& interrupted, const TrialProgressLine& progress) {
+  validate(options);
+  SessionWriter writer = SessionWriter::create(path, manipulationSessionInfo(options), storeOptions(options.servo));
+  return runInto(writer, options, {{}, progress, {}, {}}, interrupted);
+}
+
+ManipulationSessionResult resumeManipulationSession(const ManipulationSessionOptions& wanted, const std::string& path,
+                                                    const std::atomic<bool>& interrupted, const TrialProgressLine& progress) {
+  ManipulationSessionOptions options = wanted;
+  options.study = parseStudyFile(SessionReader(path).info().protocol_json, path + ": protocol");
+  validate(options);
+  SessionWriter writer = SessionWriter::resume(path, storeOptions(options.servo));
+  StudyHooks hooks{{}, progress, {}, {}};
+  hooks.finished = finishedTrials(SessionReader(path), manipulationTrials(options.study).size());
+  return runInto(writer, options, hooks, interrupted);
+}
+
+}  // namespace pincer::tasks

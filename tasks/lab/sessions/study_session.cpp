@@ -1,0 +1,60 @@
+#include "pincer/tasks/lab/sessions/study_session.h"
+
+#include <new>
+
+#include "pincer/tasks/lab/sessions/study_file.h"
+#include "pincer/tasks/run/files/json_writer.h"
+#include "pincer/tasks/run/session/build_info.h"
+
+namespace pincer::tasks {
+namespace {
+
+class StudyFileSink final : public StudySink {
+ public:
+  explicit StudyFileSink(SessionWriter& writer) : writer_(writer) {}
+  void sample(const SampleRecord& sample) override { writer_.pushSample(sample); }  // a lost one is counted by the store
+  void event(const EventRecord& event) override { writer_.addEvent(event); }
+  void response(const ResponseRecord& response) override { writer_.finishResponse(response); }
+
+ private:
+  SessionWriter& writer_;
+};
+
+}  // namespace
+
+SessionInfo studySessionInfo(const std::string& task, std::uint64_t seed, const std::string& protocol_json,
+                             const std::string& participants_json, const ServoOptions& servo, int sample_rate) {
+  SessionInfo info;
+  info.task = task;
+  info.seed = seed;
+  tellBuild(info);
+  info.protocol_json = protocol_json;
+  info.participants_json = participants_json;
+  info.participants_hash = fingerprint(participants_json);
+  const char* display = task == "shape-identification" ? "simulated 2-DOF" : "simulated 1-DOF";
+  JsonWriter json;
+  json.beginObject().key("arms").value("simulated").key("tactile_display").value(display).key("rate").value(servo.rate);
+  info.devices_json =
+      json.key("sample_rate").value(sample_rate).key("real_time").value(servo.clock != ServoClock::kVirtual).endObject().text();
+  return info;
+}
+
+StudyOutcome runStudySession(Experiment& experiment, const StudySession& session, const std::atomic<bool>& interrupted,
+                             const std::function<void(const StudyProgress&)>& progress) {
+  SessionOptions store;
+  store.block_when_full = true;  // simulated participants wait for the disk
+  SessionWriter writer =
+      session.resume ? SessionWriter::resume(session.path, store) : SessionWriter::create(session.path, session.info, store);
+  const std::vector<ResponseRecord> earlier = session.resume ? SessionReader(session.path).responses() : std::vector<ResponseRecord>();
+  StudyFileSink sink(writer);
+  try {
+    StudyOutcome outcome = runStudy(experiment, session.info.seed, earlier, sink, interrupted, progress);
+    outcome.interrupted ? writer.abort("interrupted by the user") : writer.close();
+    return outcome;
+  } catch (const std::bad_alloc&) {
+    writer.abort("not enough memory");
+    throw;
+  }
+}
+
+}  // namespace pincer::tasks

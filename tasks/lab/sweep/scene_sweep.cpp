@@ -1,0 +1,109 @@
+#include "pincer/tasks/lab/sweep/scene_sweep.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "pincer/contact/io/counted.h"
+#include "pincer/tasks/run/scene/json_change.h"
+#include "pincer/tasks/run/simulation.h"
+
+namespace pincer::tasks {
+namespace {
+
+enum class Over { kEnd, kLeast, kLargest };
+
+struct SweptMeasure {
+  Quantity quantity;
+  Over over = Over::kEnd;
+
+  double start() const {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    return over == Over::kLeast ? kInfinity : -kInfinity;
+  }
+  double next(double sofar, double value) const {
+    return over == Over::kEnd ? value : over == Over::kLeast ? std::min(sofar, value) : std::max(sofar, value);
+  }
+};
+
+SweptMeasure measureOf(const std::string& text, const Scene& scene) {
+  const std::size_t colon = text.find(':');
+  const std::string word = colon == std::string::npos ? "" : text.substr(colon + 1);
+  if (colon != std::string::npos && word != "min" && word != "max") {
+    throw InputError(fmt::format("--measure {}: \":{}\" isn't known. Nothing (the end), :min or :max.", text, word));
+  }
+  const Over over = word == "min" ? Over::kLeast : word == "max" ? Over::kLargest : Over::kEnd;
+  return {quantityOf(text.substr(0, colon), scene), over};
+}
+
+std::vector<SweptMeasure> measuresOf(const SceneSweep& sweep, const Scene& scene) {
+  std::vector<SweptMeasure> measures;
+  for (const std::string& text : sweep.measures) measures.push_back(measureOf(text, scene));
+  if (sweep.measures.empty()) {
+    for (const Quantity& quantity : scene.record.quantities) measures.push_back({quantity});
+  }
+  if (measures.empty() && scene.expectations.empty()) {
+    throw InputError(fmt::format("{}: the scene records and expects nothing. Say what you want to know: --measure sphere.p_z", scene.file));
+  }
+  return measures;
+}
+
+std::string labelOf(const SweptMeasure& measure) {
+  const char* over = measure.over == Over::kEnd ? "" : measure.over == Over::kLeast ? " (least)" : " (largest)";
+  return fmt::format("{}{} [{}]", measure.quantity.name, over, measure.quantity.kind->unit);
+}
+
+Scene sceneAt(const NamedJson& scene, const std::vector<Variation>& variations, const std::vector<double>& point) {
+  JsonValue json = scene.json;
+  for (std::size_t i = 0; i < point.size(); ++i) setNumber(json, scenePath(json, variations[i].path), point[i]);
+  return sceneOf(json, scene.name);
+}
+
+// What every measure came to, and then how many expectations failed. Up to where it was interrupted.
+std::vector<double> measured(Scene scene, const SceneSweep& sweep, const std::atomic<bool>& interrupted) {
+  Simulation simulation(std::move(scene));
+  const std::vector<SweptMeasure> measures = measuresOf(sweep, simulation.scene());
+  ExpectationLog log(simulation.scene().expectations);
+  std::vector<double> values;
+  for (const SweptMeasure& measure : measures) values.push_back(measure.start());
+  const auto observe = [&] {
+    log.observe(simulation.ticks(), simulation.time(), simulation.moment());
+    for (std::size_t i = 0; i < measures.size(); ++i)
+      values[i] = measures[i].next(values[i], measures[i].quantity.measure(simulation.moment()));
+  };
+  observe();
+  for (bool finite = true; finite && simulation.ticks() < simulation.scene().ticks() && !interrupted;) {
+    finite = (simulation.tick().status & engine::kStateNotFinite) == 0;
+    observe();
+  }
+  if (!log.expectations().empty()) {
+    const auto failed = std::count_if(log.outcomes().begin(), log.outcomes().end(), [](const Outcome& o) { return !o.holds(); });
+    values.push_back(static_cast<double>(failed));
+  }
+  return values;
+}
+
+}  // namespace
+
+SweepTable sweepScene(const NamedJson& scene, const SceneSweep& sweep, const SweepOptions& options, const std::atomic<bool>& interrupted) {
+  constexpr std::size_t kMostRuns = 100'000;
+  SweepTable table;
+  table.what = scene.name;
+  table.points = gridOf(sweep.variations, kMostRuns);
+  for (const Variation& variation : sweep.variations) table.parameters.push_back(variation.path);
+  for (const std::vector<double>& point : table.points) {
+    const Scene read = sceneAt(scene, sweep.variations, point);
+    if (!table.measures.empty()) continue;
+    for (const SweptMeasure& measure : measuresOf(sweep, read)) table.measures.push_back(labelOf(measure));
+    table.plotted.assign(table.measures.size(), true);
+    if (read.expectations.empty()) continue;
+    table.measures.push_back(fmt::format("failed of {}", counted(static_cast<std::int64_t>(read.expectations.size()), "expectation")));
+    table.plotted.push_back(table.plotted.empty());
+  }
+  runSweep(table, options, interrupted,
+           [&](std::size_t i) { return measured(sceneAt(scene, sweep.variations, table.points[i]), sweep, interrupted); });
+  return table;
+}
+
+}  // namespace pincer::tasks

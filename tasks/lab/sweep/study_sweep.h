@@ -1,0 +1,24 @@
+// study_sweep: a study of the manipulation tasks with simulated participants, for many values of its parameters, and what they did.
+#pragma once
+#include <atomic>
+#include <string>
+#include <vector>
+
+#include "pincer/tasks/lab/sweep/sweep.h"
+
+namespace pincer::tasks {
+
+struct StudySweep {
+  std::vector<Variation> variations;  // one or two; paths in the study file (pincer run manipulation --write-study FILE)
+  int participants = 4;               // at each point, 1 .. 1000; the same people at every one
+  std::uint64_t seed = 1;
+};
+
+// sphere-pickup, cylinder-alignment, manipulation.
+bool isSweptStudy(const std::string& task);
+
+// Every measure (tasks/lab/report/person_means.h) twice, force only and CLD + force: means over the participants; squeezes, times and the error of
+// alignment are plotted. Without training: these participants don't learn. Throws InputError for a path or value that doesn't fit a study.
+SweepTable sweepStudy(const std::string& task, const StudySweep& sweep, const SweepOptions& options, const std::atomic<bool>& interrupted);
+
+}  // namespace pincer::tasks

@@ -1,0 +1,113 @@
+// The table of a sweep: for a terminal, as CSV, as a picture.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "pincer/contact/io/atomic_file.h"
+#include "pincer/tasks/lab/report/figures.h"
+#include "pincer/tasks/lab/sweep/sweep.h"
+#include "pincer/tasks/run/csv.h"
+
+namespace pincer::tasks {
+namespace {
+
+std::string rightAligned(const std::string& text, std::size_t width) {
+  return std::string(width > text.size() ? width - text.size() : 0, ' ') + text;
+}
+
+// The values of the second parameter, as they come; one of none.
+std::vector<double> lineValues(const SweepTable& table) {
+  if (table.parameters.size() < 2) return {0};
+  std::vector<double> values;
+  for (const std::vector<double>& point : table.points) {
+    if (std::find(values.begin(), values.end(), point[1]) == values.end()) values.push_back(point[1]);
+  }
+  return values;
+}
+
+constexpr std::array kLineColours = {palette::kBlue,   palette::kVermillion, palette::kGreen,
+                                     palette::kPurple, palette::kOrange,     palette::kInk};
+
+std::string panelScript(const SweepTable& table, std::size_t measure, bool first) {
+  const std::vector<double> lines = lineValues(table);
+  const std::size_t column = table.parameters.size() + 1 + measure;
+  std::string script =
+      fmt::format("set ylabel {}\n{}\nplot ", gnuplotString(table.measures[measure]), first ? "set key on" : "set key off");
+  for (std::size_t k = 0; k < lines.size(); ++k) {
+    const std::string x = table.parameters.size() < 2 ? "1" : fmt::format("($2 == {:.17g} ? $1 : NaN)", lines[k]);
+    const std::string title =
+        table.parameters.size() < 2 ? "notitle" : "title " + gnuplotString(fmt::format("{} = {:.6g}", table.parameters[1], lines[k]));
+    script += fmt::format("{}'sweep.csv' skip 1 using {}:{} with linespoints pt 7 ps 0.8 lw 2 lc rgb '{}' {}", k ? ", " : "", x, column,
+                          kLineColours[k % kLineColours.size()], title);
+  }
+  return script + "\n";
+}
+
+}  // namespace
+
+std::string sweepText(const SweepTable& table) {
+  std::vector<std::vector<std::string>> rows{table.parameters};
+  rows[0].insert(rows[0].end(), table.measures.begin(), table.measures.end());
+  for (std::size_t i = 0; i < table.points.size(); ++i) {
+    if (table.results[i].empty()) continue;
+    rows.emplace_back();
+    for (const double value : table.points[i]) rows.back().push_back(fmt::format("{:.6g}", value));
+    for (const double value : table.results[i]) rows.back().push_back(fmt::format("{:.6g}", value));
+  }
+  std::string text;
+  for (const auto& row : rows) {
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      std::size_t width = 0;
+      for (const auto& other : rows) width = std::max(width, other[c].size());
+      text += (c ? "  " : "") + rightAligned(row[c], width);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+std::string sweepCsv(const SweepTable& table) {
+  PlotTable csv;
+  for (const std::string& name : table.parameters) csv.add(name);
+  for (const std::string& name : table.measures) csv.add(name);
+  csv.endRow();
+  for (std::size_t i = 0; i < table.points.size(); ++i) {
+    if (table.results[i].empty()) continue;
+    for (const double value : table.points[i]) csv.add(value);
+    for (const double value : table.results[i]) csv.add(value);
+    csv.endRow();
+  }
+  return csv.take();
+}
+
+Figure sweepFigure(const SweepTable& table) {
+  const auto panels = static_cast<int>(std::count(table.plotted.begin(), table.plotted.end(), true));
+  Figure figure;
+  figure.name = "sweep";
+  figure.title = table.what;
+  figure.height = 120 + 480 * panels;
+  figure.data = {{"sweep.csv", sweepCsv(table)}};
+  figure.script = figurePrelude("sweep") + fmt::format("set multiplot layout {},1 title {}\nset grid\nset lmargin 14\nset xlabel {}\n",
+                                                       panels, gnuplotString(table.what), gnuplotString(table.parameters[0]));
+  bool first = true;
+  for (std::size_t m = 0; m < table.measures.size(); ++m) {
+    if (!table.plotted[m]) continue;
+    figure.script += panelScript(table, m, first);
+    first = false;
+  }
+  figure.script += "unset multiplot\n";
+  return figure;
+}
+
+std::vector<std::string> writeSweep(const SweepTable& table, const std::string& directory) {
+  makeDirectory(directory);
+  const std::vector<std::string> paths{directory + "/sweep.csv", directory + "/sweep.png", directory + "/sweep.svg"};
+  writeAtomically(paths[0], sweepCsv(table));
+  Gnuplot gnuplot;
+  const Figure figure = sweepFigure(table);
+  writeAtomically(paths[1], gnuplot.plot(figure));
+  writeAtomically(paths[2], gnuplot.svg(figure));
+  return paths;
+}
+
+}  // namespace pincer::tasks

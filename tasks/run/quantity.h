@@ -1,0 +1,41 @@
+// quantity: what a scene can record and expect, by name: "energy", "sphere.p_z", "left.normal_force".
+//
+// Every name, its unit and its meaning: docs/scenes.md. What a finger feels is that of the last tick; before the first tick it is zero.
+#pragma once
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pincer/grasp/step.h"
+
+namespace pincer::tasks {
+
+// The world at one moment.
+struct Moment {
+  const grasp::GraspModel& model;
+  const grasp::GraspState& state;
+  std::span<const grasp::FingerReport> fingers;
+  const std::vector<engine::BodyStart>& starts;
+};
+
+// One name of a family of quantities, and how it is measured on the body or finger `index`.
+struct QuantityKind {
+  std::string_view name;
+  std::string_view unit;
+  double (*measure)(const Moment& moment, std::size_t index);
+};
+
+struct Quantity {
+  std::string name;                    // as in the file
+  const QuantityKind* kind = nullptr;  // never null in a scene that was read
+  std::size_t index = 0;               // of the body or finger
+
+  double measure(const Moment& moment) const { return kind->measure(moment, index); }
+};
+
+std::span<const QuantityKind> worldQuantities();
+std::span<const QuantityKind> bodyQuantities();
+std::span<const QuantityKind> fingerQuantities();
+
+}  // namespace pincer::tasks

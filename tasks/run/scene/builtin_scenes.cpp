@@ -1,0 +1,53 @@
+#include "pincer/tasks/run/scene/builtin_scenes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <vector>
+
+#include "pincer/contact/error.h"
+#include "pincer/tasks/run/files/file_limits.h"
+#include "pincer/tasks/run/files/spelling.h"
+
+namespace pincer::tasks {
+namespace {
+
+const BuiltinScene* findBuiltin(std::string_view name) {
+  const auto scenes = builtinScenes();
+  const auto found = std::find_if(scenes.begin(), scenes.end(), [&](const BuiltinScene& scene) { return scene.name == name; });
+  return found == scenes.end() ? nullptr : &*found;
+}
+
+std::string suggestedScene(std::string_view name) {
+  std::vector<std::string_view> names;
+  for (const BuiltinScene& scene : builtinScenes()) names.push_back(scene.name);
+  return suggestion(name, names);
+}
+
+NamedJson parseBuiltin(std::string_view name) {
+  const BuiltinScene* scene = findBuiltin(name);
+  if (!scene) throw InputError(fmt::format("there is no built-in scene \"{}\".{}", name, suggestedScene(name)));
+  const std::string file = fmt::format("{}.json", name);
+  return {file, parseJson(scene->json, file)};
+}
+
+}  // namespace
+
+Scene readBuiltinScene(std::string_view name) {
+  const NamedJson scene = parseBuiltin(name);
+  return sceneOf(scene.json, scene.name);
+}
+
+NamedJson parseSceneOrBuiltin(const std::string& path_or_name) {
+  const bool is_word = path_or_name.find_first_of("/.") == std::string::npos;
+  if (!is_word || std::filesystem::exists(path_or_name)) return {path_or_name, readJson(path_or_name, kSceneFile)};
+  return parseBuiltin(path_or_name);
+}
+
+Scene readSceneOrBuiltin(const std::string& path_or_name) {
+  const NamedJson scene = parseSceneOrBuiltin(path_or_name);
+  return sceneOf(scene.json, scene.name);
+}
+
+}  // namespace pincer::tasks

@@ -1,0 +1,37 @@
+// builtin_scenes: the scenes of tasks/scenes, which the program carries with it, so that verify, benchmarks and `pincer sim NAME` find them
+// wherever it is installed.
+#pragma once
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "pincer/tasks/run/files/strict_json.h"
+#include "pincer/tasks/run/scene.h"
+
+namespace pincer::tasks {
+
+struct BuiltinScene {
+  std::string_view name;  // of the file, without .json
+  std::string_view json;
+};
+
+// The format of scenes, for editors: docs/scene.schema.json.
+std::string_view sceneSchema();
+
+// In the order of their names.
+std::span<const BuiltinScene> builtinScenes();
+
+// Throws InputError with the names when there is none of this name.
+Scene readBuiltinScene(std::string_view name);
+
+// A file's path, or the name of a built-in scene: what a user gives to `sim` and `plan`. A file of that path wins. Throws InputError.
+Scene readSceneOrBuiltin(const std::string& path_or_name);
+
+// The same, not yet read (sceneOf), and what it is called in messages.
+struct NamedJson {
+  std::string name;
+  JsonValue json;
+};
+NamedJson parseSceneOrBuiltin(const std::string& path_or_name);
+
+}  // namespace pincer::tasks

@@ -1,0 +1,158 @@
+#include "pincer/tasks/run/scene.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "pincer/tasks/run/files/file_limits.h"
+#include "pincer/tasks/run/files/strict_json.h"
+#include "pincer/tasks/run/scene/scene_keys.h"
+#include "pincer/tasks/run/scene/scene_parts.h"
+
+namespace pincer::tasks {
+namespace {
+
+const std::vector<JsonValue>& listOf(const JsonValue& json, std::size_t most) {
+  const std::vector<JsonValue>& items = json.array();
+  if (items.size() > most) json.reject(fmt::format("has {} elements; a scene has at most {}. Leave some out.", items.size(), most));
+  return items;
+}
+
+void checkVersion(const JsonValue& json) {
+  const JsonValue& version = json.at("version", "This program reads version 1.");
+  version.integer(kSceneVersion, kSceneVersion, "This program reads version 1.");
+}
+
+void readSolver(const JsonValue& json, engine::WorldOptions& options) {
+  json.allowOnly(keys::kSolver);
+  if (const JsonValue* v = json.find("tolerance")) options.solver.tolerance = v->number(ranges::kTolerance);
+  if (const JsonValue* v = json.find("max_contacts")) options.max_contacts = v->integer(4, 256, "A whole number of contacts.");
+  if (const JsonValue* v = json.find("position_tolerance")) options.position_tolerance = v->number(ranges::kPositionTolerance);
+  if (const JsonValue* v = json.find("max_parts")) options.max_parts = v->integer(2, 1024, "How many parts a tick may be cut into.");
+  if (const JsonValue* v = json.find("budget")) options.solver.budget = v->number(ranges::kBudget);
+  if (const JsonValue* v = json.find("sleep")) options.sleep = v->boolean();
+  if (const JsonValue* v = json.find("contact_margin")) options.contact_margin = v->number(ranges::kContactMargin);
+}
+
+void readTimes(const JsonValue& json, Scene& scene) {
+  if (const JsonValue* v = json.find("tick")) scene.options.h = v->number(ranges::kTick);
+  const JsonValue& duration = json.at("duration", "How long the scene lasts [s].");
+  scene.duration = duration.number(ranges::kDuration);
+  if (wholeTicks(scene.duration, scene.options.h) < 1)
+    duration.reject(fmt::format("isn't a whole number of ticks of {} s.", scene.options.h));
+}
+
+}  // namespace
+
+Scene sceneOf(const JsonValue& json, const std::string& name) {
+  json.allowOnly(keys::kScene);
+  checkVersion(json);
+  Scene scene;
+  scene.file = name;
+  if (const JsonValue* v = json.find("description")) scene.description = v->text();
+  if (const JsonValue* v = json.find("gravity")) scene.options.gravity_W = v->vector(ranges::kGravity);
+  readTimes(json, scene);
+  if (const JsonValue* v = json.find("solver")) readSolver(*v, scene.options);
+  SceneNames names;
+  for (const JsonValue& body : listOf(json.at("bodies", "What is in the world."), kMostBodies)) {
+    readBody(body, names, scene);
+    scene.body_lines.push_back(body.line());
+  }
+  if (const JsonValue* v = json.find("pairs")) {
+    for (const JsonValue& pair : listOf(*v, kMostPairs)) {
+      scene.pairs.push_back(readPair(pair, names, scene));
+      scene.pair_lines.push_back(pair.line());
+    }
+  }
+  if (const JsonValue* v = json.find("joints")) {
+    for (const JsonValue& joint : listOf(*v, kMostJoints)) {
+      scene.joints.push_back(readJoint(joint, names, scene));
+      scene.joint_lines.push_back(joint.line());
+    }
+  }
+  if (const JsonValue* v = json.find("fingers")) {
+    for (const JsonValue& finger : listOf(*v, kMostFingers)) scene.fingers.push_back(readFinger(finger, names, scene));
+  }
+  if (scene.bodies.empty() && scene.fingers.empty()) json.at("bodies").reject("is empty, and there is no finger: nothing could happen.");
+  if (const JsonValue* v = json.find("record")) scene.record = readRecording(*v, scene);
+  if (const JsonValue* v = json.find("expect")) {
+    for (const JsonValue& expectation : listOf(*v, kMostQuantities)) scene.expectations.push_back(readExpectation(expectation, scene));
+  }
+  return scene;
+}
+
+std::int64_t Scene::ticks() const { return wholeTicks(duration, options.h); }
+
+Scene readScene(const std::string& path) { return sceneOf(readJson(path, kSceneFile), path); }
+
+Scene parseScene(std::string_view json, const std::string& name) { return sceneOf(parseJson(json, name), name); }
+
+namespace {
+
+void addPair(const ScenePair& pair, engine::WorldBuilder& builder) {
+  if (pair.touch) {
+    builder.setPairMaterial(pair.a, pair.b, pair.material);
+  } else {
+    builder.excludePair(pair.a, pair.b);
+  }
+}
+
+// Runs `build`, which makes part `index` of the world; what is said against it gets the scene's name and the part's line.
+template <class Build>
+auto atLine(const Scene& scene, const std::vector<int>& lines, std::size_t index, const Build& build) {
+  try {
+    return build();
+  } catch (const InputError& error) {
+    const std::string line = index < lines.size() ? fmt::format(":{}", lines[index]) : "";
+    throw InputError(fmt::format("{}{}: {}", scene.file, line, error.what()));
+  }
+}
+
+}  // namespace
+
+grasp::GraspModel buildWorld(const Scene& scene) {
+  engine::WorldBuilder builder = atLine(scene, {}, 0, [&] { return engine::WorldBuilder(scene.options); });
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) atLine(scene, scene.body_lines, i, [&] { builder.addBody(scene.bodies[i]); });
+  for (std::size_t i = 0; i < scene.joints.size(); ++i) atLine(scene, scene.joint_lines, i, [&] { builder.addJoint(scene.joints[i]); });
+  for (std::size_t i = 0; i < scene.pairs.size(); ++i) atLine(scene, scene.pair_lines, i, [&] { addPair(scene.pairs[i], builder); });
+  std::vector<grasp::FingerModel> fingers;
+  for (const SceneFinger& finger : scene.fingers) fingers.push_back(finger.model);
+  // What joints make of bodies together is found out last.
+  return atLine(scene, scene.joint_lines, 0, [&] { return grasp::buildGrasp(std::move(builder), std::move(fingers)); });
+}
+
+std::vector<grasp::FingerMethod> methodsOf(const Scene& scene) {
+  std::vector<grasp::FingerMethod> methods;
+  for (const SceneFinger& finger : scene.fingers) methods.push_back(finger.method);
+  return methods;
+}
+
+grasp::GraspState startState(const Scene& scene, const grasp::GraspModel& model) {
+  std::vector<Vec3> fingers;
+  for (const SceneFinger& finger : scene.fingers) fingers.push_back(finger.trajectory.start());
+  return grasp::makeState(model, scene.starts, fingers);
+}
+
+void fingerInputs(const Scene& scene, double time, std::span<grasp::FingerInput> inputs) {
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    const SceneFinger& finger = scene.fingers[i];
+    const TimedPoint device = finger.trajectory.at(time);
+    inputs[i].p_WF = device.p_W;
+    inputs[i].v_WF = device.v_W;
+    inputs[i].q_WF = quatFromRotationVector(finger.turn.at(time).p_W);
+    inputs[i].f_W = finger.f_W;
+  }
+}
+
+std::int64_t wholeTicks(double seconds, double tick) {
+  const double ticks = seconds / tick;
+  const double whole = std::round(ticks);
+  return std::abs(ticks - whole) <= 1e-6 ? static_cast<std::int64_t>(whole) : -1;
+}
+
+std::string besideScene(const std::string& file, const std::string& name) {
+  return (std::filesystem::path(file).parent_path() / name).string();
+}
+
+}  // namespace pincer::tasks

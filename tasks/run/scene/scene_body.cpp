@@ -1,0 +1,134 @@
+#include <fmt/format.h>
+
+#include "pincer/contact/smooth_mesh.h"
+#include "pincer/engine/motion/mass.h"
+#include "pincer/tasks/run/scene/scene_keys.h"
+#include "pincer/tasks/run/scene/scene_parts.h"
+
+namespace pincer::tasks {
+namespace {
+
+engine::Material readMaterial(const JsonValue& json) {
+  json.allowOnly(keys::kMaterial);
+  engine::Material material;
+  if (const JsonValue* v = json.find("mu_s")) material.mu_s = v->number(ranges::kFriction);
+  material.mu_d = material.mu_s;
+  if (const JsonValue* v = json.find("mu_d")) {
+    material.mu_d = v->number({.min = 0, .max = material.mu_s, .remedy = "Dynamic friction isn't larger than static friction (mu_s)."});
+  }
+  if (const JsonValue* v = json.find("restitution")) material.restitution = v->number(ranges::kRestitution);
+  if (const JsonValue* v = json.find("torsion_radius")) material.torsion_radius = v->number(ranges::kTorsionRadius);
+  if (const JsonValue* v = json.find("rolling_radius")) material.rolling_radius = v->number(ranges::kRollingRadius);
+  if (const JsonValue* v = json.find("stribeck_speed")) {
+    material.stribeck_speed = v->number(ranges::kStribeckSpeed);
+  }
+  return material;
+}
+
+bool isSupport(const contact::Shape& shape) {
+  return std::holds_alternative<contact::HalfSpace>(shape) || std::holds_alternative<contact::Dish>(shape);
+}
+
+bool readDynamic(const JsonValue& json, const contact::Shape& shape) {
+  const JsonValue* fixed = json.find("static");
+  if (const JsonValue* v = json.find("trajectory")) {
+    if (isSupport(shape)) v->reject("doesn't go with this shape: half-spaces and dishes never move. Use a box.");
+    if (fixed) fixed->reject("doesn't go with a trajectory: one of the two says how the body moves. Remove one.");
+    return false;
+  }
+  if (!isSupport(shape)) return !(fixed && fixed->boolean());
+  if (fixed && !fixed->boolean()) fixed->reject("doesn't go with this shape: half-spaces and dishes never move. Remove the key.");
+  return false;
+}
+
+void refuse(const JsonValue& json, std::string_view key, std::string_view because) {
+  if (const JsonValue* value = json.find(key)) value->reject(because);
+}
+
+double readMass(const JsonValue& json, const engine::BodySpec& spec) {
+  const JsonValue* mass = json.find("mass");
+  const JsonValue* density = json.find("density");
+  if (!spec.dynamic) {
+    const bool driven = json.find("trajectory") != nullptr;
+    const std::string_view because = driven ? "doesn't go with a trajectory, which the body follows whatever touches it. Remove the key."
+                                            : "doesn't go with a body that never moves. Remove the key.";
+    refuse(json, "mass", because);
+    refuse(json, "density", because);
+    return 0;
+  }
+  if (mass && density) density->reject("says again what \"mass\" says. Keep one of the two.");
+  if (mass) return mass->number(ranges::kMass);
+  if (!density) json.reject("lacks the key \"mass\" [kg] (or \"density\" [kg/m^3], or \"static\": true).");
+  const double rho = density->number(ranges::kDensity);
+  const double weighed = [&] {
+    try {
+      return rho * engine::volumeOf(spec.shape);
+    } catch (const InputError& error) {
+      density->reject(fmt::format("can't be used: {}", error.what()));
+    }
+  }();
+  if (!isWithin(weighed, ranges::kMass))
+    density->reject(fmt::format("makes a mass of {:g} kg, which {}", weighed, outOfRange(ranges::kMass)));
+  return weighed;
+}
+
+Vec3 readVector(const JsonValue& json, std::string_view key, const NumberRule& rule) {
+  const JsonValue* value = json.find(key);
+  return value ? value->vector(rule) : Vec3::Zero();
+}
+
+engine::BodyStart readStart(const JsonValue& json, const engine::BodySpec& spec) {
+  engine::BodyStart start;
+  if (std::holds_alternative<contact::HalfSpace>(spec.shape)) {
+    for (const std::string_view key : {"position", "rotation"})
+      refuse(json, key, "doesn't go with a half-space: its shape has \"point\" and \"normal\".");
+    start.X_WB = readHalfSpacePose(json.at("shape"));
+  } else {
+    start.X_WB.p = readVector(json, "position", ranges::kCoordinate);
+    start.X_WB.q = quatFromRotationVector(readVector(json, "rotation", ranges::kRotation));
+  }
+  if (!spec.dynamic) {
+    for (const std::string_view key : {"velocity", "angular_velocity"})
+      refuse(json, key, "doesn't go with a body that never moves. Remove the key.");
+  }
+  start.v_W = readVector(json, "velocity", ranges::kVelocity);
+  start.w_W = readVector(json, "angular_velocity", ranges::kSpin);
+  return start;
+}
+
+}  // namespace
+
+void readBody(const JsonValue& json, SceneNames& names, Scene& scene) {
+  json.allowOnly(keys::kBody);
+  engine::BodySpec spec;
+  spec.name = names.readNext(json, fmt::format("body{}", scene.bodies.size()));
+  spec.shape = readShape(json.at("shape", "For example {\"type\": \"sphere\", \"radius\": 0.02}."), scene.file);
+  spec.dynamic = readDynamic(json, spec.shape);
+  spec.mass = readMass(json, spec);
+  if (const JsonValue* material = json.find("material")) spec.material = readMaterial(*material);
+  engine::BodyStart start = readStart(json, spec);
+  if (const JsonValue* trajectory = json.find("trajectory")) {
+    spec.driven = true;
+    scene.motions.push_back(readBodyTrajectory(*trajectory, start, readVector(json, "rotation", ranges::kRotation)));
+  }
+  scene.starts.push_back(start);
+  scene.bodies.push_back(std::move(spec));
+}
+
+ScenePair readPair(const JsonValue& json, const SceneNames& names, const Scene& scene) {
+  json.allowOnly(keys::kPair);
+  const JsonValue& two = json.at("bodies", "The names of two bodies.");
+  if (two.array().size() != 2) two.reject("needs two names of bodies.");
+  ScenePair pair;
+  pair.a = names.bodyNamed(two.array()[0], scene);
+  pair.b = names.bodyNamed(two.array()[1], scene);
+  if (pair.a == pair.b) two.reject("names one body twice. A body doesn't touch itself.");
+  if (const JsonValue* v = json.find("touch")) pair.touch = v->boolean();
+  const JsonValue* material = json.find("material");
+  if (!pair.touch && material) material->reject("doesn't go with two that never touch. Remove the key.");
+  if (pair.touch && !material) json.reject("lacks the key \"material\", what the two are to each other (or \"touch\": false).");
+  if (material) pair.material = readMaterial(*material);
+  return pair;
+}
+
+}  // namespace pincer::tasks

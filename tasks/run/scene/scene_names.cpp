@@ -1,0 +1,37 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "pincer/tasks/run/files/file_limits.h"
+#include "pincer/tasks/run/scene/scene_parts.h"
+
+namespace pincer::tasks {
+namespace {
+
+bool isNameLetter(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-'; }
+
+}  // namespace
+
+std::string SceneNames::readNext(const JsonValue& json, const std::string& otherwise) {
+  const JsonValue* value = json.find("name");
+  const std::string name = value ? value->text() : otherwise;
+  const JsonValue& place = value ? *value : json;
+  if (name.empty() || !std::all_of(name.begin(), name.end(), isNameLetter)) place.reject("isn't a name: letters, digits, - and _ only.");
+  if (name.size() > kLongestName)
+    place.reject(fmt::format("is too long for a name: it has {} letters, at most {} go.", name.size(), kLongestName));
+  if (!index_.emplace(name, static_cast<int>(index_.size())).second) {
+    place.reject(fmt::format("can't be called \"{}\": another body or finger is. Names tell them apart in quantities.", name));
+  }
+  return name;
+}
+
+int SceneNames::bodyNamed(const JsonValue& json, const Scene& scene) const {
+  const auto found = index_.find(json.text());
+  if (found != index_.end() && found->second < static_cast<int>(scene.bodies.size())) return found->second;
+  std::vector<std::string_view> bodies;
+  for (const engine::BodySpec& body : scene.bodies) bodies.push_back(body.name);
+  return static_cast<int>(json.oneOf(bodies));
+}
+
+}  // namespace pincer::tasks

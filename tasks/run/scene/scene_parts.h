@@ -1,0 +1,51 @@
+// scene_parts: the parts of a scene file, each read by a page of its own. Used by scene.cpp alone.
+#pragma once
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "pincer/tasks/run/files/strict_json.h"
+#include "pincer/tasks/run/scene.h"
+#include "pincer/tasks/run/scene/scene_ranges.h"
+
+namespace pincer::tasks {
+
+// `file` is the scene's own name: files that it names are relative to its folder.
+std::string besideScene(const std::string& file, const std::string& name);
+
+// The bodies and fingers of a scene by their names, while it is read.
+class SceneNames {
+ public:
+  // The name under "name", or `otherwise`, now that of the next body or finger. It must be new in the scene, for quantities go by it.
+  std::string readNext(const JsonValue& json, const std::string& otherwise);
+  // The index of the body that `json` names; throws with a did-you-mean.
+  int bodyNamed(const JsonValue& json, const Scene& scene) const;
+
+ private:
+  std::unordered_map<std::string, int> index_;  // bodies come before fingers
+};
+
+// Adds one body and its start to `scene`.
+void readBody(const JsonValue& json, SceneNames& names, Scene& scene);
+contact::Shape readShape(const JsonValue& json, const std::string& file);
+// Pose of a half-space in W, from its normal and a point on it.
+Pose readHalfSpacePose(const JsonValue& shape);
+
+// Sets where the body starts; `start_rotation` is its rotation vector there, if the keyframes say nothing.
+SceneMotion readBodyTrajectory(const JsonValue& json, engine::BodyStart& start, const Vec3& start_rotation);
+// Refuses at `time` a last point that doesn't come later than the one before, or that would be reached faster than `fastest` per second.
+void requireOnward(const std::vector<TimedPoint>& points, double fastest, const JsonValue& time);
+engine::JointModel readJoint(const JsonValue& json, const SceneNames& names, const Scene& scene);
+ScenePair readPair(const JsonValue& json, const SceneNames& names, const Scene& scene);
+
+// Corners given as "points" or in a "file".
+std::vector<Vec3> readPoints(const JsonValue& json, const std::string& file);
+contact::FingerShape readFingerShape(const JsonValue& json, const std::string& file);
+
+SceneFinger readFinger(const JsonValue& json, SceneNames& names, const Scene& scene);
+
+// Both after bodies, fingers, tick and duration are known.
+Recording readRecording(const JsonValue& json, const Scene& scene);
+Expectation readExpectation(const JsonValue& json, const Scene& scene);
+
+}  // namespace pincer::tasks

@@ -1,0 +1,119 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+
+#include "pincer/tasks/run/files/file_limits.h"
+#include "pincer/tasks/run/files/spelling.h"
+#include "pincer/tasks/run/scene/scene_keys.h"
+#include "pincer/tasks/run/scene/scene_parts.h"
+
+namespace pincer::tasks {
+namespace {
+
+const QuantityKind* findKind(std::span<const QuantityKind> kinds, std::string_view name) {
+  const auto it = std::find_if(kinds.begin(), kinds.end(), [&](const QuantityKind& kind) { return kind.name == name; });
+  return it == kinds.end() ? nullptr : &*it;
+}
+
+std::vector<std::string_view> namesOf(std::span<const QuantityKind> kinds) {
+  std::vector<std::string_view> names;
+  for (const QuantityKind& kind : kinds) names.push_back(kind.name);
+  return names;
+}
+
+std::vector<std::string_view> ownersOf(const Scene& scene) {
+  std::vector<std::string_view> names;
+  for (const engine::BodySpec& body : scene.bodies) names.push_back(body.name);
+  for (const SceneFinger& finger : scene.fingers) names.push_back(finger.model.name);
+  return names;
+}
+
+// `reject` throws, with where the text stands before what it is told.
+using Reject = std::function<void(const std::string&)>;
+
+Quantity find(const std::string& text, std::span<const QuantityKind> kinds, std::string_view word, std::size_t index,
+              const Reject& reject) {
+  const QuantityKind* kind = findKind(kinds, word);
+  if (!kind) reject(fmt::format("isn't known.{}", suggestion(word, namesOf(kinds))));
+  return {text, kind, index};
+}
+
+Quantity findQuantity(const std::string& text, const Scene& scene, const Reject& reject) {
+  const std::size_t dot = text.find('.');
+  if (dot == std::string::npos) return find(text, worldQuantities(), text, 0, reject);
+  const std::string_view owner = std::string_view(text).substr(0, dot);
+  const std::string_view word = std::string_view(text).substr(dot + 1);
+  const std::vector<std::string_view> owners = ownersOf(scene);
+  const auto it = std::find(owners.begin(), owners.end(), owner);
+  if (it == owners.end()) reject(fmt::format("names no body or finger of this scene.{}", suggestion(owner, owners)));
+  const std::size_t place = static_cast<std::size_t>(it - owners.begin());
+  const std::size_t bodies = scene.bodies.size();
+  return place < bodies ? find(text, bodyQuantities(), word, place, reject) : find(text, fingerQuantities(), word, place - bodies, reject);
+}
+
+Quantity readQuantity(const JsonValue& json, const Scene& scene) {
+  return findQuantity(json.text(), scene, [&](const std::string& problem) { json.reject(problem); });
+}
+
+std::int64_t readTicks(const JsonValue& json, const Scene& scene, const NumberRule& rule) {
+  const std::int64_t ticks = wholeTicks(json.number(rule), scene.options.h);
+  if (ticks < 0) json.reject(fmt::format("isn't a whole number of ticks of {} s.", scene.options.h));
+  return ticks;
+}
+
+void readWhen(const JsonValue& json, const Scene& scene, Expectation& expectation) {
+  const JsonValue& time = json.at("time", "In seconds, or \"end\" or \"always\".");
+  if (time.kind() == JsonValue::Kind::kString) {
+    constexpr std::array<std::string_view, 2> words = {"always", "end"};
+    expectation.tick = time.oneOf(words) == 0 ? Expectation::kAlways : scene.ticks();
+  } else {
+    expectation.tick = readTicks(time, scene, {.min = 0, .max = scene.duration, .remedy = "Within the scene's duration."});
+  }
+  expectation.time = static_cast<double>(std::max<std::int64_t>(expectation.tick, 0)) * scene.options.h;
+}
+
+void readTolerance(const JsonValue& json, Expectation& expectation) {
+  const JsonValue* tolerance = json.find("tolerance");
+  if (tolerance) {
+    expectation.tolerance = tolerance->number(ranges::kExpectedTolerance);
+  } else if (expectation.relation == Relation::kEqual) {
+    json.reject("lacks the key \"tolerance\": how far the measured value may lie from \"value\", in its unit.");
+  }
+}
+
+}  // namespace
+
+Quantity quantityOf(const std::string& name, const Scene& scene) {
+  return findQuantity(name, scene, [&](const std::string& problem) { throw InputError(fmt::format("quantity \"{}\" {}", name, problem)); });
+}
+
+Recording readRecording(const JsonValue& json, const Scene& scene) {
+  json.allowOnly(keys::kRecord);
+  Recording record;
+  if (const JsonValue* interval = json.find("interval")) {
+    record.every = readTicks(*interval, scene, {.min = scene.options.h, .max = scene.duration, .remedy = "At least one tick."});
+  }
+  const JsonValue& quantities = json.at("quantities", "What to record: [\"object.p_z\", \"energy\"].");
+  if (quantities.array().size() > kMostQuantities)
+    quantities.reject(
+        fmt::format("has {} elements; a scene records at most {}. Leave some out.", quantities.array().size(), kMostQuantities));
+  for (const JsonValue& quantity : quantities.array()) {
+    record.quantities.push_back(readQuantity(quantity, scene));
+  }
+  return record;
+}
+
+Expectation readExpectation(const JsonValue& json, const Scene& scene) {
+  json.allowOnly(keys::kExpectation);
+  Expectation expectation;
+  expectation.quantity = readQuantity(json.at("quantity", "What is measured: \"object.p_z\"."), scene);
+  if (const JsonValue* relation = json.find("relation")) expectation.relation = static_cast<Relation>(relation->oneOf(kRelationNames));
+  readWhen(json, scene, expectation);
+  expectation.value = json.at("value", "What it is compared with, in the quantity's unit.").number(ranges::kExpected);
+  readTolerance(json, expectation);
+  if (const JsonValue* because = json.find("because")) expectation.because = because->text();
+  return expectation;
+}
+
+}  // namespace pincer::tasks

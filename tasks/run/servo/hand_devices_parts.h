@@ -1,0 +1,24 @@
+// hand_devices_parts: what openHandDevices() chooses from, one source file each.
+#pragma once
+#include <functional>
+#include <memory>
+
+#include "pincer/devices/usb/usb_host.h"
+#include "pincer/tasks/run/servo/hand_devices.h"
+
+namespace pincer::tasks {
+
+// The USB thread, started. Throws DeviceError where libusb can't.
+std::unique_ptr<devices::usb::UsbHost> startUsb();
+
+// Until `done`, but for `timeout` at the most [s]; whether it came true.
+bool waitUntil(const std::function<bool()>& done, double timeout);
+// The calibration values that the device itself keeps; none if it answers nothing for a second. Throws DeviceError where only a part of
+// them comes, or one is out of range.
+DeviceCalibration keptCalibration(devices::usb::DeviceLink& device);
+
+std::unique_ptr<HandDevices> openUsbHand(const DeviceOptions& options);
+std::unique_ptr<HandDevices> openFalconHand(const DeviceOptions& options);
+std::unique_ptr<HandDevices> openReplayHand(const DeviceOptions& options);
+
+}  // namespace pincer::tasks

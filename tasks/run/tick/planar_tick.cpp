@@ -1,0 +1,63 @@
+#include "pincer/tasks/run/tick/planar_tick.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "pincer/contact/functions/invariants.h"
+
+namespace pincer::tasks {
+namespace {
+
+// A sample that can't be used leaves the finger where it was; the gate trips on it.
+void locatePlanarFinger(const PlanarTickModel& model, PlanarTickState& state, const devices::ArmSample& sample) {
+  if (!sample.valid || !devices::isFinite(sample)) return;
+  const Vec3 p_WF = model.X_WD * sample.p_DF;
+  const double dt = sample.time - state.sample_time;
+  if (state.seen && dt > 0) {
+    const double share = -math::expm1(-2 * std::numbers::pi * model.velocity_cutoff * dt);
+    state.v_WF += share * ((p_WF - state.p_WF) / dt - state.v_WF);
+  }
+  state.p_WF = p_WF;
+  state.sample_time = sample.time;
+  state.seen = true;
+}
+
+devices::TactileCommand tactorPlace(const PlanarTickModel& model, const PlanarStimulus& stimulus, PlanarTickState& state,
+                                    const Vec2& p_BC) {
+  if (!stimulus.tactile) return {true, Vec2::Zero()};
+  const double angle = stimulus.tactile->queryCircle(p_BC, model.finger_radius, state.tactile_tracker).finger_angle;
+  return {false, {std::clamp(model.finger_radius * angle, -stimulus.largest_place, stimulus.largest_place), 0}};
+}
+
+Vec3 gatedPlanarForce(const PlanarTickModel& model, PlanarTickState& state, const devices::ArmSample& sample, const PlanarTickOutput& out,
+                      double now, double dt) {
+  devices::GateInput in;
+  in.f_D = model.X_WD.q.conjugate() * out.f_W;
+  in.sample = sample;
+  in.v_DF = model.X_WD.q.conjugate() * state.v_WF;
+  in.now = now;
+  in.dt = dt;
+  in.physics_ok = out.ok;
+  return devices::gateForce(model.gate, in, state.gate);
+}
+
+}  // namespace
+
+PlanarTickOutput planarTick(const PlanarTickModel& model, const PlanarStimulus& stimulus, PlanarTickState& state,
+                            const devices::ArmSample& sample, double now, double dt) {
+  PINCER_DEMAND(stimulus.force, "planarTick: the stimulus has a curve to feel");
+  PINCER_DEMAND(dt > 0, "planarTick: the tick's length is positive");
+  locatePlanarFinger(model, state, sample);
+  const Vec2 p_BC(state.p_WF.x(), state.p_WF.z());
+  PlanarTickOutput out;
+  out.contact = stimulus.force->queryCircle(p_BC, model.finger_radius, state.force_tracker);
+  out.normal_force = model.stiffness * std::max(0.0, -out.contact.phi);
+  out.f_W = out.normal_force * Vec3(out.contact.n_B.x(), 0, out.contact.n_B.y());
+  out.ok = out.f_W.allFinite();
+  out.tactile = tactorPlace(model, stimulus, state, p_BC);
+  out.f_D = gatedPlanarForce(model, state, sample, out, now, dt);
+  return out;
+}
+
+}  // namespace pincer::tasks

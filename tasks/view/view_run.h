@@ -1,0 +1,50 @@
+// view_run: a servo on a thread of its own, a viewer on this one.
+#pragma once
+#include <optional>
+#include <string>
+
+#include "pincer/devices/window/mouse_hand.h"
+#include "pincer/tasks/run/servo/paced_cycle.h"
+#include "pincer/tasks/run/tick/snapshot.h"
+
+namespace CLI {
+class App;
+}
+namespace pincer::devices {
+class Surface;
+}
+
+namespace pincer::tasks {
+
+// What commands that show something share.
+struct ViewOptions {
+  bool view = false;            // a window
+  bool keys = true;             // do something in it
+  bool blind = false;           // what a person must not see isn't shown
+  std::string screenshot = {};  // file for a picture of the end; empty: none
+  std::string title = {};
+};
+
+void addViewOptions(CLI::App& command, ViewOptions& options);
+
+// A cycle whose ticks somebody watches.
+struct WatchedCycle {
+  ServoCycle& cycle;
+  const grasp::GraspModel& model;
+  const Snapshot& start;
+  SnapshotChannel& channel;  // that the cycle publishes to
+  devices::MouseHand* hand = nullptr;
+  bool linger = false;  // over, it is still to be looked at
+};
+
+// Runs the cycle in real time until it is over or the person closes the window (then the report says that it was interrupted), or
+// `interrupted`; throws what the cycle throws.
+ServoReport runWatched(const WatchedCycle& watched, const ServoOptions& servo, const ViewOptions& options,
+                       const std::atomic<bool>& interrupted, devices::Surface& surface);
+
+// In a window of its own, until the person closes it, or `interrupted`. Throws devices::DisplayError before anything runs
+// where there is no display, and what the cycle throws.
+ServoReport runWatched(const WatchedCycle& watched, const ServoOptions& servo, const ViewOptions& options,
+                       const std::atomic<bool>& interrupted);
+
+}  // namespace pincer::tasks

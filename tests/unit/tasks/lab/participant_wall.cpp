@@ -1,0 +1,195 @@
+// What a participant is given, and that its answers come from nothing else. That its files include nothing but devices/ is the house's test
+// (tests/house): here the participants are fed by hand, with no world at all.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "pincer/tasks/lab/participants/known_solids.h"
+#include "pincer/tasks/lab/participants/place_observer.h"
+#include "pincer/tasks/lab/participants/shape_explorer.h"
+#include "pincer/tasks/lab/participants/stroke_observer.h"
+
+namespace pincer::tasks {
+namespace {
+
+// A tactor that follows the finger's pull `lag` milliseconds late, on a fingertip of 20 mm, and the push that the participant wants.
+class LateTactor {
+ public:
+  explicit LateTactor(int lag) : past_(static_cast<std::size_t>(lag) + 1, 0.0) {}
+  FingerPercept percept(const Vec3& p_D) {
+    past_.push_back(-0.02 * p_D.x() / 0.12);
+    FingerPercept percept;
+    percept.arm.valid = percept.tactile.valid = true;
+    percept.arm.p_DF = p_D;
+    percept.f_D = Vec3(0, 0, StrokeLimits{}.press);
+    percept.tactile.place_L = Vec2(past_[past_.size() - past_lag_], 0);
+    return percept;
+  }
+  void setLag(int lag) { past_lag_ = static_cast<std::size_t>(lag) + 1; }
+
+ private:
+  std::vector<double> past_;
+  std::size_t past_lag_ = 1;
+};
+
+// The answer when the tactor is `first` ms late in the first interval and `second` in the other.
+int laterOf(StrokeObserver& observer, std::uint64_t seed, int first, int second) {
+  StrokeCues cues;
+  cues.seed = seed;
+  cues.strokes = 2;
+  cues.question = StrokeQuestion::kLater;
+  observer.begin(cues);
+  LateTactor tactor(200);
+  Vec3 p_D = Vec3::Zero();
+  int intervals = 0;
+  Cue cue = Cue::kStart;
+  for (int tick = 0; tick < 60'000; ++tick) {
+    tactor.setLag(intervals == 0 ? first : second);
+    const OneFingerAction action = observer.act(tactor.percept(p_D), 1e-3 * tick, cue);
+    p_D = action.pull.p_D;
+    cue = Cue::kNone;
+    if (action.interval_over && ++intervals == 1) cue = Cue::kStart;
+    if (action.answered) return observer.answer();
+  }
+  return 0;
+}
+
+double shareRight(const StrokeLimits& limits, int added, int trials) {
+  int right = 0;
+  for (int k = 0; k < trials; ++k) {
+    StrokeObserver observer(7, limits);
+    const bool second = k % 2;
+    right += laterOf(observer, static_cast<std::uint64_t>(k), second ? 0 : added, second ? added : 0) == (second ? 2 : 1);
+  }
+  return static_cast<double>(right) / trials;
+}
+
+StrokeLimits withoutSpread() {
+  StrokeLimits limits;
+  limits.sensitivity_spread = 0;
+  return limits;
+}
+
+// d' follows from the limits alone: a pure delay D shifts the mean lag by D, so P(right) = Phi(D / (sqrt(2) sigma)).
+TEST(ParticipantWall, DelayIsFeltAsWellAsTheLimitsSay) {
+  StrokeLimits limits = withoutSpread();
+  limits.lag_difference = 0;
+  const int trials = 200, delay = 80;
+  const double expected = 0.5 * std::erfc(-0.080 / (2 * limits.lag_sigma));
+  EXPECT_NEAR(shareRight(limits, delay, trials), expected, 3 * std::sqrt(expected * (1 - expected) / trials));  // 3 SD of a binomial
+}
+
+TEST(ParticipantWall, NothingIsLeftWhenTheNoiseDrownsIt) {
+  StrokeLimits limits = withoutSpread();
+  limits.lag_sigma = 1e9;
+  EXPECT_NEAR(shareRight(limits, 200, 100), 0.5, 0.15);  // 3 SD of a fair coin thrown 100 times
+}
+
+TEST(ParticipantWall, NamesThePlaceOfTheTactorAndNotOfTheHand) {
+  PlaceLimits limits;
+  limits.common.tactor_sd = 0;
+  for (const double shown : {-5e-3, 0.0, 3e-3}) {
+    PlaceObserver observer(3, limits);
+    PlaceCues cues;
+    cues.from = -0.2, cues.to = 0.1;  // the hand goes to the same place whatever is shown
+    observer.begin(cues);
+    FingerPercept percept;
+    percept.tactile.valid = true;
+    percept.tactile.place_L = Vec2(shown, 0);
+    for (int tick = 0; tick < 20'000 && !observer.act(percept, 1e-3 * tick, tick == 0 ? Cue::kStart : Cue::kNone).answered; ++tick) {
+    }
+    EXPECT_NEAR(observer.answer(), 0.9 * shown, 1e-12);  // the bias of body.h
+  }
+}
+
+// A sine of amplitude 1 in the middle of the band passes with the filters' own gain, and one far outside hardly at all.
+TEST(ParticipantSkin, BandsLetTheirOwnFrequenciesThrough) {
+  const auto rms = [](double frequency, double low, double high) {
+    BandPower band(low, high);
+    for (int k = 0; k < 4000; ++k) band.add({std::sin(2 * std::numbers::pi * frequency * 1e-3 * k), 0}, k > 2000);
+    return band.rms();
+  };
+  EXPECT_NEAR(rms(16, 5, 50), 1 / std::numbers::sqrt2, 0.12);   // first-order skirts cost up to 15 % in the middle
+  EXPECT_LT(rms(0.5, 5, 50), 0.1 / std::numbers::sqrt2 * 1.1);  // f / f1 = 0.1
+  EXPECT_LT(rms(400, 5, 50), 0.05);
+}
+
+// A push that stays bends the skin by f / k, whatever the mass.
+TEST(ParticipantSkin, SettlesAtForceOverStiffness) {
+  PushedSkin skin(SkinLimits{});
+  Vec2 u = Vec2::Zero();
+  for (int k = 0; k < 3000; ++k) u = skin.pushed({0.2, -1});
+  EXPECT_NEAR(u.x(), 0.2e-3, 1e-9);
+  EXPECT_NEAR(u.y(), -1e-3, 1e-9);
+}
+
+// Where the tactor touches the pad for a contact in this direction of the finger, as far as it goes.
+Vec2 placeShown(const Vec3& to_contact_F, const ShapeCues& cues) {
+  const Vec2 across(to_contact_F.x(), -to_contact_F.y());
+  const double place = cues.tip_radius * std::atan2(across.norm(), -to_contact_F.z());
+  return across.norm() > 0 ? Vec2(std::min(place, cues.tactor_reach) * across.normalized()) : Vec2::Zero();
+}
+
+// A finger that keeps to a solid, pushed off along its normal, as long as the explorer wants; what it says then.
+int answerAbout(const KnownSolid& solid, std::uint64_t seed, bool display) {
+  ShapeExplorer explorer(1);
+  ShapeCues cues;
+  cues.seed = seed;
+  explorer.begin(cues);
+  FingerPercept percept;
+  percept.arm.valid = true;
+  percept.arm.p_DF = Vec3(0.075, 0, 0);
+  constexpr double kTick = 0.01;
+  for (int tick = 0; tick < 20'000; ++tick) {
+    const ShapeAction action = explorer.act(percept, kTick * tick, tick == 0 ? Cue::kStart : Cue::kNone);
+    if (action.finger.answered) break;
+    const Vec3 aim = action.finger.pull.p_D, away = aim - solid.nearest(aim);
+    const double depth = cues.tip_radius - away.norm();
+    percept.arm.p_DF = depth > 0 ? Vec3(aim + depth * solid.outward(aim)) : aim;
+    percept.f_D = depth > 0 ? Vec3(400 * depth * solid.outward(aim)) : Vec3::Zero();
+    if (!display) continue;
+    percept.tactile.valid = true;
+    percept.tactile.place_L = placeShown(action.q_WF.conjugate() * -solid.outward(aim), cues);
+  }
+  return explorer.answer();
+}
+
+int rightAnswers(bool display) {
+  const auto solids = knownSolids();
+  int right = 0;
+  for (int k = 0; k < kSolids; ++k) {
+    for (std::uint64_t seed = 1; seed <= 40; ++seed) right += answerAbout(solids[static_cast<std::size_t>(k)], seed, display) == k;
+  }
+  return right;
+}
+
+// The hand's misplacement of 7 mm per axis is the same for all readings of a trial; taken for noise of each, it made the solids look alike: 58 %
+// right answers in the study, and here 185 of 280; then 242.
+TEST(ShapeExplorer, IsNotMisledByAMisplacementThatStays) { EXPECT_GE(rightAnswers(false), 225); }
+
+// Who feels more can't know less. With the display 231 of 280 were right and without it 242: places of a tactor at its stop (7.5 mm of a fingertip of
+// 8 mm: 54 degrees) were taken for directions, and the direction that a solid has where the finger was felt for known; now 253 and 252.
+TEST(ShapeExplorer, IsNotMisledByTheDisplay) {
+  constexpr int kByRoundOff = 4;  // so many answers may turn with another compiler's mathematical functions
+  EXPECT_GE(rightAnswers(true), rightAnswers(false) - kByRoundOff);
+}
+
+TEST(KnownSolids, DistancesAreThoseOfTheClosedForms) {
+  const auto solids = knownSolids();
+  const KnownSolid &cylinder = solids[1], &cube = solids[2], &sphere = solids[3], &tetrahedron = solids[4];
+  EXPECT_NEAR((Vec3(0.05, 0, 0) - sphere.nearest({0.05, 0, 0})).norm(), 0.01, 1e-12);
+  // 24 sides: between the inner radius and the corner's
+  const double off = (Vec3(0.05, 0.003, 0) - cylinder.nearest({0.05, 0.003, 0})).norm();
+  EXPECT_GT(off, 0.05009 - 0.04 - 1e-4);
+  EXPECT_LT(off, 0.05009 - 0.04 * std::cos(std::numbers::pi / 24) + 1e-4);
+  // Over a corner of the cube, which lies on +x: all three faces count.
+  const Vec3 corner(0.04, 0, 0.04 / std::numbers::sqrt2);
+  EXPECT_LT((cube.nearest(corner + Vec3(0.006, 0, 0.008)) - corner).norm(), 1e-4);  // projections to a fraction of a millimetre
+  EXPECT_LT((tetrahedron.nearest({0, 0, 0.06}) - Vec3(0, 0, 0.04)).norm(), 1e-3);
+  EXPECT_LT((cube.outward({0, 0, 0.04}) - Vec3::UnitZ()).norm(), 1e-9);
+}
+
+}  // namespace
+}  // namespace pincer::tasks
