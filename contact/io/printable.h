@@ -18,6 +18,9 @@ constexpr std::size_t kLongestMessage = 2000;
 // One value on one line, at most `most` characters long; of a longer text the beginning, "..." and how long it was.
 std::string printable(std::string_view text, std::size_t most = kLongestEcho);
 
+// A path as somebody may copy it: whole, as far as any file system goes.
+inline std::string printablePath(std::string_view path) { return printable(path, 4096); }
+
 // A whole message: its line breaks stay. Of one longer than kLongestMessage the beginning and the end, where the remedy stands.
 std::string printableMessage(std::string_view text);
 

@@ -54,6 +54,7 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", versionText());
   app.footer(kExamples);
   app.require_subcommand(1);
+  app.option_defaults()->disable_flag_override();  // --json=2 is a mistake; of --json=99999999999999999999 CLI11 makes an out_of_range
   int exit_code = kExitOk;
   for (const auto add : kCommands) add(app, exit_code);
   try {

@@ -105,18 +105,18 @@ extern "C" {
 ssize_t write(int file, const void* bytes, size_t n) {
   static const auto real = next<ssize_t (*)(int, const void*, size_t)>("write");
   if (isStandard(file) || !fails("write")) return real(file, bytes, n);
-  return plan().error == 0 ? real(file, bytes, n / 2) : -1;
+  return plan().error == 0 ? real(file, bytes, (n + 1) / 2) : -1;
 }
 ssize_t pwrite64(int file, const void* bytes, size_t n, off64_t at) {
   static const auto real = next<ssize_t (*)(int, const void*, size_t, off64_t)>("pwrite64");
   if (!fails("write")) return real(file, bytes, n, at);
-  return plan().error == 0 ? real(file, bytes, n / 2, at) : -1;
+  return plan().error == 0 ? real(file, bytes, (n + 1) / 2, at) : -1;
 }
 ssize_t pwrite(int file, const void* bytes, size_t n, off_t at) { return pwrite64(file, bytes, n, at); }
 size_t fwrite(const void* bytes, size_t size, size_t n, FILE* file) {
   static const auto real = next<size_t (*)(const void*, size_t, size_t, FILE*)>("fwrite");
   if (isStandard(file) || !fails("write")) return real(bytes, size, n, file);
-  return real(bytes, size, n / 2, file);
+  return real(bytes, size, (n + 1) / 2, file);
 }
 int fflush(FILE* file) {
   static const auto real = next<int (*)(FILE*)>("fflush");

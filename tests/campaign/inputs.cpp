@@ -143,8 +143,8 @@ void makeKilledSession(const Ground& ground) {
   throw std::runtime_error("no session could be killed before it was complete");
 }
 
-void makeSessions(const Ground& ground) {
-  make(ground, pickupArguments("pickup"));
+void makeSessions(Ground& ground) {
+  ground.session_time = make(ground, pickupArguments("pickup")).seconds;
   make(ground, {"export", "pickup/session.db", "--trial", "0", "--out", "recording"});
   make(ground, studyArguments("study"));
   makePeoplesSession(ground);
@@ -162,7 +162,7 @@ std::vector<fs::path> filesOf(const fs::path& folder, const std::string& extensi
 
 }  // namespace
 
-void makeInputs(const Ground& ground) {
+void makeInputs(Ground& ground) {
   fs::remove_all(ground.inputs());
   fs::create_directories(ground.inputs() / "studies");
   fs::copy(ground.source / "tasks/scenes", ground.inputs() / "scenes", fs::copy_options::recursive);

@@ -8,8 +8,8 @@
 
 namespace pincer::campaign {
 
-// Makes all of them under ground.inputs(). Throws std::runtime_error if the program can't.
-void makeInputs(const Ground& ground);
+// Makes all of them under ground.inputs(), and measures ground.session_time. Throws std::runtime_error if the program can't.
+void makeInputs(Ground& ground);
 
 std::vector<fs::path> sceneFiles(const Ground& ground);  // of the house, and one whose finger follows a table
 std::vector<fs::path> studyFiles(const Ground& ground);  // TASK.json

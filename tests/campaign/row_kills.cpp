@@ -9,22 +9,18 @@
 #include "pincer/tests/campaign/session_checks.h"
 
 namespace pincer::campaign {
-namespace {
-
-constexpr double kWholeSession = 1;  // [s] that it takes at most, on an idle machine
-
-}  // namespace
+namespace {}  // namespace
 
 void killSession(Case& c) {
   const fs::path session = c.folder / "out/session.db";
   Launch launch = c.pincer(pickupArguments("out"));
   // Every third one in the first 30 ms, where the session is being made.
-  launch.blow = Blow{SIGKILL, c.number % 3 == 0 ? c.random.uniform(0, 0.03) : c.random.uniform(0, kWholeSession)};
+  launch.blow = Blow{SIGKILL, c.number % 3 == 0 ? c.random.uniform(0, 0.03) : c.random.uniform(0, c.ground.session_time)};
   if (c.runUnjudged(launch).struck) c.hit();
   SessionState before = stateOf(session);
   if (before.readable && before.state == "running" && c.chance(0.5)) {
     Launch again = c.pincer(resumedPickup("out"));
-    again.blow = Blow{SIGKILL, c.random.uniform(0, kWholeSession / 2)};
+    again.blow = Blow{SIGKILL, c.random.uniform(0, c.ground.session_time / 2)};
     c.runUnjudged(again);
     const SessionState after = stateOf(session);
     compareTrials(c, before, after);
@@ -38,14 +34,14 @@ void runTwoPrograms(Case& c) {
   const bool both_resume = c.number % 2 == 1;
   if (both_resume) {
     Launch launch = c.pincer(pickupArguments("out"));
-    launch.blow = Blow{SIGKILL, 0.3};
+    launch.blow = Blow{SIGKILL, 0.4 * c.ground.session_time};
     c.runUnjudged(launch);
     if (stateOf(session).state != "running") return c.count(Verdict::kFine, 0);  // a quick machine: nothing is left to go on with
   }
   Launch first = c.pincer(both_resume ? resumedPickup("out") : pickupArguments("out"));
   first.log += "-first";
   RunningProgram other(first);
-  ::usleep(static_cast<useconds_t>(c.random.uniform(20'000, 150'000)));
+  ::usleep(static_cast<useconds_t>(c.random.uniform(0.05e6, 0.5e6) * c.ground.session_time));
   const Ended second = c.run(c.pincer(resumedPickup("out")), {.name = "out"});
   const Ended one = other.wait();
   c.judge(first, one, {.name = "out"});

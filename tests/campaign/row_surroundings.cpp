@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <cstdlib>
-#include <regex>
 #include <sstream>
 
 #include "pincer/tests/campaign/inputs.h"
@@ -63,13 +62,14 @@ void makeLocales(const fs::path& folder) {
   static_cast<void>(once);
 }
 
-// Without the times that a run took, which no two runs share: "median 0.14 us" becomes "median # us", "0,14 us" would not.
+// Without lines that tell what ticks took.
 std::string withoutTimes(const std::string& text) {
-  static const std::regex kNumber("[0-9]+(\\.[0-9]+)?");
-  std::string all;
+  std::string kept;
   std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line);) all += (line.ends_with(" us") ? std::regex_replace(line, kNumber, "#") : line) + "\n";
-  return all;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.find(" us") == line.npos && line.find("real time") == line.npos) kept += line + "\n";
+  }
+  return kept;
 }
 
 // All that was said and written.
@@ -149,8 +149,10 @@ void changeSurroundings(Case& c) {
     if (name == "LOCPATH") value = c.ground.inputs() / "locales";
     launch.environment.emplace_back(name, value);
   }
-  const Ended ended = c.run(launch, {.codes = {0}});
-  if (!c.faulty() && outputOf(ended, c.folder) != usual)
+  // A report needs a place for its plots: it says so, and does nothing.
+  const bool no_place = surroundings()[which % surroundings().size()][0].first == "TMPDIR" && programs(c.ground)[program][0] == "report";
+  const Ended ended = c.run(launch, {.name = no_place ? "TMPDIR" : "", .codes = {no_place ? 3 : 0}});
+  if (!c.faulty() && !no_place && outputOf(ended, c.folder) != usual)
     c.fault(Verdict::kWrong, "says or writes something else than in usual surroundings");
 }
 

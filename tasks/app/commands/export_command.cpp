@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "pincer/contact/io/printable.h"
 #include "pincer/tasks/app/app.h"
 #include "pincer/tasks/app/commands/commands.h"
 #include "pincer/tasks/app/interrupt.h"
@@ -31,12 +32,12 @@ int exportSession(const ExportArguments& arguments) {
   SessionReader session(arguments.session);
   session.heed(interruptFlag());
   if (!arguments.bids.empty()) {
-    for (const std::string& file : exportBids(session, arguments.bids)) print("{}\n", file);
+    for (const std::string& file : exportBids(session, arguments.bids)) print("{}\n", printablePath(file));
     return kExitOk;
   }
   const std::string beside = (std::filesystem::path(arguments.session).parent_path() / "csv").string();
   for (const std::string& file : exportCsv(session, arguments.directory.empty() ? beside : arguments.directory, arguments.filter)) {
-    print("{}\n", file);
+    print("{}\n", printablePath(file));
   }
   if (!session.warning().empty()) print(stderr, "pincer: {}\n", session.warning());
   return kExitOk;

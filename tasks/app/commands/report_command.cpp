@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "pincer/contact/io/printable.h"
 #include "pincer/tasks/app/app.h"
 #include "pincer/tasks/app/commands/commands.h"
 #include "pincer/tasks/app/interrupt.h"
@@ -28,7 +29,7 @@ struct ReportArguments {
 int reportStudy(const SessionReader& session, const std::string& html, bool as_json) {
   const StudySummary summary = summariseStudy(session, session.responses());
   print("{}\n", as_json ? studySummaryJson(summary) : formatStudyTable(summary));
-  print(as_json ? stderr : stdout, "Report: {}\n", writeStudyReport(session, html, {.interrupted = &interruptFlag()}).html);
+  print(as_json ? stderr : stdout, "Report: {}\n", printablePath(writeStudyReport(session, html, {.interrupted = &interruptFlag()}).html));
   return kExitOk;
 }
 
@@ -41,7 +42,7 @@ int report(const ReportArguments& arguments) {
   const SessionSummary summary = summariseSession(session);
   print("{}\n", arguments.json ? summaryJson(summary) : formatTable(summary));
   const ReportFiles files = writeReport(session, html, {.interrupted = &interruptFlag()});
-  print(arguments.json ? stderr : stdout, "Report: {}\n", files.html);
+  print(arguments.json ? stderr : stdout, "Report: {}\n", printablePath(files.html));
   return kExitOk;
 }
 

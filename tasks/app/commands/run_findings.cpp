@@ -5,6 +5,7 @@
 
 #include "pincer/contact/error.h"
 #include "pincer/contact/io/atomic_file.h"
+#include "pincer/contact/io/printable.h"
 #include "pincer/tasks/app/app.h"
 #include "pincer/tasks/app/commands/run_tasks.h"
 #include "pincer/tasks/app/interrupt.h"
@@ -68,17 +69,19 @@ int runFindingsCommand(const FindingsArguments& arguments) {
   const bool interrupted = interruptFlag();
   if (result.variants.empty() && studies.figures.empty()) {
     if (!interrupted) refuseUsage(fmt::format("findings: no variant's or study's name holds one of \"{}\".", arguments.options.only));
-    print(stderr, "pincer: interrupted before an experiment was whole. The same command with --out {} goes on.\n", directory);
+    print(stderr, "pincer: interrupted before an experiment was whole. The same command with --out {} goes on.\n",
+          printablePath(directory));
     return kExitInterrupted;
   }
   if (interrupted)
-    print(stderr, "pincer: interrupted; these are the experiments that were whole. The same command with --out {} goes on.\n", directory);
+    print(stderr, "pincer: interrupted; these are the experiments that were whole. The same command with --out {} goes on.\n",
+          printablePath(directory));
   if (!result.variants.empty()) print("{}", findingsText(result));
   if (!studies.figures.empty()) print("{}", publishedText(studies));
   if (arguments.run.report) {
     makeDirectory(directory);
     writeFindingsPage(result, studies, directory + "/report.html");
-    print("Report: {}/report.html\n", directory);
+    print("Report: {}/report.html\n", printablePath(directory));
   }
   return interrupted ? kExitInterrupted : kExitOk;
 }

@@ -7,6 +7,7 @@
 
 #include "pincer/contact/io/atomic_file.h"
 #include "pincer/contact/io/counted.h"
+#include "pincer/contact/io/printable.h"
 #include "pincer/tasks/app/app.h"
 #include "pincer/tasks/app/commands/run_tasks.h"
 #include "pincer/tasks/app/device_options.h"
@@ -106,17 +107,18 @@ int showStudy(const ManipulationArguments& arguments, const std::string& directo
   const ServoOptions& servo = arguments.run.servo;
   const bool by_the_clock = servo.clock != ServoClock::kVirtual || arguments.view.view || arguments.devices.devices != "sim";
   if (by_the_clock) say(servoText(result.servo, 1 / servo.rate));
-  say(fmt::format("Session: {}", session.path()));
+  say(fmt::format("Session: {}", printablePath(session.path())));
   if (!by_the_clock) say(throughputText(static_cast<double>(result.servo.ticks) / servo.rate));
   if (result.interrupted) {
     say(fmt::format("Interrupted after {}; what is done is safe. Go on: the same command with --resume --out {}",
-                    counted(result.trials, "trial"), directory));
+                    counted(result.trials, "trial"), printablePath(directory)));
     return kExitInterrupted;
   }
   if (arguments.run.report)
-    say(fmt::format("Report: {}", writeReport(session, directory + "/report.html", {.interrupted = &interruptFlag()}).html));
+    say(fmt::format("Report: {}", printablePath(writeReport(session, directory + "/report.html", {.interrupted = &interruptFlag()}).html)));
   const std::int64_t faults = faultsOfStudy(summary);
-  if (faults > 0) say(fmt::format("Trials that ended in a fault: {}; their events say why: pincer export {}", faults, session.path()));
+  if (faults > 0)
+    say(fmt::format("Trials that ended in a fault: {}; their events say why: pincer export {}", faults, printablePath(session.path())));
   return faults > 0 ? kExitCheckFailed : kExitOk;
 }
 
@@ -166,7 +168,7 @@ int runManipulation(const ManipulationArguments& arguments) {
   asUsage([&] { validate(options); });  // a study file was checked by itself
   if (!arguments.write_study.empty()) {
     writeAtomically(arguments.write_study, studyFile(options.study));
-    print("Study: {}\n", arguments.write_study);
+    print("Study: {}\n", printablePath(arguments.write_study));
     return kExitOk;
   }
   makePickupObject(options.study.pickup);  // bad options and objects are named before anything is written

@@ -8,6 +8,7 @@
 #include "pincer/contact/error.h"
 #include "pincer/contact/io/atomic_file.h"
 #include "pincer/contact/io/counted.h"
+#include "pincer/contact/io/printable.h"
 #include "pincer/tasks/app/app.h"
 #include "pincer/tasks/app/commands/run_tasks.h"
 #include "pincer/tasks/app/interrupt.h"
@@ -77,14 +78,15 @@ int showStudy(const StudyArguments& arguments, const std::string& directory, con
   if (arguments.run.servo.clock != ServoClock::kVirtual) say(servoText(outcome.servo, 1 / arguments.run.servo.rate));
   const double simulated = static_cast<double>(outcome.servo.ticks) / arguments.run.servo.rate;
   say(throughputText(simulated));
-  say(fmt::format("Session: {}", session.path()));
+  say(fmt::format("Session: {}", printablePath(session.path())));
   if (outcome.interrupted) {
     say(fmt::format("Interrupted after {}; what is done is safe. Go on: the same task with --resume --out {}",
-                    counted(outcome.trials, "trial"), directory));
+                    counted(outcome.trials, "trial"), printablePath(directory)));
     return kExitInterrupted;
   }
   if (arguments.run.report)
-    say(fmt::format("Report: {}", writeStudyReport(session, directory + "/report.html", {.interrupted = &interruptFlag()}).html));
+    say(fmt::format("Report: {}",
+                    printablePath(writeStudyReport(session, directory + "/report.html", {.interrupted = &interruptFlag()}).html)));
   std::int64_t unanswered = 0;
   for (const StudyCondition& c : summary.conditions) unanswered += c.unanswered;
   return unanswered > 0 ? kExitCheckFailed : kExitOk;

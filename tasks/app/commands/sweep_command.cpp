@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "pincer/contact/error.h"
+#include "pincer/contact/io/printable.h"
 #include "pincer/tasks/app/app.h"
 #include "pincer/tasks/app/commands/commands.h"
 #include "pincer/tasks/app/interrupt.h"
@@ -73,7 +74,7 @@ int sweep(const SweepArguments& arguments) {
   }
   print("{}", sweepText(table));
   if (!arguments.out.empty()) {
-    for (const std::string& path : writeSweep(table, arguments.out)) print("{}\n", path);
+    for (const std::string& path : writeSweep(table, arguments.out)) print("{}\n", printablePath(path));
   }
   if (table.interrupted) print(stderr, "pincer: interrupted; these are the runs that were whole.\n");
   return table.interrupted ? kExitInterrupted : kExitOk;

@@ -25,7 +25,10 @@ std::string read(const std::string& path) {
 }
 
 std::string makeTemporaryDirectory() {
-  std::string path = (std::filesystem::temp_directory_path() / "pincer-plot-XXXXXX").string();
+  std::error_code none;
+  std::string path = (std::filesystem::temp_directory_path(none) / "pincer-plot-XXXXXX").string();
+  if (none)
+    throw InputError("TMPDIR names no directory, and plots need one for a moment. Set TMPDIR to one that you may write, or unset it.");
   if (::mkdtemp(path.data())) return path;
   throw InputError(
       fmt::format("{}: can't make a temporary directory: {}. Set TMPDIR to one that you may write.", path, std::strerror(errno)));
@@ -114,7 +117,7 @@ void Gnuplot::fail(const Figure& figure, int status, const std::string& log) con
 
 int Gnuplot::run(const std::string& script_name) {
   try {
-    ChildProcess child({program_, "-d", script_name}, directory_, "log");  // -d: nobody's ~/.gnuplot
+    ChildProcess child({program_, "-d", script_name}, directory_, "log", "GNU");  // nobody's ~/.gnuplot, GNUTERM, GNUPLOT_LIB
     return child.wait([this] { return interrupted_ && *interrupted_; });
   } catch (const std::system_error& error) {
     throw InputError(

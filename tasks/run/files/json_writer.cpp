@@ -36,7 +36,7 @@ std::string quotedJson(std::string_view text) {
     if (c == '"' || c == '\\') {
       out += '\\';
       out += c;
-    } else if (static_cast<unsigned char>(c) < 0x20) {
+    } else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) {
       out += fmt::format("\\u{:04x}", static_cast<int>(c));
     } else {
       out += length > 0 ? text.substr(0, length) : kNoCharacter;

@@ -74,13 +74,22 @@ class SpawnAttributes {
   posix_spawnattr_t attributes_;
 };
 
-pid_t spawn(std::vector<std::string>& arguments, const SpawnActions& actions) {
+std::vector<char*> environmentWithout(std::string_view beginning) {
+  std::vector<char*> variables;
+  for (char** variable = environ; *variable != nullptr; ++variable) {
+    if (beginning.empty() || !std::string_view(*variable).starts_with(beginning)) variables.push_back(*variable);
+  }
+  variables.push_back(nullptr);
+  return variables;
+}
+
+pid_t spawn(std::vector<std::string>& arguments, const SpawnActions& actions, std::string_view kept_from_it = {}) {
   const SpawnAttributes attributes;
   std::vector<char*> argv;
   for (std::string& argument : arguments) argv.push_back(argument.data());
   argv.push_back(nullptr);
   pid_t child = 0;
-  must(posix_spawnp(&child, argv[0], actions.get(), attributes.get(), argv.data(), environ));
+  must(posix_spawnp(&child, argv[0], actions.get(), attributes.get(), argv.data(), environmentWithout(kept_from_it).data()));
   return child;
 }
 
@@ -102,8 +111,8 @@ class Pipe {
 
 }  // namespace
 
-ChildProcess::ChildProcess(std::vector<std::string> arguments, const std::string& directory, const char* log)
-    : child_(spawn(arguments, SpawnActions(directory, log))) {}
+ChildProcess::ChildProcess(std::vector<std::string> arguments, const std::string& directory, const char* log, std::string_view kept_from_it)
+    : child_(spawn(arguments, SpawnActions(directory, log), kept_from_it)) {}
 
 ChildProcess::ChildProcess(std::vector<std::string> arguments) {
   Pipe pipe;

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace pincer::tasks {
@@ -11,8 +12,8 @@ namespace pincer::tasks {
 class ChildProcess {
  public:
   // Starts arguments[0], looked up in PATH unless it holds a slash, in `directory`; it reads nothing and says everything into the file `log`
-  // there. Throws std::system_error where it can't be started.
-  ChildProcess(std::vector<std::string> arguments, const std::string& directory, const char* log);
+  // there. Of the environment it gets no variables whose names begin with `kept_from_it`. Throws std::system_error where it can't be started.
+  ChildProcess(std::vector<std::string> arguments, const std::string& directory, const char* log, std::string_view kept_from_it = {});
   // Likewise, here; what it says on standard output is read with readLine(), on standard error it says it where this program does.
   explicit ChildProcess(std::vector<std::string> arguments);
   ~ChildProcess();  // ends it: SIGTERM, and after a second SIGKILL
