@@ -116,5 +116,11 @@ TEST(RepresentativeTrial, HasTheMedianNumberOfSqueezes) {
   EXPECT_FALSE(representativeTrial(trials, "absent").has_value());
 }
 
+TEST(SummaryJson, HoldsNothingThatATerminalObeys) {
+  const std::string text = summaryJson(summaryOf({trialOf(0, "a\x7f\x1b[31m\xc2\x9b", 0.3, 2, 10)}));
+  for (const char c : text) EXPECT_TRUE(c == '\n' || (c >= ' ' && c < 0x7f)) << static_cast<int>(c);
+  EXPECT_NE(text.find("a\\u007f\\u001b[31m\\u009b"), std::string::npos) << text;
+}
+
 }  // namespace
 }  // namespace pincer::tasks
