@@ -14,7 +14,7 @@
 
 namespace pincer {
 
-// What a file is expected to be. docs/limits.md lists all kinds.
+// A kind of file: its name in messages and its limits. docs/limits.md lists all kinds.
 struct InputKind {
   std::string_view name;    // "a scene (a JSON file, docs/scenes.md)"
   std::size_t most_bytes;   // a larger file is refused
