@@ -35,10 +35,15 @@ struct ContactMemory {
   ContactVector offset_C =
       ContactVector::Zero();  // how far a has moved past b since they stuck: along t1, t2 [m], -, about n, t1, t2 [rad]
   bool active = false;        // pushed in the last tick
+  bool anchored = false;      // offset_C holds: it sticks, or did a moment ago, or lies in a face that does
   bool sliding = false;
   bool closing = false;  // it closed in the last tick
-  int settling = 0;      // for so many ticks a warm start must be exact to round-off (solve/cascade.h)
+  int open_ticks = 0;    // for which it has been open, by so little that it may close again at once; kOpenTicks: no longer
+  int settling = 0;      // for so many ticks a warm start must be exact to round-off (solve/contact_solver.h)
 };
+
+// For how many ticks a contact that opens by next to nothing keeps its impulse and its offset.
+constexpr int kOpenTicks = 8;
 
 struct WorldState {
   double time = 0;  // [s]

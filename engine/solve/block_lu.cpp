@@ -12,25 +12,32 @@ namespace {
 
 constexpr int kB = BlockLu::kBlock;
 constexpr int kBB = kB * kB;
-constexpr int kMostProducts = 2000;  // of blocks in a factorisation, some 0.1 ms: sweeps over the contacts cost less
 
-// C = A B and C -= A B, row-major.
-void multiply(const double* A, const double* B, double* C) {
+using DoublePair [[gnu::vector_size(16), gnu::aligned(8), gnu::may_alias]] = double;
+
+// C -= A B, row-major, a row at a time in registers.
+void subtractProduct(const double* A, const double* B, double* C) {
   for (int i = 0; i < kB; ++i, A += kB, C += kB) {
-    double row[kB] = {};
+    DoublePair* const c = reinterpret_cast<DoublePair*>(C);
+    DoublePair c0 = c[0], c1 = c[1], c2 = c[2];
     for (int k = 0; k < kB; ++k) {
-      for (int j = 0; j < kB; ++j) row[j] += A[k] * B[kB * k + j];
+      const DoublePair* const b = reinterpret_cast<const DoublePair*>(B + kB * k);
+      const DoublePair a = {A[k], A[k]};
+      c0 -= a * b[0];
+      c1 -= a * b[1];
+      c2 -= a * b[2];
     }
-    std::copy(row, row + kB, C);
+    c[0] = c0;
+    c[1] = c1;
+    c[2] = c2;
   }
 }
 
-void subtractProduct(const double* A, const double* B, double* C) {
-  for (int i = 0; i < kB; ++i, A += kB, C += kB) {
-    for (int k = 0; k < kB; ++k) {
-      for (int j = 0; j < kB; ++j) C[j] -= A[k] * B[kB * k + j];
-    }
-  }
+// C = A B; C may be A.
+void multiply(const double* A, const double* B, double* C) {
+  double product[kBB] = {};
+  subtractProduct(A, B, product);
+  for (int k = 0; k < kBB; ++k) C[k] = -product[k];
 }
 
 // y -= A x
@@ -73,37 +80,80 @@ bool invert(double* A) {
 
 }  // namespace
 
-BlockLu::BlockLu(int max_nodes, int max_blocks) : max_nodes_(std::min(max_nodes, kMaxNodes)), max_blocks_(max_blocks) {
+BlockLu::BlockLu(int max_nodes, int max_blocks, int max_products)
+    : max_nodes_(std::min(max_nodes, kMaxNodes)), max_blocks_(max_blocks), max_products_(max_products) {
   const auto n = static_cast<std::size_t>(max_nodes_), blocks = static_cast<std::size_t>(max_blocks);
   slots_.resize(n * n);
   blocks_.resize(kBB * blocks);
-  neighbours_.resize(n);
+  neighbours_.resize(n * ((n + 63) / 64));
+  degree_.resize(n);
   order_.resize(n);
   first_later_.resize(n + 1);
-  later_.resize(blocks);
+  for (std::vector<int>* per_block : {&later_, &lower_, &upper_}) per_block->resize(blocks);
+  targets_.resize(static_cast<std::size_t>(max_products));
+  for (std::vector<std::uint64_t>* edges : {&edges_, &kept_edges_}) edges->reserve(4 * blocks);
 }
 
 void BlockLu::begin(int nodes) {
   nodes_ = nodes;
-  if (nodes > max_nodes_) return;
-  for (int a = 0; a < nodes; ++a) neighbours_[a] = {};
+  edges_.clear();
 }
 
 void BlockLu::connect(int a, int b) {
   PINCER_ASSERT(0 <= a && a < nodes_ && 0 <= b && b < nodes_);
-  if (nodes_ > max_nodes_ || a == b) return;
-  neighbours_[a][b / 64] |= std::uint64_t{1} << (b % 64);
-  neighbours_[b][a / 64] |= std::uint64_t{1} << (a % 64);
+  if (a == b) return;
+  const std::uint64_t edge = static_cast<std::uint64_t>(std::min(a, b)) * static_cast<std::uint64_t>(nodes_) + static_cast<std::uint64_t>(std::max(a, b));
+  if (!edges_.empty() && edges_.back() == edge) return;  // contacts of one pair follow each other
+  if (edges_.size() < edges_.capacity()) edges_.push_back(edge);
 }
 
-int BlockLu::nextNode(const std::array<bool, kMaxNodes>& done) const {
+bool BlockLu::order(int most) {
+  if (nodes_ > max_nodes_ || edges_.size() == edges_.capacity()) return false;
+  std::sort(edges_.begin(), edges_.end());
+  edges_.erase(std::unique(edges_.begin(), edges_.end()), edges_.end());
+  if (isKept(most)) return kept_fits_;
+  kept_nodes_ = nodes_;
+  kept_most_ = most;
+  kept_edges_.assign(edges_.begin(), edges_.end());
+  return kept_fits_ = analyse(std::min(most, max_products_)) && listProducts();
+}
+
+bool BlockLu::isKept(int most) { return kept_nodes_ == nodes_ && kept_most_ == most && kept_edges_ == edges_; }
+
+bool BlockLu::analyse(int most) {
+  words_ = (nodes_ + 63) / 64;
+  std::fill(slots_.begin(), slots_.begin() + nodes_ * nodes_, -1);
+  std::fill(neighbours_.begin(), neighbours_.begin() + nodes_ * words_, 0);
+  std::fill(degree_.begin(), degree_.begin() + nodes_, 0);
+  for (const std::uint64_t edge : edges_) {
+    link(static_cast<int>(edge / static_cast<std::uint64_t>(nodes_)), static_cast<int>(edge % static_cast<std::uint64_t>(nodes_)));
+  }
+  used_ = 0;
+  products_ = nodes_;
+  first_later_[0] = 0;
+  for (int k = 0; k < nodes_; ++k) {
+    const int node = order_[k] = nextNode();
+    const int degree = degree_[node];
+    products_ += degree * (degree + 1);
+    first_later_[k + 1] = first_later_[k];
+    if (products_ > most || !eliminate(k)) return false;
+    degree_[node] = -1;
+  }
+  return true;
+}
+
+void BlockLu::link(int a, int b) {
+  for (int side = 0; side < 2; ++side, std::swap(a, b)) {
+    neighbours_[a * words_ + b / 64] |= std::uint64_t{1} << (b % 64);
+    ++degree_[a];
+  }
+}
+
+int BlockLu::nextNode() const {
   int best = -1, least = kMaxNodes;
   for (int a = 0; a < nodes_; ++a) {
-    if (done[a]) continue;
-    int degree = 0;
-    for (const std::uint64_t word : neighbours_[a]) degree += std::popcount(word);
-    if (degree >= least) continue;
-    least = degree;
+    if (degree_[a] < 0 || degree_[a] >= least) continue;
+    least = degree_[a];
     best = a;
   }
   return best;
@@ -117,75 +167,74 @@ bool BlockLu::take(int a, int b) {
   return true;
 }
 
-// Lists the node's neighbours, which become neighbours of each other.
-bool BlockLu::eliminate(int node) {
-  const Set set = neighbours_[node];
+// Lists the neighbours of the k-th node, which become neighbours of each other.
+bool BlockLu::eliminate(int k) {
+  const int node = order_[k];
+  const std::uint64_t* const set = neighbours_.data() + node * words_;
   if (!take(node, node)) return false;
-  for (int w = 0; w < kWords; ++w) {
+  for (int w = 0; w < words_; ++w) {
     for (std::uint64_t bits = set[w]; bits; bits &= bits - 1) {
       const int other = 64 * w + std::countr_zero(bits);
       if (!take(node, other) || !take(other, node)) return false;
-      later_[first_later_[0]++] = other;
-      for (int v = 0; v < kWords; ++v) neighbours_[other][v] |= set[v];
-      neighbours_[other][other / 64] &= ~(std::uint64_t{1} << (other % 64));
-      neighbours_[other][node / 64] &= ~(std::uint64_t{1} << (node % 64));
+      later_[first_later_[k + 1]++] = other;
+      std::uint64_t* const others = neighbours_.data() + other * words_;
+      int degree = 0;
+      for (int v = 0; v < words_; ++v) others[v] |= set[v];
+      others[other / 64] &= ~(std::uint64_t{1} << (other % 64));
+      others[node / 64] &= ~(std::uint64_t{1} << (node % 64));
+      for (int v = 0; v < words_; ++v) degree += std::popcount(others[v]);
+      degree_[other] = degree;
     }
   }
   return true;
 }
 
-bool BlockLu::order() {
-  if (nodes_ > max_nodes_) return false;
-  if (nodes_ == 1) {  // one body on many contacts
-    slots_[0] = order_[0] = first_later_[0] = first_later_[1] = 0;
-    used_ = products_ = 1;
-    return max_blocks_ > 0;
-  }
-  std::fill(slots_.begin(), slots_.begin() + nodes_ * nodes_, -1);
-  used_ = 0;
-  std::array<bool, kMaxNodes> done{};
-  first_later_[0] = 0;  // while ordering: how many are listed
-  products_ = nodes_;
+bool BlockLu::listProducts() {
+  int* target = targets_.data();
   for (int k = 0; k < nodes_; ++k) {
-    order_[k] = nextNode(done);
-    if (!eliminate(order_[k])) return false;
-    done[order_[k]] = true;
-    first_later_[k + 1] = first_later_[0];
-    const int degree = first_later_[0] - (k == 0 ? 0 : first_later_[k]);
-    products_ += degree * (degree + 1);
-    if (products_ > kMostProducts) return false;
+    const int node = order_[k];
+    for (int i = first_later_[k]; i < first_later_[k + 1]; ++i) {
+      lower_[i] = place(later_[i], node);
+      upper_[i] = place(node, later_[i]);
+      for (int j = first_later_[k]; j < first_later_[k + 1]; ++j) *target++ = place(later_[i], later_[j]);
+    }
   }
-  first_later_[0] = 0;
+  PINCER_ASSERT(target - targets_.data() <= max_products_);
   return true;
 }
 
-void BlockLu::clear() { std::fill(blocks_.begin(), blocks_.begin() + kBB * used_, 0.0); }
+void BlockLu::clear() {
+  std::fill(blocks_.begin(), blocks_.begin() + kBB * used_, 0.0);
+  for (int node = 0; node < nodes_; ++node) {
+    for (int k = 0; k < kB; ++k) block(place(node, node))[(kB + 1) * k] = 1;
+  }
+}
 
 bool BlockLu::factorise() {
+  const int* target = targets_.data();
   for (int k = 0; k < nodes_; ++k) {
-    const int node = order_[k];
-    double* const pivot = block(node, node);
+    double* const pivot = block(place(order_[k], order_[k]));
     if (!invert(pivot)) return false;
     for (int i = first_later_[k]; i < first_later_[k + 1]; ++i) {
-      double* const L = block(later_[i], node);
+      double* const L = block(lower_[i]);
       multiply(L, pivot, L);
-      for (int j = first_later_[k]; j < first_later_[k + 1]; ++j) subtractProduct(L, block(node, later_[j]), block(later_[i], later_[j]));
+      for (int j = first_later_[k]; j < first_later_[k + 1]; ++j) subtractProduct(L, block(upper_[j]), block(*target++));
     }
   }
   return true;
 }
 
 void BlockLu::solve(double* b) const {
+  const auto at = [&](int slot) { return blocks_.data() + kBB * slot; };
   for (int k = 0; k < nodes_; ++k) {
-    for (int i = first_later_[k]; i < first_later_[k + 1]; ++i) {
-      subtractProduct6(block(later_[i], order_[k]), b + kB * order_[k], b + kB * later_[i]);
-    }
+    const double* const b_k = b + kB * order_[k];
+    for (int i = first_later_[k]; i < first_later_[k + 1]; ++i) subtractProduct6(at(lower_[i]), b_k, b + kB * later_[i]);
   }
   for (int k = nodes_ - 1; k >= 0; --k) {
     double* const b_k = b + kB * order_[k];
-    for (int j = first_later_[k]; j < first_later_[k + 1]; ++j) subtractProduct6(block(order_[k], later_[j]), b + kB * later_[j], b_k);
+    for (int j = first_later_[k]; j < first_later_[k + 1]; ++j) subtractProduct6(at(upper_[j]), b + kB * later_[j], b_k);
     double x[kB] = {};
-    const double* const inverse = block(order_[k], order_[k]);
+    const double* const inverse = at(place(order_[k], order_[k]));
     for (int i = 0; i < kB; ++i) {
       for (int j = 0; j < kB; ++j) x[i] += inverse[kB * i + j] * b_k[j];
     }

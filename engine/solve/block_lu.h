@@ -4,9 +4,9 @@
 //
 // Nodes are eliminated in the order of least degree, ties by number: a function of the structure alone, so the same bits every time. Chains
 // and trees (stacks, fingers around an object) cost a time proportional to their length. Pivots are searched within blocks.
+// What follows from the structure is kept for as long as the structure stays the same.
 // Source: A. George, J. Liu, SIAM Review 31 (1989) 1-19 (minimum degree); G. Golub, C. Van Loan, Matrix Computations, 4th ed., section 4.5.
 #pragma once
-#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -15,37 +15,49 @@ namespace pincer::engine {
 class BlockLu {
  public:
   static constexpr int kBlock = 6;
-  static constexpr int kMaxNodes = 128;
+  static constexpr int kMaxNodes = 1024;
 
-  // Memory for `max_nodes` (at most kMaxNodes are treated) and for `max_blocks` blocks.
-  BlockLu(int max_nodes, int max_blocks);
+  // Memory for `max_nodes` (at most kMaxNodes are treated), `max_blocks` blocks and `max_products` of blocks in a factorisation.
+  BlockLu(int max_nodes, int max_blocks, int max_products);
 
-  // Structure: begin, connect every pair, order. False if nodes or fill exceed the memory, or the factorisation would take too long.
+  // Structure: begin, connect every pair (as often as wanted), order. False if nodes, fill or products exceed the memory, or the products `most`.
   void begin(int nodes);
   void connect(int a, int b);
-  bool order();
+  bool order(int most);
+  int nodes() const { return nodes_; }
+  int blocks() const { return used_; }
   int products() const { return products_; }  // of blocks, in a factorisation
 
-  // Values: clear, add to the row-major blocks H_ab, factorise, solve as often as wanted. False if a block is singular or not finite.
+  // Where the row-major block H_ab lies, for connected a and b; the same as long as the structure is.
+  int place(int a, int b) const { return slots_[static_cast<std::size_t>(a) * static_cast<std::size_t>(nodes_) + static_cast<std::size_t>(b)]; }
+  double* block(int place) { return blocks_.data() + kBlock * kBlock * place; }
+
+  // Values: clear (to the identity), add to blocks, factorise, solve as often as wanted. False if a block is singular or not finite.
   void clear();
-  double* block(int a, int b) { return blocks_.data() + kBlock * kBlock * slots_[a * nodes_ + b]; }
   bool factorise();
   void solve(double* b) const;
 
  private:
-  static constexpr int kWords = kMaxNodes / 64;
-  using Set = std::array<std::uint64_t, kWords>;
-
-  int nextNode(const std::array<bool, kMaxNodes>& done) const;
+  bool isKept(int most);
+  bool analyse(int most);
+  void link(int a, int b);
+  int nextNode() const;
   bool eliminate(int node);
   bool take(int a, int b);
-  const double* block(int a, int b) const { return blocks_.data() + kBlock * kBlock * slots_[a * nodes_ + b]; }
+  bool listProducts();
 
-  int max_nodes_, max_blocks_, nodes_ = 0, used_ = 0, products_ = 0;
+  int max_nodes_, max_blocks_, max_products_;
+  int nodes_ = 0, used_ = 0, products_ = 0, words_ = 0;
+  std::vector<std::uint64_t> edges_, kept_edges_;  // a nodes + b, a < b; of the structure that is analysed
+  int kept_nodes_ = -1, kept_most_ = 0;
+  bool kept_fits_ = false;
   std::vector<int> slots_;  // of block (a, b), -1 for none
   std::vector<double> blocks_;
-  std::vector<Set> neighbours_;                   // not yet eliminated, while ordering
-  std::vector<int> order_, first_later_, later_;  // nodes as eliminated; who each couples to then: later_[first_later_[k]] ..
+  std::vector<std::uint64_t> neighbours_;  // per node a set of those not yet eliminated, while ordering
+  std::vector<int> degree_;                // of them; -1: eliminated
+  std::vector<int> order_, first_later_;   // nodes as eliminated; who each couples to then: entries first_later_[k] .. of
+  std::vector<int> later_, lower_, upper_;  // the node, and the places of H_later,node and H_node,later
+  std::vector<int> targets_;                // of a factorisation's products, in its order
 };
 
 }  // namespace pincer::engine

@@ -60,10 +60,8 @@ bool invertBlock(double* A, int rows) {
 // Numbers the movers that two or more contacts touch; returns how many they are. The others get -1.
 int numberMovers(const ContactProblem& problem, int* node) {
   std::fill(node, node + problem.movers, 0);
-  for (const ContactSides& sides : problem.sides) {
-    for (const ContactSide& side : sides) {
-      if (side.mover >= 0) ++node[side.mover];
-    }
+  for (const ContactSide& side : problem.sides) {
+    if (side.mover >= 0) ++node[side.mover];
   }
   int nodes = 0;
   for (int mover = 0; mover < problem.movers; ++mover) node[mover] = node[mover] > 1 ? nodes++ : -1;
@@ -74,16 +72,19 @@ int nodeOf(const SolverScratch& scratch, const ContactSide& side) { return side.
 
 }  // namespace
 
+constexpr int kMostProducts = 2000;  // of blocks in a factorisation, some 0.1 ms
+
 EquationForm chooseForm(const ContactProblem& problem, SolverScratch& scratch) {
   const int n = problem.contactCount();
   const int nodes = numberMovers(problem, scratch.node.data());
   if (n <= scratch.dense_contacts && kMoverFreedoms * nodes >= problem.rowCount()) return EquationForm::kContacts;
-  scratch.movers_lu.begin(nodes);
-  for (const ContactSides& sides : problem.sides) {
+  scratch.lu.begin(nodes);
+  for (int i = 0; i < n; ++i) {
+    const std::span<const ContactSide> sides = problem.sidesOf(i);
     const int a = nodeOf(scratch, sides[0]), b = nodeOf(scratch, sides[1]);
-    if (a >= 0 && b >= 0) scratch.movers_lu.connect(a, b);
+    if (a >= 0 && b >= 0) scratch.lu.connect(a, b);
   }
-  if (scratch.movers_lu.order()) return EquationForm::kMovers;
+  if (scratch.lu.order(kMostProducts)) return EquationForm::kMovers;
   return n <= scratch.dense_contacts ? EquationForm::kContacts : EquationForm::kTooLarge;
 }
 
@@ -125,7 +126,7 @@ void ContactEquations::setGeneral(int i, const double* E, const double* P) {
 std::int64_t ContactEquations::cost() const {
   constexpr std::int64_t kPerContact = 1000, kPerProduct = BlockLu::kBlock * BlockLu::kBlock * BlockLu::kBlock;
   const std::int64_t m = problem_.rowCount(), contacts = kPerContact * problem_.contactCount();
-  return contacts + (form_ == EquationForm::kContacts ? m * m * (m + 24) / 3 : kPerProduct * scratch_.movers_lu.products());
+  return contacts + (form_ == EquationForm::kContacts ? m * m * (m + 24) / 3 : kPerProduct * scratch_.lu.products());
 }
 
 bool ContactEquations::factorise() {
@@ -259,7 +260,7 @@ void ContactEquations::addToMovers(int i) {
     for (const ContactSide& a : problem_.sides[static_cast<std::size_t>(i)]) {
       const int row = nodeOf(scratch_, a);
       if (row < 0) continue;
-      double* const H = scratch_.movers_lu.block(row, column);
+      double* const H = scratch_.lu.block(scratch_.lu.place(row, column));
       withRows(rows, [&](auto count) {
         for (int k = 0; k < kMoverFreedoms; ++k) {
           double sum[kMoverFreedoms];
@@ -275,13 +276,8 @@ void ContactEquations::addToMovers(int i) {
 }
 
 bool ContactEquations::factoriseMovers() {
-  BlockLu& H = scratch_.movers_lu;
+  BlockLu& H = scratch_.lu;
   H.clear();
-  for (int mover = 0; mover < problem_.movers; ++mover) {
-    const int node = scratch_.node[mover];
-    if (node < 0) continue;
-    for (int k = 0; k < kMoverFreedoms; ++k) H.block(node, node)[k * (kMoverFreedoms + 1)] = 1;
-  }
   for (int i = 0; i < problem_.contactCount(); ++i) {
     if (terms_[i].coupling == Coupling::kNone) continue;
     eliminate(i);
@@ -318,7 +314,7 @@ void ContactEquations::solveMovers(double* x) {
       });
     });
   }
-  scratch_.movers_lu.solve(y);
+  scratch_.lu.solve(y);
   for (int i = 0; i < problem_.contactCount(); ++i) {
     if (terms_[i].coupling == Coupling::kNone) continue;
     const int rows = problem_.rows(i);

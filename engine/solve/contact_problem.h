@@ -44,7 +44,7 @@ struct alignas(64) ContactSide {
   bool is_point = false;  // of three rows, and the mover doesn't turn: the last three columns are 0
   alignas(16) double A[kMaxContactRows][kMoverFreedoms];
 };
-using ContactSides = std::array<ContactSide, 2>;  // never both of one mover
+using ContactSides = std::array<ContactSide, 2>;  // of what has one mover on each side; never both the same
 
 // The same of a contact between balls, see round_contact.h.
 struct alignas(64) RoundContact {
@@ -60,17 +60,25 @@ struct alignas(64) RoundContact {
 struct ContactProblem {
   std::span<const int> first_row;       // size n + 1; contact i owns rows first_row[i] .. first_row[i + 1] - 1
   std::span<const double> mu;           // size n, each >= 0 [-]
-  std::span<const ContactSides> sides;  // size n
+  std::span<const ContactSide> sides;   // contact by contact: two each, or those of first_side
   VectorMap q;                          // m
   int movers = 0;
-  bool strict = false;                       // the warm start is only taken where it is exact to round-off, see cascade.h
+  bool strict = false;                       // the warm start is only taken where it is exact to round-off, see contact_solver.h
+  bool calm = false;                         // nothing of it moves faster than rest (restErrorOf)
   std::span<const RoundContact> round = {};  // of each contact; empty where nobody looked
+  std::span<const int> first_side = {};      // size n + 1; empty where every contact has two sides
 
   int contactCount() const { return static_cast<int>(mu.size()); }
   int rowCount() const { return static_cast<int>(q.size()); }
   int firstRow(int contact) const { return first_row[static_cast<std::size_t>(contact)]; }
   int rows(int contact) const { return firstRow(contact + 1) - firstRow(contact); }
   double friction(int contact) const { return mu[static_cast<std::size_t>(contact)]; }
+  // Of any number of movers, no two of them the same; those with mover -1 don't count.
+  std::span<const ContactSide> sidesOf(int contact) const {
+    const auto i = static_cast<std::size_t>(contact);
+    if (first_side.empty()) return sides.subspan(2 * i, 2);
+    return sides.subspan(static_cast<std::size_t>(first_side[i]), static_cast<std::size_t>(first_side[i + 1] - first_side[i]));
+  }
 };
 
 }  // namespace pincer::engine

@@ -23,7 +23,7 @@ using DoublePair [[gnu::vector_size(16), gnu::aligned(8), gnu::may_alias]] = dou
 [[gnu::always_inline]] inline double dot3(const double* a, const double* b) { return (a[0] * b[0] + a[2] * b[2]) + a[1] * b[1]; }
 
 // y += A_i^T r_i
-inline void addImpulse(const ContactSides& sides, int rows, const double* r, double* y) {
+inline void addImpulse(std::span<const ContactSide> sides, int rows, const double* r, double* y) {
   withRows(rows, [&](auto count) {
     for (const ContactSide& side : sides) {
       if (side.mover < 0) continue;
@@ -39,7 +39,7 @@ inline void addImpulse(const ContactSides& sides, int rows, const double* r, dou
 }
 
 // u_i += A_i y
-inline void addVelocity(const ContactSides& sides, int rows, const double* y, double* u) {
+inline void addVelocity(std::span<const ContactSide> sides, int rows, const double* y, double* u) {
   withRows(rows, [&](auto count) {
     for (const ContactSide& side : sides) {
       if (side.mover < 0) continue;
@@ -61,7 +61,7 @@ inline void addCoupling(const ContactSide& i, int rows, const ContactSide& j, in
 }
 
 // u_i = A_i y + q_i
-inline void velocityOf(const ContactSides& sides, int rows, const double* q, const double* y, double* u) {
+inline void velocityOf(std::span<const ContactSide> sides, int rows, const double* q, const double* y, double* u) {
   withRows(rows, [&](auto count) {
     DoublePair sum[kMaxContactRows] = {};
     for (const ContactSide& side : sides) {
@@ -73,18 +73,12 @@ inline void velocityOf(const ContactSides& sides, int rows, const double* q, con
 }
 
 // The same of the normal row alone.
-inline double normalVelocityOf(const ContactSides& sides, double q_n, const double* y) {
+inline double normalVelocityOf(std::span<const ContactSide> sides, double q_n, const double* y) {
   double u = q_n;
   for (const ContactSide& side : sides) {
     if (side.mover >= 0) u += dot6(side.A[kNormalRow], y + kMoverFreedoms * side.mover);
   }
   return u;
-}
-
-// y = A^T r
-inline void respond(std::span<const ContactSides> sides, std::span<const int> first_row, const double* r, int movers, double* y) {
-  for (int j = 0; j < kMoverFreedoms * movers; ++j) y[j] = 0;
-  for (std::size_t i = 0; i < sides.size(); ++i) addImpulse(sides[i], first_row[i + 1] - first_row[i], r + first_row[i], y);
 }
 
 }  // namespace pincer::engine

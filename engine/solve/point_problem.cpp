@@ -22,7 +22,7 @@ constexpr std::int64_t kPerGroove = 40000;  // multiplications: some 400 looks a
 constexpr std::int64_t kPerAttempt = 500;   // of a set of one or three walls
 
 const ContactSide& pointSide(const ContactProblem& problem, int i) {
-  const ContactSides& sides = problem.sides[static_cast<std::size_t>(i)];
+  const std::span<const ContactSide> sides = problem.sidesOf(i);
   return sides[0].mover >= 0 ? sides[0] : sides[1];
 }
 
@@ -201,7 +201,7 @@ class PointSearch {
   bool isAnswer(std::initializer_list<Pushed> pushed) {
     std::fill(r_, r_ + problem_.rowCount(), 0.0);
     for (const Pushed& p : pushed) std::copy(p.r.data(), p.r.data() + kTorsionRow, r_ + problem_.firstRow(p.wall));
-    residual_ = weighedResidual(problem_, r_, scratch_, u_);
+    residual_ = errorOf(problem_, r_, scratch_, u_).residual;
     return residual_ <= enough_;
   }
 
@@ -297,7 +297,7 @@ bool solvePointProblem(const ContactProblem& problem, double enough, SolverScrat
   std::copy(r, r + m, before);
   if (PointSearch(problem, enough, scratch, r, u).run(residual)) return true;
   std::copy(before, before + m, r);
-  weighedResidual(problem, r, scratch, u);
+  errorOf(problem, r, scratch, u).residual;
   return false;
 }
 

@@ -14,7 +14,7 @@
 // by their size there: it is looked at in steps that grow from there, and its roots are closed in by halving.
 // In a groove that locks (wedge.h) contradictions may leave no answer at all.
 #pragma once
-#include "pincer/engine/solve/cascade.h"
+#include "pincer/engine/solve/solver_scratch.h"
 
 namespace pincer::engine {
 

@@ -5,6 +5,21 @@
 
 namespace pincer::engine {
 
+constexpr double kConeRoundOff =
+    1e-14;  // relative: an impulse on the cone isn't projected again, so a warm start that fits stays, to the bit
+
+void projectOntoCones(const ContactProblem& problem, double* r) {
+  for (int i = 0; i < problem.contactCount(); ++i) {
+    const int rows = problem.rows(i);
+    double* const r_i = r + problem.firstRow(i);
+    if (isInCone(r_i, rows, problem.friction(i), kConeRoundOff)) continue;
+    projectOntoCone(r_i, rows, problem.friction(i), r_i);
+    double check = 0;
+    for (int k = 0; k < rows; ++k) check += r_i[k];
+    if (!std::isfinite(check)) std::fill(r_i, r_i + rows, 0.0);
+  }
+}
+
 void weighContacts(const ContactProblem& problem, SolverScratch& scratch) {
   for (int i = 0; i < problem.contactCount(); ++i) {
     if (!problem.round.empty() && problem.round[static_cast<std::size_t>(i)].isRound()) {
@@ -12,13 +27,14 @@ void weighContacts(const ContactProblem& problem, SolverScratch& scratch) {
       scratch.weight[static_cast<std::size_t>(i)] = (2 / c.inverse_W_tt + 1 / c.inverse_W_nn) / kTorsionRow;
       continue;
     }
-    const int rows = problem.rows(i);
     double sum = 0;
-    for (const ContactSide& side : problem.sides[static_cast<std::size_t>(i)]) {
-      if (side.mover < 0) continue;
-      for (int k = 0; k < rows; ++k) sum += dot6(side.A[k], side.A[k]);
-    }
-    scratch.weight[static_cast<std::size_t>(i)] = sum / rows;
+    withRows(problem.rows(i), [&](auto rows) {
+      for (const ContactSide& side : problem.sidesOf(i)) {
+        if (side.mover < 0) continue;
+        for (int k = 0; k < rows; ++k) sum += dot6(side.A[k], side.A[k]);
+      }
+    });
+    scratch.weight[static_cast<std::size_t>(i)] = sum / problem.rows(i);
   }
 }
 
@@ -28,15 +44,16 @@ double referenceSpeed(const ContactProblem& problem) {
   return speed;
 }
 
-double weighedResidual(const ContactProblem& problem, const double* r, SolverScratch& scratch, double* u) {
+void respond(const ContactProblem& problem, const double* r, SolverScratch& scratch) {
   double* const y = scratch.y.data();
   std::fill(y, y + kMoverFreedoms * problem.movers, 0.0);
-  for (int i = 0; i < problem.contactCount(); ++i)
+  for (int i = 0; i < problem.contactCount(); ++i) {
+    if (r[problem.firstRow(i) + kNormalRow] == 0) continue;  // in the cone: then all of it is 0
     withForm(problem, i, [&](auto rows, const auto& form) { addImpulse(form, rows, r + problem.firstRow(i), y); });
-  return respondedResidual(problem, r, scratch, u);
+  }
 }
 
-double respondedResidual(const ContactProblem& problem, const double* r, SolverScratch& scratch, double* u) {
+ContactError respondedError(const ContactProblem& problem, const double* r, const SolverScratch& scratch, double* u) {
   WorstResidual worst;
   for (int i = 0; i < problem.contactCount(); ++i) {
     const int first = problem.firstRow(i);
@@ -46,12 +63,6 @@ double respondedResidual(const ContactProblem& problem, const double* r, SolverS
     worst.add(naturalMap2(r + first, u + first, problem.rows(i), problem.friction(i), w), u[first + kNormalRow], w * r[first + kNormalRow]);
   }
   return worst.relativeTo(referenceSpeed(problem));
-}
-
-double contactResidual(const ContactProblem& problem, const Eigen::Ref<const Eigen::VectorXd>& r, SolverScratch& scratch,
-                       Eigen::Ref<Eigen::VectorXd> u) {
-  weighContacts(problem, scratch);
-  return weighedResidual(problem, r.data(), scratch, u.data());
 }
 
 }  // namespace pincer::engine

@@ -1,13 +1,27 @@
 // residual: how far impulses are from obeying the contact law, in a way that nothing that isn't finite can pass.
+//
+//   error     max_i w_i |r_i - P_K(r_i - u~_i / w_i)|   [m/s],   u~_i = u_i + mu_i |u_iT| e_n,   w_i  mean of W_ii's diagonal
+//   residual  error / max(|q|_inf, kVelocityFloor, 1e-4 max_i w_i r_in)   [-]
+//
+// The last term of the maximum speaks up only where W r cancels to less than 1e-4 of itself (mass ratios above 1e4), and keeps a tolerance of 1e-10
+// above the round-off of that sum. Both are infinite if anything isn't finite (a NaN never passes).
 #pragma once
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "pincer/engine/solve/cascade.h"
 #include "pincer/engine/solve/cone.h"
+#include "pincer/engine/solve/solver_scratch.h"
 
 namespace pincer::engine {
+
+// The slowest motion that counts as motion; residuals are relative to the speeds of the problem, but never to less [m/s].
+constexpr double kVelocityFloor = 1e-6;
+
+struct ContactError {
+  double residual = std::numeric_limits<double>::infinity();  // [-]
+  double speed = std::numeric_limits<double>::infinity();     // the error [m/s]
+};
 
 // The largest natural map of all contacts.
 class WorstResidual {
@@ -20,9 +34,10 @@ class WorstResidual {
     response_ = std::max(response_, response);
     check_ += error2 + u_n;  // a maximum forgets a NaN, a sum doesn't
   }
-  double relativeTo(double speed) const {
-    return std::isfinite(check_) ? std::sqrt(worst2_) / std::max(speed, kCancellation * response_)
-                                 : std::numeric_limits<double>::infinity();
+  ContactError relativeTo(double speed) const {
+    if (!std::isfinite(check_)) return {};
+    const double worst = std::sqrt(worst2_);
+    return {worst / std::max(speed, kCancellation * response_), worst};
   }
 
  private:
@@ -32,17 +47,29 @@ class WorstResidual {
   double check_ = 0;
 };
 
-// Fills scratch.weight: w_i, the means of W_ii's diagonals [1/kg].
+// Puts `r` into the cones; a contact whose impulse isn't finite gets none.
+void projectOntoCones(const ContactProblem& problem, double* r);
+
+// Fills scratch.weight.
 void weighContacts(const ContactProblem& problem, SolverScratch& scratch);
 
-// contactResidual where the weights are known.
-double weighedResidual(const ContactProblem& problem, const double* r, SolverScratch& scratch, double* u);
+// scratch.y = A^T r
+void respond(const ContactProblem& problem, const double* r, SolverScratch& scratch);
 
-// The same where scratch.y is A^T r already.
-double respondedResidual(const ContactProblem& problem, const double* r, SolverScratch& scratch, double* u);
+// u = A y + q and the error of r, where the contacts are weighed and scratch.y is A^T r.
+ContactError respondedError(const ContactProblem& problem, const double* r, const SolverScratch& scratch, double* u);
+
+// Both.
+inline ContactError errorOf(const ContactProblem& problem, const double* r, SolverScratch& scratch, double* u) {
+  respond(problem, r, scratch);
+  return respondedError(problem, r, scratch, u);
+}
 
 // max(|q|_inf, kVelocityFloor) [m/s].
 double referenceSpeed(const ContactProblem& problem);
+
+// Of the tolerance: what a strict problem asks of its warm start.
+constexpr double kStrictness = 1e-4;
 
 // The residual at which a warm start counts as exact, for a problem of speeds of order `speed` [m/s]: what the round-off of gaps asks for, 5e-17 m of
 // which a tick of 1 ms undoes a fifth, has no impulses that last.

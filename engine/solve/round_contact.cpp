@@ -31,7 +31,8 @@ bool takeSide(const ContactSide& side, const double (&cross)[2][3], int place, R
   return error <= kRound * (std::abs(linear) + std::abs(turn));
 }
 
-bool makeRound(const ContactSides& sides, RoundContact& c) {
+bool makeRound(std::span<const ContactSide> sides, RoundContact& c) {
+  if (sides.size() != 2) return false;
   const int first = sides[0].mover >= 0 ? 0 : 1, second = 1 - first;
   const ContactSide& moving = sides[static_cast<std::size_t>(first)];
   if (moving.mover < 0) return false;
@@ -57,9 +58,9 @@ bool makeRound(const ContactSides& sides, RoundContact& c) {
 void findRoundContacts(std::vector<RoundContact>& round, ContactProblem& problem) {
   for (int i = 0; i < problem.contactCount(); ++i) {
     const auto place = static_cast<std::size_t>(i);
-    if (problem.rows(i) != kTorsionRow || !makeRound(problem.sides[place], round[place])) round[place].inverse_W_tt = 0;
+    if (problem.rows(i) != kTorsionRow || !makeRound(problem.sidesOf(i), round[place])) round[place].inverse_W_tt = 0;
   }
-  problem.round = {round.data(), problem.sides.size()};
+  problem.round = {round.data(), problem.mu.size()};
 }
 
 }  // namespace pincer::engine

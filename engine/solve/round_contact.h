@@ -5,7 +5,7 @@
 //
 //   R       columns (t1, t2, n), all three turned round where only the second body moves
 //   linear  M_b^-1/2, with its sign [kg^-1/2];   turn  arm times I_b^-1/2, likewise
-// To round-off the same as A, along n without what round-off makes of n x n. For heaps, whose sweeps wait for memory (large_problem.h).
+// To round-off the same as A, along n without what round-off makes of n x n. For heaps, whose sweeps wait for memory (sweeps.h).
 #pragma once
 #include <vector>
 
@@ -60,7 +60,7 @@ template <class Problem, class Act>
   const auto place = static_cast<std::size_t>(i);
   if (!problem.round.empty() && problem.round[place].isRound())
     return act(std::integral_constant<int, kTorsionRow>(), problem.round[place]);
-  withRows(problem.rows(i), [&](auto rows) { act(rows, problem.sides[place]); });
+  withRows(problem.rows(i), [&](auto rows) { act(rows, problem.sidesOf(i)); });
 }
 
 }  // namespace pincer::engine

@@ -6,7 +6,7 @@
 namespace pincer::engine {
 namespace {
 
-void scaleContact(const ContactSides& from, int rows, double factor, ContactSides& to) {
+void scaleContact(std::span<const ContactSide> from, int rows, double factor, ContactSides& to) {
   for (std::size_t s = 0; s < 2; ++s) {
     to[s].mover = from[s].mover;
     if (from[s].mover < 0) continue;
@@ -22,8 +22,8 @@ void scaleContact(const ContactSides& from, int rows, double factor, ContactSide
 void fillBlock(const ContactProblem& problem, const double* scale, int i, int j, double* W) {
   const int m = problem.rowCount(), columns = problem.rows(j);
   double block[kMaxContactRows * kMaxContactRows] = {};
-  for (const ContactSide& x : problem.sides[static_cast<std::size_t>(i)]) {
-    for (const ContactSide& y : problem.sides[static_cast<std::size_t>(j)]) {
+  for (const ContactSide& x : problem.sidesOf(i)) {
+    for (const ContactSide& y : problem.sidesOf(j)) {
       if (x.mover >= 0 && x.mover == y.mover) addCoupling(x, problem.rows(i), y, columns, block, kMaxContactRows);
     }
   }
@@ -83,7 +83,7 @@ ScaledProblem scaleProblem(const ContactProblem& problem, bool dense, SolverScra
 
 void scaleSides(const ContactProblem& problem, SolverScratch& scratch) {
   for (int i = 0; i < problem.contactCount(); ++i)
-    scaleContact(problem.sides[static_cast<std::size_t>(i)], problem.rows(i), 1 / scratch.scale[i], scratch.sides[i]);
+    scaleContact(problem.sidesOf(i), problem.rows(i), 1 / scratch.scale[i], scratch.sides[i]);
 }
 
 void multiply(const ScaledProblem& problem, const double* r, double* out) {
@@ -114,7 +114,7 @@ void judge(const ScaledProblem& problem, Iterate& it) {
     const double scale = problem.scale[i];
     worst.add(error2 * scale * scale, u_i[kNormalRow], scale * it.r[first + kNormalRow]);
   }
-  it.residual = worst.relativeTo(problem.speed);
+  it.residual = worst.relativeTo(problem.speed).residual;
 }
 
 void evaluate(const ScaledProblem& problem, Iterate& it) {

@@ -124,14 +124,14 @@ class SmallProblem {
   explicit SmallProblem(const ContactProblem& problem) : mu_(problem.mu.data()), speed_(referenceSpeed(problem)) {
     copy<m>(problem.q.data(), q_);
     for (int i = 0; i < count; ++i) {
-      fillOwn(problem.sides[static_cast<std::size_t>(i)], rows * i);
+      fillOwn(problem.sidesOf(i), rows * i);
       double trace = 0;
       for (int k = rows * i; k < rows * (i + 1); ++k) trace += W_[k][k];
       w_[i] = trace * (1.0 / rows);
     }
     for (int i = 0; i < count; ++i) {
       for (int j = i + 1; j < count; ++j)
-        fillCoupling(problem.sides[static_cast<std::size_t>(i)], problem.sides[static_cast<std::size_t>(j)], rows * i, rows * j);
+        fillCoupling(problem.sidesOf(i), problem.sidesOf(j), rows * i, rows * j);
     }
   }
 
@@ -144,9 +144,10 @@ class SmallProblem {
  private:
   bool solveBy(bool blocks, const SolverOptions& options, bool strict, double* r_out, double* u_out, SolveResult& result) {
     copy<m>(r_out, r_);
-    const double start = evaluate();
+    const ContactError at_start = evaluate();
+    const double start = at_start.residual;
     const bool is_close = start <= options.tolerance;
-    result = {SolveMethod::kWarmStart, 0, start, start, true};
+    result = {SolveMethod::kWarmStart, 0, start, at_start.speed, start, true};
     if (squeezes(r_out)) return false;
     if (is_close && !(strict && start > exactResidual(options.tolerance, speed_))) {
       copy<m>(u_, u_out);
@@ -156,15 +157,16 @@ class SmallProblem {
     double best = is_close ? start : options.tolerance;  // a residual above is no answer
     bool found = false;
     if (is_close) keep(r_out, u_out);
-    const int steps = std::min(is_close ? kSmallPolishSteps : kSmallSteps, options.newton_iterations);
+    const int steps = is_close ? kSmallPolishSteps : kSmallSteps;
     for (int n = 0; n < steps; ++n) {
       if (!step(blocks)) break;
       ++result.iterations;
-      const double residual = evaluate();
+      const auto [residual, error] = evaluate();
       if (!std::isfinite(residual) || squeezes(r_)) break;
       if (residual > best) continue;
       found = true;
       best = result.residual = residual;
+      result.error = error;
       keep(r_out, u_out);
       if (residual <= enough) break;
     }
@@ -194,7 +196,7 @@ class SmallProblem {
     }
   }
 
-  void fillOwn(const ContactSides& sides, int first) {
+  void fillOwn(std::span<const ContactSide> sides, int first) {
     Block own = {};
     for (const ContactSide& side : sides) {
       if (side.mover < 0) continue;
@@ -208,7 +210,7 @@ class SmallProblem {
     }
   }
 
-  void fillCoupling(const ContactSides& a, const ContactSides& b, int first_a, int first_b) {
+  void fillCoupling(std::span<const ContactSide> a, std::span<const ContactSide> b, int first_a, int first_b) {
     Block across = {};
     for (const ContactSide& x : a) {
       for (const ContactSide& y : b) {
@@ -224,7 +226,7 @@ class SmallProblem {
   }
 
   // u, and the residual.
-  double evaluate() {
+  ContactError evaluate() {
     for (int k = 0; k < m; ++k) u_[k] = q_[k];
     for (int l = 0; l < m; ++l) {
       for (int k = 0; k < m; ++k) u_[k] += W_[l][k] * r_[l];

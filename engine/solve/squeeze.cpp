@@ -26,7 +26,7 @@ bool isSqueezed(const ContactProblem& problem, const std::vector<double>& weight
   double least_mobility = std::numeric_limits<double>::infinity(), largest = 0;
   for (int i = 0; i < problem.contactCount(); ++i) {
     largest = std::max(largest, r[problem.firstRow(i) + kNormalRow]);
-    for (const ContactSide& side : problem.sides[static_cast<std::size_t>(i)]) {
+    for (const ContactSide& side : problem.sidesOf(i)) {
       const double mobility = side.mover < 0 ? 0 : dot6(side.A[kNormalRow], side.A[kNormalRow]);
       if (mobility > 0) least_mobility = std::min(least_mobility, mobility);
     }

@@ -17,7 +17,7 @@ void applyImpulse(WorldScratch& scratch, const Side& side, const Vec3& arm_W, co
                   const Contact& c) {
   const auto push = [&](MoverScratch& mover) {
     mover.impulse_W += impulse_W;
-    mover.quiet = c.quiet && (mover.quiet || !mover.touched);
+    mover.rest_speed = mover.touched ? std::min(mover.rest_speed, c.rest_speed) : c.rest_speed;
     mover.touched = true;
     mover.closing = mover.closing || c.closing;
   };
@@ -32,7 +32,8 @@ void applyImpulse(WorldScratch& scratch, const Side& side, const Vec3& arm_W, co
 
 void rest(MoverScratch& mover) {
   mover.impulse_W.setZero();
-  mover.touched = mover.closing = mover.quiet = false;
+  mover.touched = mover.closing = false;
+  mover.rest_speed = 0;
 }
 
 constexpr double kLargestMismatch = 1e-6;  // between the ways of two bodies that touch [m]
@@ -97,14 +98,15 @@ void gatherImpulses(const WorldModel& model, WorldScratch& scratch) {
 
 namespace {
 
-bool isSlow(const Vec3& v, double arm = 1) { return arm * arm * v.squaredNorm() <= kRestSpeed * kRestSpeed; }
+bool isSlow(double limit, const Vec3& v, double arm = 1) { return arm * arm * v.squaredNorm() <= limit * limit; }
 
 // Rest, see rest.h.
 bool comesToRest(const BodyModel& body, const BodyScratch& scratch, const Vec3& v_W, const Vec3& L_W) {
-  if (!scratch.quiet || body.joint_group >= 0) return false;
-  if (!isSlow(v_W) || !isSlow(scratch.start.v_W)) return false;
+  const double limit = scratch.rest_speed;
+  if (limit == 0 || body.joint_group >= 0) return false;
+  if (!isSlow(limit, v_W) || !isSlow(limit, scratch.start.v_W)) return false;
   const double arm = body.bounding_radius * body.rotation.inverse_moments.maxCoeff();
-  return isSlow(L_W, arm) && isSlow(scratch.start.w_W, body.bounding_radius);
+  return isSlow(limit, L_W, arm) && isSlow(limit, scratch.start.w_W, body.bounding_radius);
 }
 
 void advanceBody(const BodyModel& body, double h, BodyScratch& scratch, BodyState& s) {
@@ -152,7 +154,7 @@ void advanceTurned(double h, const Vec3& v_old, const PointScratch& scratch, Poi
 void advancePoint(const std::array<AxisForm, 3>& forms, double h, PointScratch& scratch, PointState& s) {
   const Vec3 v_old = s.v_W;
   s.v_W = scratch.free.v_W + scratch.response(scratch.impulse_W);
-  if (scratch.quiet && isSlow(s.v_W) && isSlow(v_old)) s.v_W.setZero();
+  if (scratch.rest_speed > 0 && isSlow(scratch.rest_speed, s.v_W) && isSlow(scratch.rest_speed, v_old)) s.v_W.setZero();
   scratch.end.v_W = s.v_W;
   advanceTwist(h, scratch, s);
   if (scratch.turned) advanceTurned(h, v_old, scratch, s);

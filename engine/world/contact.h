@@ -34,9 +34,11 @@ struct Contact {
   const MoverScratch *mover_a, *mover_b;  // of a and b
   double mu;                              // in force in this tick
   Vec3 arm_a_W, arm_b_W;
+  int open_ticks;           // before this tick, see ContactMemory
   ContactVector v_start_C;  // of a relative to b at the start of the tick, see relativeVelocity
   ContactVector offset_C;   // anchored stick, at the start of the tick; see ContactMemory
   // Asked for (contact_rows.cpp), `stuck` and the first `settling` recalled.
+  bool far = false;      // it can't close within this part of the tick, and isn't solved (far_contacts.h)
   bool closing = false;  // it closes in this tick, from a positive gap or with an approaching velocity
   bool stuck = false;    // it stuck in the last tick: its tangential biases undo the offset
   ContactVector bias_C;  // part of q that isn't velocity [m/s], from torsion on [rad/s]
@@ -46,7 +48,7 @@ struct Contact {
   Vec3 u_C;         // velocity of a relative to b at the end of the tick, biases included [m/s]
   bool sliding = false;
   int settling = 0;     // see ContactMemory; of the last tick before the solve, of this one after it
-  bool quiet = false;   // the last tick's impulses still fit
+  double rest_speed = 0;  // the last tick's impulses still fit: what moves slower is at rest (rest.h) [m/s]; 0: they don't
   bool yields = false;  // walls close on what is between them (solve/squeeze.h)
   // Remembered (remember_contacts.cpp).
   bool still = false;  // nothing of it or of its bodies changed in this tick, where that was asked

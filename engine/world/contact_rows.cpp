@@ -95,18 +95,17 @@ void fillContact(const WorldModel& model, const Rates& rates, WorldScratch& scra
 void fillContacts(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
   const int n = static_cast<int>(scratch.contacts.size());
   const Rates rates(model, state, scratch.h);
-  std::span<const ContactMemory> memories(state.contacts.data(), static_cast<std::size_t>(state.contact_count));
+  const std::span<const ContactMemory> memories(state.contacts.data(), static_cast<std::size_t>(state.contact_count));
   PINCER_ASSERT(isAscending(scratch.contacts, &Contact::id));
   PINCER_ASSERT(isAscending(memories, &ContactMemory::id));
   PINCER_ASSERT(scratch.contacts.size() <= scratch.mu.size());
   scratch.first_row[0] = 0;
+  recallContacts(memories, scratch);
   if (model.has_hollows) {
-    for (Contact& c : scratch.contacts) recallContact(memories, scratch, c);
     steadyInHollows(model, state, scratch);
     loosenWedges(scratch);
   }
   for (int i = 0; i < n; ++i) {
-    if (!model.has_hollows) recallContact(memories, scratch, scratch.contacts[i]);
     scratch.first_row[i + 1] = scratch.first_row[i] + rowsOf(scratch.contacts[i].material);
     fillContact(model, rates, scratch, i);
   }

@@ -32,8 +32,9 @@ constexpr double kClosingSpeed = 1e-6;       // slower approaches count as rest 
 // By id.
 void sortContacts(WorldScratch& scratch);
 
-// Finds what is remembered of the contact, fills its frame, arms, friction and stick offset. `memories`: sorted; those of ids before c's are dropped.
-void recallContact(std::span<const ContactMemory>& memories, const WorldScratch& scratch, Contact& c);
+// Finds what is remembered of the contacts, sorted by id, by identity, and of what has a new one by its place on the pair (where corners lie on edges identities
+// come and go); fills frames, arms, friction and stick offsets.
+void recallContacts(std::span<const ContactMemory> memories, WorldScratch& scratch);
 
 // Recalls the contacts, which are sorted, and fills first_row, q, mu and the warm start r, in their order.
 void fillContacts(const WorldModel& model, const WorldState& state, WorldScratch& scratch);

@@ -283,7 +283,8 @@ void applyImpacts(const WorldModel& model, WorldState& state, WorldScratch& scra
   keepStruck(model, scratch);
   for (int quarters = 4; quarters >= 0; --quarters) {
     scratch.bounce = 0.25 * quarters;
-    solveContacts(model, state, scratch);
+    prepareContacts(model, state, scratch);
+    solveContacts(model, scratch);
     sharpenSingleImpact(scratch);
     gatherImpulses(model, scratch);
     if (!addsEnergy(model, scratch)) break;

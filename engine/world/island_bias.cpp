@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "pincer/engine/solve/cone.h"
 #include "pincer/engine/solve/mobility.h"
+#include "pincer/engine/solve/mover_matrix.h"
+#include "pincer/engine/solve/residual.h"
 #include "pincer/engine/solve/round_contact.h"
 #include "pincer/engine/world/contact_rows.h"
 
@@ -15,6 +18,7 @@ constexpr double kNormalRowWeight = 10;
 constexpr double kInside = -1e-9;      // of the cone's radius: what is further in sticks
 constexpr double kNegligible = 1e-11;  // contradictions between biases below this are below the solver's tolerance [m/s]
 constexpr double kConverged = 1e-10;   // of |A^T b|, squared: 1e-5
+constexpr double kConsistent = 1e-6;   // of what is asked for: what is left then is the ridge's
 constexpr int kMostSteps = 40;         // of conjugate gradients
 constexpr int kFewContacts = 200;      // for which so many may be taken; beyond,
 constexpr int kFitVisits = 1500;       // of contacts, but
@@ -47,17 +51,13 @@ class BiasFit {
         memory_(memory),
         rows_(problem.rowCount()),
         size_(kMoverFreedoms * problem.movers),
-        most_steps_(problem.contactCount() <= kFewContacts ? kMostSteps : std::max(kFewestSteps, kFitVisits / problem.contactCount())) {
-    double* next = memory.workspace.data();
-    for (double** vector : {&b_, &image_, &weight_}) {
-      *vector = next;
-      next += rows_;
-    }
-    for (double** vector : {&direction_, &gradient_, &response_}) {
-      *vector = next;
-      next += size_;
-    }
-  }
+        most_steps_(problem.contactCount() <= kFewContacts ? kMostSteps : std::max(kFewestSteps, kFitVisits / problem.contactCount())),
+        b_(memory.work.data()),
+        image_(memory.change.data()),
+        weight_(memory.best_r.data()),
+        direction_(memory.direction.data()),
+        gradient_(memory.gradient.data()),
+        response_(memory.way.data()) {}
 
   // How much the biases ask for [m/s].
   double gather() {
@@ -79,8 +79,40 @@ class BiasFit {
     return largest;
   }
 
-  // What is left of b is A z + b; z itself nobody needs.
+  // What is left of b is w (A z + b); z itself nobody needs.
   void minimise() {
+    MoverMatrix matrix(problem_, memory_);
+    matrix.fits() ? solveDirectly(matrix) : descend();
+  }
+
+ private:
+  // With a ridge far below what any contact sees.
+  void solveDirectly(MoverMatrix& matrix) {
+    constexpr double kStiff = 1e8;
+    double least = std::numeric_limits<double>::infinity();
+    weighContacts(problem_, memory_);
+    for (int i = 0; i < problem_.contactCount(); ++i) least = std::min(least, memory_.weight[static_cast<std::size_t>(i)]);
+    const double stiff = kStiff / least;
+    matrix.clear();
+    for (int i = 0; i < problem_.contactCount(); ++i) {
+      const double* const weight = weight_ + problem_.firstRow(i);
+      if (weight[kNormalRow] == 0) {
+        matrix.skip(i);
+        continue;
+      }
+      double G[kMaxContactRows][kMaxContactRows] = {};
+      for (int k = 0; k < problem_.rows(i); ++k) G[k][k] = stiff * weight[k] * weight[k];
+      matrix.add(i, G);
+    }
+    if (!matrix.factorise()) return;
+    respond();
+    for (int j = 0; j < size_; ++j) direction_[j] = stiff * gradient_[j];
+    matrix.solve(direction_);
+    move();
+    for (int row = 0; row < rows_; ++row) b_[row] += image_[row];
+  }
+
+  void descend() {
     respond();
     for (int j = 0; j < size_; ++j) direction_[j] = gradient_[j];
     double g2 = dot(gradient_, gradient_, size_);
@@ -95,6 +127,14 @@ class BiasFit {
       g2 = dot(gradient_, gradient_, size_);
       for (int j = 0; j < size_; ++j) direction_[j] = gradient_[j] + g2 / before * direction_[j];
     }
+  }
+
+  // What no motion gives, at most [m/s].
+ public:
+  double largestLeft() const {
+    double largest = 0;
+    for (int row = 0; row < rows_; ++row) largest = std::max(largest, std::abs(b_[row]));
+    return largest;
   }
 
   // Takes what is left of b away from the biases: no motion gives it.
@@ -178,8 +218,11 @@ bool mayContradict(const ContactProblem& problem) {
 void fitIslandBiases(PushingBy pushing, double h, double offset_rate, const ContactProblem& problem, const double* r, double* q,
                      std::span<const int> order, std::vector<Contact>& contacts, SolverScratch& memory) {
   BiasFit fit(pushing, problem, r, order, contacts, memory);
-  if (memory.operations_left < 0 || fit.gather() <= kNegligible) return;
+  if (memory.operations_left < 0) return;
+  const double asked = fit.gather();
+  if (asked <= kNegligible) return;
   fit.minimise();
+  if (fit.largestLeft() <= kConsistent * asked) return;
   fit.apply(h, offset_rate, q);
 }
 

@@ -9,6 +9,7 @@
 #include "pincer/engine/world/contact_rows.h"
 #include "pincer/engine/world/contact_sides.h"
 #include "pincer/engine/world/island_threads.h"
+#include "pincer/engine/world/rest.h"
 #include "pincer/engine/world/scratch.h"
 #include "pincer/engine/world/solve_island.h"
 
@@ -38,7 +39,13 @@ int rootOf(std::vector<int>& parent, int mover) {
 void findEnds(const WorldModel& model, const WorldScratch& scratch, IslandScratch& s) {
   ContactEnds* ends = s.ends.data();
   int *const parent = s.parent.data(), *const number = s.number.data(), *const island_of = s.island_of.data();
+  s.near.clear();
   for (const Contact& c : scratch.contacts) {
+    if (c.far) {
+      ++ends;
+      continue;
+    }
+    s.near.push_back(static_cast<int>(&c - scratch.contacts.data()));
     *ends = {moverOf(model, scratch, c.a), moverOf(model, scratch, c.b)};
     for (const int mover : {ends->a, ends->b}) {
       if (mover < 0) continue;
@@ -52,33 +59,35 @@ void findEnds(const WorldModel& model, const WorldScratch& scratch, IslandScratc
 bool touches(const ContactEnds& ends, int mover) { return ends.a == mover || ends.b == mover; }
 
 // All contacts touch one mover, as in a grasp: they are one island.
-bool haveCommonMover(std::span<const ContactEnds> all) {
-  for (const int mover : {all[0].a, all[0].b}) {
-    if (mover >= 0 && std::all_of(all.begin(), all.end(), [mover](const ContactEnds& ends) { return touches(ends, mover); })) return true;
+bool haveCommonMover(const IslandScratch& s) {
+  const ContactEnds& first = s.ends[s.near[0]];
+  for (const int mover : {first.a, first.b}) {
+    if (mover >= 0 && std::all_of(s.near.begin(), s.near.end(), [&](int i) { return touches(s.ends[i], mover); })) return true;
   }
   return false;
 }
 
-void uniteMovers(std::span<const ContactEnds> all, IslandScratch& s) {
-  for (const ContactEnds& ends : all) {
+void uniteMovers(IslandScratch& s) {
+  for (const int i : s.near) {
+    const ContactEnds& ends = s.ends[i];
     if (ends.a < 0 || ends.b < 0) continue;
     const int a = rootOf(s.parent, ends.a), b = rootOf(s.parent, ends.b);
     s.parent[std::max(a, b)] = std::min(a, b);
   }
 }
 
-void makeOneIsland(int contacts, IslandScratch& s) {
+void makeOneIsland(IslandScratch& s) {
   s.islands.clear();
-  s.islands.emplace_back().contacts = contacts;
-  std::iota(s.order.begin(), s.order.begin() + contacts, 0);
+  s.islands.emplace_back().contacts = static_cast<int>(s.near.size());
+  std::copy(s.near.begin(), s.near.end(), s.order.begin());
 }
 
-void sortContacts(std::span<const ContactEnds> all, IslandScratch& s) {
-  const int n = static_cast<int>(all.size());
+void sortContacts(IslandScratch& s) {
   s.islands.clear();
-  for (int i = 0; i < n; ++i) {
-    PINCER_ASSERT(all[i].a >= 0 || all[i].b >= 0);  // two that never move have no contact
-    const int root = rootOf(s.parent, std::max(all[i].a, all[i].b));
+  for (const int i : s.near) {
+    const ContactEnds& ends = s.ends[i];
+    PINCER_ASSERT(ends.a >= 0 || ends.b >= 0);  // two that never move have no contact
+    const int root = rootOf(s.parent, std::max(ends.a, ends.b));
     if (s.island_of[root] < 0) {
       s.island_of[root] = static_cast<int>(s.islands.size());
       s.islands.emplace_back();
@@ -92,11 +101,11 @@ void sortContacts(std::span<const ContactEnds> all, IslandScratch& s) {
     place += island.contacts;
     island.contacts = 0;
   }
-  for (int i = 0; i < n; ++i) {
+  for (const int i : s.near) {
     Island& island = s.islands[s.contact_island[i]];
     s.order[island.place + island.contacts++] = i;
   }
-  PINCER_ASSERT(place == n);
+  PINCER_ASSERT(place == static_cast<int>(s.near.size()));
 }
 
 int numberOf(const WorldModel& model, const WorldScratch& scratch, const Side& side, int mover, Island& island, IslandScratch& s) {
@@ -108,6 +117,15 @@ int numberOf(const WorldModel& model, const WorldScratch& scratch, const Side& s
       s.root_inertia[mover] = rootOfInertia(model.bodies[side.index].rotation, scratch.bodies[side.index].X_WI_mid.q);
   }
   return s.number[mover];
+}
+
+// Whether neither side moves faster than what counts as rest of many contacts.
+bool isCalm(const WorldModel& model, const Contact& c) {
+  const double limit = 2 * restErrorOf(model.options.solver), limit2 = limit * limit;
+  const auto is_slow = [&](const Motion& m, const Vec3& arm_W) {
+    return m.v_W.squaredNorm() <= limit2 && m.w_W.squaredNorm() * arm_W.squaredNorm() <= limit2;
+  };
+  return is_slow(c.mover_a->start, c.arm_a_W) && is_slow(c.mover_b->start, c.arm_b_W);
 }
 
 // What the contacts of the island are to the movers.
@@ -125,6 +143,7 @@ void fillSides(const WorldModel& model, const WorldScratch& scratch, Island& isl
     fillSide(model, scratch, c, rows, false, ends.b, numberOf(model, scratch, c.b, ends.b, island, s), s.root_inertia, sides[1]);
     if (ends.a >= 0 && ends.a == ends.b) joinSides(rows, sides);
     island.settling = std::max(island.settling, c.settling);
+    island.calm = island.calm && island.contacts >= kManyContacts && isCalm(model, c);
   }
 }
 
@@ -169,7 +188,7 @@ void gather(const WorldModel& model, WorldScratch& scratch) {
   s.rows = 0;
   for (std::size_t k = 0; k < s.islands.size(); ++k) {
     Island& island = s.islands[k];
-    if (s.islands.size() == 1) {
+    if (s.islands.size() == 1 && scratch.far_contacts == 0) {
       takeRows(scratch, island);
     } else {
       copyRows(scratch, static_cast<int>(k), s.rows, island, s);
@@ -187,9 +206,13 @@ int nextSettling(const Island& island, double tolerance) {
   return island.settling - 1;
 }
 
-void scatter(const IslandScratch& s, const Island& island, double tolerance, WorldScratch& scratch) {
-  const int settling = nextSettling(island, tolerance);
-  const bool quiet = island.result.method == SolveMethod::kWarmStart;
+double restSpeed(const Island& island, const SolverOptions& options) {
+  return island.contacts < kManyContacts ? kRestSpeed : std::max(kRestSpeed, 2 * restErrorOf(options));
+}
+
+void scatter(const IslandScratch& s, const Island& island, const SolverOptions& options, WorldScratch& scratch) {
+  const int settling = nextSettling(island, options.tolerance);
+  const double rest_speed = island.result.method == SolveMethod::kWarmStart ? restSpeed(island, options) : 0;
   const int *const order = s.order.data() + island.place, *const from_row = scratch.first_row.data();
   Contact* const contacts = scratch.contacts.data();
   const double *r_k = island.r, *u_k = island.u;
@@ -197,7 +220,7 @@ void scatter(const IslandScratch& s, const Island& island, double tolerance, Wor
   for (int n = 0; n < island.contacts; ++n) {
     const int i = order[n];
     contacts[i].settling = settling;
-    contacts[i].quiet = quiet;
+    contacts[i].rest_speed = rest_speed;
     contacts[i].yields = island.result.yields;
     if (r_k == r) continue;  // nothing was copied
     const int first = from_row[i], rows = from_row[i + 1] - first;
@@ -216,6 +239,7 @@ void addResult(const SolveResult& island, SolveResult& all) {
   all.method = std::max(all.method, island.method);
   all.iterations += island.iterations;
   all.residual = std::max(all.residual, island.residual);
+  all.error = std::max(all.error, island.error);
   all.converged = all.converged && island.converged;
   all.give = std::max(all.give, island.give);
 }
@@ -227,6 +251,7 @@ IslandScratch::IslandScratch(const WorldModel& model) {
   const std::size_t movers = model.bodies.size() + model.points.size();
   islands.reserve(n);
   for (std::vector<int>* per_contact : {&order, &contact_island}) per_contact->resize(n);
+  near.reserve(n);
   ends.resize(n);
   for (std::vector<int>* per_mover : {&parent, &number, &island_of}) per_mover->resize(movers);
   first_row.resize(2 * n + 1);
@@ -247,12 +272,13 @@ void solveIslands(const WorldModel& model, WorldScratch& scratch) {
   scratch.solve = {};
   if (scratch.contacts.empty()) return;
   findEnds(model, scratch, s);
-  const std::span<const ContactEnds> ends(s.ends.data(), scratch.contacts.size());
-  if (haveCommonMover(ends)) {
-    makeOneIsland(static_cast<int>(ends.size()), s);
+  s.islands.clear();
+  if (s.near.empty()) return;
+  if (haveCommonMover(s)) {
+    makeOneIsland(s);
   } else {
-    uniteMovers(ends, s);
-    sortContacts(ends, s);
+    uniteMovers(s);
+    sortContacts(s);
   }
   gather(model, scratch);
   const int count = static_cast<int>(s.islands.size());
@@ -264,7 +290,7 @@ void solveIslands(const WorldModel& model, WorldScratch& scratch) {
   }
   std::int64_t operations = 0;
   for (const Island& island : s.islands) {
-    scatter(s, island, model.options.solver.tolerance, scratch);
+    scatter(s, island, model.options.solver, scratch);
     addResult(island.result, scratch.solve);
     operations += island.operations;
   }

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "pincer/contact/math.h"
-#include "pincer/engine/solve/cascade.h"
+#include "pincer/engine/solve/contact_solver.h"
 
 namespace pincer::engine {
 
@@ -21,12 +21,13 @@ class IslandThreads;
 struct Island {
   int place = 0, contacts = 0, movers = 0;
   int settling = 0;  // the most of its contacts (state.h)
+  bool calm = true;  // all that moves of it is as good as at rest
   // Filled by solveIslands, without a value before.
   // What the solver sees: of one among several islands in IslandScratch, of the only one the world's own (scratch.h), uncopied.
   int rows;
   int* first_row;
   double *mu, *q, *r, *u;
-  std::int64_t operations;  // that its solution took (solve/cascade.h)
+  std::int64_t operations;  // that its solution took (solve/solver_scratch.h)
   SolveResult result;
 
   Island() {}  // NOLINT(modernize-use-equals-default): a defaulted one would clear all
@@ -45,7 +46,8 @@ struct IslandScratch {
 
   std::vector<Island> islands;
   int rows = 0;                     // of all islands
-  std::vector<int> order;           // which contact is at a place
+  std::vector<int> near;            // the contacts that are solved, see far_contacts.h
+  std::vector<int> order;           // which of all contacts is at a place
   std::vector<int> parent, number;  // per mover: union-find; its number within its island
   std::vector<int> island_of;       // per root mover; per contact, while sorting
   std::vector<int> contact_island;

@@ -1,4 +1,6 @@
 // What each contact remembers of a tick.
+#include <algorithm>
+
 #include "pincer/contact/functions/invariants.h"
 #include "pincer/engine/world/contact_rows.h"
 #include "pincer/engine/world/rest.h"
@@ -6,7 +8,16 @@
 namespace pincer::engine {
 namespace {
 
-void remember(const Contact& c, double h, ContactMemory& m) {
+// How long it has been open by next to nothing, kOpenTicks if by more.
+int openTicks(const Contact& c, double hovering) {
+  if (c.active()) return 0;
+  if (!(c.phi <= hovering)) return kOpenTicks;
+  return std::min(c.open_ticks + 1, kOpenTicks);
+}
+
+void remember(const Contact& c, double h, double hovering, ContactMemory& m) {
+  const int open_ticks = openTicks(c, hovering);
+  const bool hovers = open_ticks > 0 && open_ticks < kOpenTicks;
   m.id = c.id;
   m.r = c.r;
   m.t1_W = c.R_WC.col(0);
@@ -15,10 +26,12 @@ void remember(const Contact& c, double h, ContactMemory& m) {
   m.arm_b_W = c.arm_b_W;
   m.offset_C.setZero();
   m.active = c.active();
+  m.open_ticks = open_ticks;
+  m.anchored = m.active ? !c.sliding : hovers && c.stuck;
   m.sliding = c.sliding;
   m.closing = c.closing;
   m.settling = c.settling;
-  if (!m.active || m.sliding) return;
+  if (!m.anchored) return;
   withRows(rowsOf(c.material), [&](auto rows) {
     double v_end_C[kMaxContactRows];
     relativeVelocity(c, c.mover_a->end, c.mover_b->end, rows, v_end_C);
@@ -31,9 +44,13 @@ void remember(const Contact& c, double h, ContactMemory& m) {
 
 constexpr double kAligned = 1e-12;  // of the offsets: round-off
 
+bool sticks(const ContactMemory& m) { return m.active && !m.sliding; }
+// Or is as good as closed: then it takes its offset from its face.
+bool mayStick(const ContactMemory& m) { return sticks(m) || (m.open_ticks > 0 && m.open_ticks < kOpenTicks); }
+
 bool isStuckAlike(const ContactMemory& x, const ContactMemory& y) {
   constexpr double kSamePlane = 0.9999;  // cosine of the angle between the normals
-  return x.id >> 32 == y.id >> 32 && y.active && !y.sliding && x.n_W.dot(y.n_W) > kSamePlane;
+  return x.id >> 32 == y.id >> 32 && mayStick(y) && x.n_W.dot(y.n_W) > kSamePlane;
 }
 
 // Makes the offsets of one face's contacts those of one rigid motion in its plane, d + theta n x rho: what no motion can undo would wedge
@@ -41,13 +58,16 @@ bool isStuckAlike(const ContactMemory& x, const ContactMemory& y) {
 void alignOffsets(std::span<ContactMemory> face) {
   Vec3 centre = Vec3::Zero(), d = Vec3::Zero();
   const auto offset_W = [](const ContactMemory& m) { return Vec3(m.t1_W * m.offset_C[0] + m.n_W.cross(m.t1_W) * m.offset_C[1]); };
-  const auto count = static_cast<double>(face.size());
+  const auto count = static_cast<double>(std::count_if(face.begin(), face.end(), sticks));
+  if (count == 0) return;
   for (const ContactMemory& m : face) {
+    if (!sticks(m)) continue;
     centre += m.arm_a_W / count;
     d += offset_W(m) / count;
   }
   double turn = 0, spread = 0;
   for (const ContactMemory& m : face) {
+    if (!sticks(m)) continue;
     const Vec3 rho = m.arm_a_W - centre;
     turn += m.n_W.dot(rho.cross(offset_W(m)));
     spread += rho.squaredNorm();
@@ -56,11 +76,14 @@ void alignOffsets(std::span<ContactMemory> face) {
   const auto fitted_W = [&](const ContactMemory& m) { return Vec3(d + theta * m.n_W.cross(m.arm_a_W - centre)); };
   double largest = 0, change = 0;
   for (const ContactMemory& m : face) {
+    if (!sticks(m)) continue;
     largest = std::max(largest, offset_W(m).squaredNorm());
     change = std::max(change, (fitted_W(m) - offset_W(m)).squaredNorm());
   }
-  if (change <= kAligned * kAligned * largest) return;  // so that what rests does so to the bit
+  const bool is_aligned = change <= kAligned * kAligned * largest;  // so that what rests does so to the bit
   for (ContactMemory& m : face) {
+    if (is_aligned && sticks(m)) continue;
+    m.anchored = true;
     const Vec3 offset = fitted_W(m);
     m.offset_C[0] = m.t1_W.dot(offset);
     m.offset_C[1] = m.n_W.cross(m.t1_W).dot(offset);
@@ -76,7 +99,7 @@ void alignFaces(std::span<ContactMemory> contacts, std::span<const SleepingConta
       continue;
     }
     std::size_t end = first + 1;
-    const bool stuck = contacts[first].active && !contacts[first].sliding;
+    const bool stuck = mayStick(contacts[first]);
     while (stuck && end < contacts.size() && isStuckAlike(contacts[first], contacts[end])) ++end;
     if (end > first + 1) alignOffsets(contacts.subspan(first, end - first));
     first = end;
@@ -114,7 +137,8 @@ std::uint64_t nextId(std::span<const SleepingContact> sleeping) {
 }  // namespace
 
 void rememberContacts(const WorldModel& model, WorldScratch& scratch, WorldState& state) {
-  const double h = scratch.h;
+  constexpr double kHovering = 1e-3;  // of the margin
+  const double h = scratch.h, hovering = kHovering * model.options.contact_margin;
   const bool may_sleep = model.options.sleep && scratch.still_bodies > 0;
   std::span<SleepingContact> sleeping = scratch.sleep.contacts;
   PINCER_ASSERT(scratch.contacts.size() + sleeping.size() <= state.contacts.size());
@@ -128,7 +152,7 @@ void rememberContacts(const WorldModel& model, WorldScratch& scratch, WorldState
       next_id = nextId(sleeping);
     }
     if (may_sleep) keepOld(scratch, c, place, scratch.kept);
-    remember(c, h, *place++);
+    remember(c, h, hovering, *place++);
   }
   if (!sleeping.empty()) place = putSleeping(sleeping, ~std::uint64_t{0}, first, place);
   state.contact_count = static_cast<int>(place - first);

@@ -7,7 +7,7 @@
 
 #include "pincer/contact/surface/patch_cache.h"
 #include "pincer/engine/model.h"
-#include "pincer/engine/solve/cascade.h"
+#include "pincer/engine/solve/solver_scratch.h"
 #include "pincer/engine/state.h"
 #include "pincer/engine/step.h"
 #include "pincer/engine/world/broad_phase.h"
@@ -23,7 +23,7 @@ struct MoverScratch {
   Motion start, free, end;        // at the start of the tick; at its end, were there no contact; at its end (of bodies: if touched)
   Vec3 impulse_W = Vec3::Zero();  // of all contacts [N s]; of what doesn't move, of those of awake bodies
   bool touched = false;           // some contact pushes on it
-  bool quiet = false;             // and the last tick's impulses still fit for all that do
+  double rest_speed = 0;          // and the last tick's impulses still fit for all that do: slower than this it is at rest (rest.h) [m/s]
   bool closing = false;           // and one of those closes in this tick
   bool still = false;             // of bodies: nothing of its state changed in this tick
 };
@@ -115,11 +115,12 @@ struct KeptMemory {
 struct WorldScratch {
   explicit WorldScratch(const WorldModel& model);
 
-  std::int64_t operations_left = kNoLimit;  // of the solver's budget for this tick (solve/cascade.h)
+  std::int64_t operations_left = kNoLimit;  // of the solver's budget for this tick (solve/solver_scratch.h)
   double h;                                 // length of this part of the tick [s]; 0 in an impact, which takes no time
   std::vector<BodyScratch> bodies;
   std::vector<PointScratch> points;
   std::vector<Contact> contacts;  // of what is awake, see forEachContact; capacity options.max_contacts
+  int far_contacts = 0;           // of them, see far_contacts.h
   bool contacts_dropped = false;
   std::vector<ImpactPair> fast_pairs;    // move so fast that the middle of the tick doesn't show whether they meet; capacity as contacts
   std::vector<ImpactPair> pushed_pairs;  // get that fast in this tick (notePushedPairs); capacity as contacts

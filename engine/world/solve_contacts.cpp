@@ -1,6 +1,7 @@
 #include "pincer/contact/functions/invariants.h"
 #include "pincer/engine/solve/cone.h"
 #include "pincer/engine/world/contact_rows.h"
+#include "pincer/engine/world/far_contacts.h"
 #include "pincer/engine/world/stages.h"
 
 namespace pincer::engine {
@@ -24,9 +25,14 @@ bool isResidue(const WorldModel& model, const WorldScratch& scratch, const Conta
 void readSolution(const WorldModel& model, const WorldScratch& scratch, int i, Contact& c) {
   const int first = scratch.first_row[i], count = scratch.first_row[i + 1] - first;
   const double *const r = scratch.r.data() + first, *const u = scratch.u.data() + first;
-  PINCER_ASSERT(!scratch.solve.converged || r[kNormalRow] >= 0);
-  PINCER_ASSERT(!scratch.solve.converged || isInCone(r, count, c.mu, 1e-6) || scratch.h == 0);
+  PINCER_ASSERT(c.far || !scratch.solve.converged || r[kNormalRow] >= 0);
+  PINCER_ASSERT(c.far || !scratch.solve.converged || isInCone(r, count, c.mu, 1e-6) || scratch.h == 0);
   c.r.setZero();
+  if (c.far) {
+    c.impulse_W.setZero();
+    c.sliding = false;
+    return;
+  }
   withRows(count, [&](auto rows) {
     for (int k = 0; k < rows; ++k) c.r[k] = r[k];
   });
@@ -39,11 +45,16 @@ void readSolution(const WorldModel& model, const WorldScratch& scratch, int i, C
 
 }  // namespace
 
-void solveContacts(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
-  scratch.solve = {};
+void prepareContacts(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
   if (scratch.contacts.empty()) return;
   sortContacts(scratch);
   fillContacts(model, state, scratch);
+  markFarContacts(model, scratch);
+}
+
+void solveContacts(const WorldModel& model, WorldScratch& scratch) {
+  scratch.solve = {};
+  if (scratch.contacts.empty()) return;
   solveIslands(model, scratch);
   for (std::size_t i = 0; i < scratch.contacts.size(); ++i) readSolution(model, scratch, static_cast<int>(i), scratch.contacts[i]);
 }

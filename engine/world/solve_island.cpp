@@ -2,10 +2,9 @@
 
 #include <algorithm>
 
-#include "pincer/engine/solve/contact_equations.h"
-#include "pincer/engine/solve/gauss_seidel.h"
-#include "pincer/engine/solve/large_problem.h"
+#include "pincer/engine/solve/contact_solver.h"
 #include "pincer/engine/solve/round_contact.h"
+#include "pincer/engine/solve/sweeps.h"
 #include "pincer/engine/world/contact_rows.h"
 #include "pincer/engine/world/island_bias.h"
 #include "pincer/engine/world/scratch.h"
@@ -14,23 +13,10 @@
 namespace pincer::engine {
 namespace {
 
-constexpr double kLost = 1e-2;       // residual that is no answer
-constexpr int kStoppingSweeps = 30;  // instead
-constexpr int kLoopContacts = 12;    // fewer are solved to the end: bodies that are pinched must not creep
-constexpr int kHeapContacts = 200;   // beyond, sweeps go on in the next tick from what they reached in this one
-constexpr double kHeapLost = 0.3;    // their residual that is no answer: impulses were scaled down to add no energy
-
-// What is tried before what contacts ask for is fitted to what was found.
-SolverOptions withoutCostly(SolverOptions options) {
-  options.interior_point_iterations = options.shift_updates = options.gauss_seidel_sweeps = 0;
-  return options;
-}
-
-// Around loops of bodies that are held more than six-fold contacts give way where they contradict each other.
-SolverOptions asOfLoops(SolverOptions options) {
-  options.largest_give = kLargeSpeed;
-  return options;
-}
+constexpr int kManyRound = 200;  // contacts, from which it pays to know which are between balls
+constexpr double kLost = 0.3;         // residual that is no answer
+constexpr int kStoppingSweeps = 30;    // instead
+constexpr double kLargestGive = 1e-4;  // by which contacts around loops of bodies may contradict each other [m/s]
 
 class IslandSolve {
  public:
@@ -41,7 +27,6 @@ class IslandSolve {
         memory_(*scratch.islands.solvers[thread]),
         problem_(problemOf(island_, scratch.islands)),
         order_(scratch.islands.order.data() + island_.place, static_cast<std::size_t>(island_.contacts)),
-        is_heap_(island_.contacts > kHeapContacts),
         is_loop_(mayContradict(problem_)),
         tick_(model.options.h) {}
 
@@ -51,11 +36,18 @@ class IslandSolve {
         is_limited ? std::max<std::int64_t>(scratch_.operations_left, 0) * island_.rows / scratch_.islands.rows : kNoLimit;
     const std::int64_t reserve = is_limited ? reserveForStops() : 0;
     memory_.operations_left = share - reserve;
-    const bool contradicts = is_loop_ && scratch_.h > 0;
-    const bool is_swept = is_heap_ && isEntangled();
-    if (is_swept) findRoundContacts(memory_.round, problem_);
-    if (contradicts && (!is_heap_ || is_swept)) fit(PushingBy::kLastTick);
-    contradicts && !is_heap_ ? solveLoop() : solveOther();
+    if (island_.contacts > kManyRound) findRoundContacts(memory_.round, problem_);
+    SolverOptions options = options_;
+    if (is_loop_ && scratch_.h > 0) {
+      fit(PushingBy::kLastTick);
+      options.largest_give = kLargestGive;
+    }
+    solve(options);
+    if (scratch_.h > 0 && memory_.operations_left >= 0 && isWedged(problem_, island_.r, island_.result)) {
+      fit(PushingBy::kWedged);
+      std::fill(island_.r, island_.r + island_.rows, 0.0);  // or the squeeze would stay
+      solveAgain(options);
+    }
     if (island_.result.give > 0) giveWay(scratch_.h, offsetRate(), problem_, memory_.give.data(), island_.q, order_, scratch_.contacts);
     std::int64_t spent = share - reserve - memory_.operations_left;
     if (isLost()) spent += stopOnly(reserve + std::max<std::int64_t>(memory_.operations_left, 0));
@@ -65,26 +57,8 @@ class IslandSolve {
  private:
   static ContactProblem problemOf(Island& island, IslandScratch& s) {
     const auto n = static_cast<std::size_t>(island.contacts);
-    return {{island.first_row, n + 1},        {island.mu, n}, {s.sides.data() + island.place, n},
-            VectorMap(island.q, island.rows), island.movers,  island.settling > 0};
-  }
-
-  void solveLoop() {
-    const bool is_small = island_.contacts < kLoopContacts;
-    solve(withoutCostly(options_));
-    if (!island_.result.converged) {
-      fit(PushingBy::kImpulses);
-      solveAgain(is_small ? options_ : asOfLoops(options_));
-    }
-    if (!island_.result.converged && is_small) solveAgain(asOfLoops(options_));
-  }
-
-  void solveOther() {
-    solve(is_loop_ && island_.contacts >= kLoopContacts && !is_heap_ ? asOfLoops(options_) : options_);
-    if (!(scratch_.h > 0 && memory_.operations_left >= 0 && isWedged(problem_, island_.r, island_.result))) return;
-    fit(PushingBy::kWedged);
-    std::fill(island_.r, island_.r + island_.rows, 0.0);  // or the squeeze would stay
-    solveAgain(options_);
+    const std::span<const ContactSide> sides(s.sides[static_cast<std::size_t>(island.place)].data(), 2 * n);
+    return {{island.first_row, n + 1}, {island.mu, n}, sides, VectorMap(island.q, island.rows), island.movers, island.settling > 0, island.calm};
   }
 
   void fit(PushingBy pushing) {
@@ -119,10 +93,7 @@ class IslandSolve {
   // What is kept of the budget for stopOnly: support doesn't depend on it.
   std::int64_t reserveForStops() const { return kStoppingSweeps * kPerContactSwept * island_.contacts; }
   double offsetRate() const { return scratch_.h > 0 ? kTangentCorrection / tick_ : 0; }
-  bool isEntangled() const { return chooseForm(problem_, memory_) == EquationForm::kTooLarge; }
-  bool isLost() const {
-    return !island_.result.converged && !island_.result.yields && island_.result.residual > (is_heap_ ? kHeapLost : kLost);
-  }
+  bool isLost() const { return !island_.result.converged && !island_.result.yields && island_.result.residual > kLost; }
 
   const SolverOptions& options_;
   WorldScratch& scratch_;
@@ -130,7 +101,7 @@ class IslandSolve {
   SolverScratch& memory_;
   ContactProblem problem_;
   const std::span<const int> order_;
-  const bool is_heap_, is_loop_;
+  const bool is_loop_;
   const double tick_;  // [s]
 };
 

@@ -3,7 +3,8 @@
 //   1 predict         mid-tick poses, velocities that the tick would end with if nothing touched
 //   2 collideBodies   contacts between bodies, at the mid-tick poses
 //   (3 a caller with points adds their contacts: ContactSource)
-//   4 solveContacts   one coupled solve: rigid contacts and compliant points
+//   4 prepareContacts what each contact remembers and asks for (contact_rows.h)
+//     solveContacts   one coupled solve: rigid contacts and compliant points
 //   5 gatherImpulses  contact impulses to bodies and points
 //   6 advance         impulses to momenta, momenta to poses
 //
@@ -35,7 +36,8 @@ class ContactSource {
 void predict(const WorldModel& model, const WorldState& state, WorldScratch& scratch);
 void predictImpact(const WorldModel& model, const WorldState& state, WorldScratch& scratch);  // the same where no time passes
 void collideBodies(const WorldModel& model, const WorldState& state, WorldScratch& scratch);
-void solveContacts(const WorldModel& model, const WorldState& state, WorldScratch& scratch);
+void prepareContacts(const WorldModel& model, const WorldState& state, WorldScratch& scratch);
+void solveContacts(const WorldModel& model, WorldScratch& scratch);
 void gatherImpulses(const WorldModel& model, WorldScratch& scratch);
 void advance(const WorldModel& model, WorldState& state, WorldScratch& scratch);
 

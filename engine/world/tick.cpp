@@ -6,6 +6,7 @@
 #include "pincer/engine/motion/driven_motion.h"
 #include "pincer/engine/motion/free_motion.h"
 #include "pincer/engine/world/budget.h"
+#include "pincer/engine/world/far_contacts.h"
 #include "pincer/engine/world/impact.h"
 #include "pincer/engine/world/island_sleep.h"
 #include "pincer/engine/world/push_out.h"
@@ -270,8 +271,11 @@ class Tick {
       scratch_.impact_pairs.clear();
       if (impactsWait(model_, state_, scratch_)) report_.status |= kImpactsCut;
     }
-    solveContacts(model_, state_, scratch_);
-    gatherImpulses(model_, scratch_);
+    prepareContacts(model_, state_, scratch_);
+    do {
+      solveContacts(model_, scratch_);
+      gatherImpulses(model_, scratch_);
+    } while (haveFarClosed(model_, scratch_));
     mark(scratch_, Stage::kSolve);
     chargeSurroundings();
   }

@@ -37,7 +37,7 @@ void loosen(Contact& x, Contact& y) {
 // w r_n [m/s]
 double responseOf(const ContactProblem& problem, int i, const double* r) {
   double w = 0;
-  for (const ContactSide& side : problem.sides[static_cast<std::size_t>(i)]) {
+  for (const ContactSide& side : problem.sidesOf(i)) {
     if (side.mover >= 0) w += dot6(side.A[kNormalRow], side.A[kNormalRow]);
   }
   return w * r[problem.firstRow(i) + kNormalRow];

@@ -4,7 +4,7 @@
 #include <random>
 #include <vector>
 
-#include "pincer/engine/solve/cascade.h"
+#include "pincer/engine/solve/contact_solver.h"
 
 namespace pincer::tests {
 
@@ -17,7 +17,10 @@ struct OwnedContactProblem {
   Eigen::MatrixXd W;  // what `sides` stand for, for the tests to judge by
   Eigen::VectorXd q;
 
-  engine::ContactProblem view() { return {first_row, mu, sides, {q.data(), q.size()}, movers}; }
+  engine::ContactProblem view() {
+    const std::span<const engine::ContactSide> all(sides.empty() ? nullptr : sides.front().data(), 2 * sides.size());
+    return {first_row, mu, all, {q.data(), q.size()}, movers};
+  }
   // Makes a contact with the world softer by `compliance` [1/kg] along the normal.
   void soften(int contact, double compliance);
 };

@@ -1,7 +1,7 @@
 // Contacts that contradict each other, and give way.
 #include <gtest/gtest.h>
 
-#include "pincer/engine/solve/cascade.h"
+#include "pincer/engine/solve/contact_solver.h"
 #include "pincer/tests/support/contact_problems.h"
 
 namespace pincer::engine {
@@ -13,7 +13,6 @@ using tests::OwnedContactProblem;
 SolverOptions giving(double most) {
   SolverOptions options;
   options.largest_give = most;
-  options.content_speed = 0;  // or a squeeze of 1e5 N s, to which residuals are relative, would count as an answer
   return options;
 }
 

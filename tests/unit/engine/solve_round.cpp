@@ -1,7 +1,7 @@
 // Contacts between balls in their short form do what A does.
 #include <gtest/gtest.h>
 
-#include "pincer/engine/solve/large_problem.h"
+#include "pincer/engine/solve/sweeps.h"
 #include "pincer/engine/solve/mobility.h"
 #include "pincer/engine/solve/residual.h"
 #include "pincer/engine/solve/round_contact.h"
@@ -90,8 +90,10 @@ TEST(RoundContact, IsSweptAsItsBlocksAre) {
       ContactProblem problem = p.view();
       if (form == 1) findRoundContacts(scratch.round, problem);
       Eigen::VectorXd r = Eigen::VectorXd::Zero(p.q.size()), u = r;
-      const double start = contactResidual(problem, r, scratch, u);
-      converged &= solveLargeProblem(problem, 1e-12, start, scratch, r.data(), u.data()).converged;
+      const double enough = 1e-12 * referenceSpeed(problem);
+      weighContacts(problem, scratch);
+      const ContactError start = errorOf(problem, r.data(), scratch, u.data());
+      converged &= sweepUntil(problem, enough, start, scratch, r.data(), u.data()).error.speed <= enough;
       found[form] = u;
     }
     if (!converged) continue;

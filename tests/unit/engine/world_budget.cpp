@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "pincer/contact/error.h"
-#include "pincer/engine/solve/gauss_seidel.h"
+#include "pincer/engine/solve/sweeps.h"
 #include "pincer/engine/step.h"
 #include "pincer/tests/support/contact_problems.h"
 #include "pincer/tests/support/worlds.h"

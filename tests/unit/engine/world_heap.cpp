@@ -85,7 +85,7 @@ TEST(Heap, OfFiftyBallsIsSweptWhereNewtonsMethodFails) {
   for (int tick = 0; tick < kTicks; ++tick) {
     const StepReport report = step(crate.model, crate.state, scratch);
     flagged += report.status != kStepOk;
-    if (report.solve.method == SolveMethod::kGaussSeidel) {
+    if (report.solve.method == SolveMethod::kSweeps) {
       ++swept;
     } else {
       steps += report.solve.iterations;

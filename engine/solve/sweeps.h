@@ -1,7 +1,7 @@
-// gauss_seidel: projected Gauss-Seidel with an exact solution per contact (local_contact.h).
+// sweeps: projected Gauss-Seidel with an exact solution per contact (local_contact.h).
 //
-// Slow where contacts are redundant or masses differ, but it hardly ever fails to improve: it carries Newton's method to where that converges, and
-// heaps of hundreds of contacts from tick to tick (large_problem.h).
+// Slow where contacts are redundant or masses differ, but it hardly ever fails to improve: for what is entangled so that no factorisation is affordable,
+// as heaps of hundreds of balls, warm-started from tick to tick.
 //
 // accelerate(): z is the way of the last sweep, p the whole way of the one before. On to the least of the energy
 //   E(r) = |A^T r|^2 / 2 + r . (q + s),   s_i = mu_i |u_iT| e_n as the sweep left it
@@ -12,34 +12,18 @@
 #pragma once
 #include <cmath>
 
-#include "pincer/engine/solve/scaled_problem.h"
+#include "pincer/engine/solve/residual.h"
 
 namespace pincer::engine {
 
 constexpr std::int64_t kPerContactSwept = 250;  // multiplications of a sweep, but for
 constexpr std::int64_t kPerSlideStep = 60;      // those of a step of a search for a slide (local_contact.h)
 
-// What is swept: a ContactProblem or a ScaledProblem.
-struct SweptProblem {
-  std::span<const int> first_row;
-  std::span<const double> mu;
-  std::span<const ContactSides> sides;
-  const double* q;
-  double* y;  // A^T r, kMoverFreedoms per mover: it follows r
-  int movers;
-  std::span<const RoundContact> round = {};
-
-  int contactCount() const { return static_cast<int>(mu.size()); }
-  int rowCount() const { return first_row.back(); }
-  int firstRow(int i) const { return first_row[static_cast<std::size_t>(i)]; }
-  int rows(int i) const { return firstRow(i + 1) - firstRow(i); }
-  double friction(int i) const { return mu[static_cast<std::size_t>(i)]; }
-};
-
-// Sweeps over the impulses `r`, each at a cost linear in the contacts. Uses scratch.local, step, response, rhs and interior.
-class GaussSeidel {
+// Sweeps over the impulses `r`, whose contacts are weighed, each at a cost linear in the contacts; scratch.y is A^T r, and follows. Uses scratch.local,
+// change, work, direction and way.
+class Sweeps {
  public:
-  GaussSeidel(const SweptProblem& problem, SolverScratch& scratch, double* r);
+  Sweeps(const ContactProblem& problem, SolverScratch& scratch, double* r);
 
   void sweep(bool backwards);
 
@@ -58,11 +42,12 @@ class GaussSeidel {
   void relax(int i);
   double solveOwn(int i, const RoundContact& round, int rows, double* u, double* r);
   template <class Rows>
-  double solveOwn(int i, const ContactSides& sides, Rows rows, double* u, double* r);
+  double solveOwn(int i, std::span<const ContactSide> sides, Rows rows, double* u, double* r);
   void goFurther(int i, double a, double b);
 
-  const SweptProblem problem_;
+  const ContactProblem& problem_;
   double* const r_;
+  double* const y_;
   static constexpr int kTermsBefore = 2;
   double* const terms_;  // per contact: of isotropic ones 1 / W_tt, 0 of others; 1 / W_nn; the inverse of W_ii, of others; W_ii
   int stride_;
@@ -74,7 +59,11 @@ class GaussSeidel {
   int slide_steps_ = 0;
 };
 
-// `sweeps` passes over all contacts, in order. `it` is evaluated on return.
-void sweepGaussSeidel(const ScaledProblem& problem, int sweeps, SolverScratch& scratch, Iterate& it);
+// From the warm start `r`, whose y = A^T r and u scratch.y and `u` are, until the error is at most `enough` [m/s] or `start` shows that a few do.
+struct SweptResult {
+  int sweeps = 0;
+  ContactError error;
+};
+SweptResult sweepUntil(const ContactProblem& problem, double enough, const ContactError& start, SolverScratch& scratch, double* r, double* u);
 
 }  // namespace pincer::engine

@@ -1,4 +1,4 @@
-#include "pincer/engine/solve/gauss_seidel.h"
+#include "pincer/engine/solve/sweeps.h"
 
 #include <algorithm>
 #include <limits>
@@ -12,6 +12,12 @@
 
 namespace pincer::engine {
 namespace {
+
+constexpr int kVisits = 48000;  // of contacts in a tick: 160 sweeps of the heap of 100 balls, 16 of one of 1000
+constexpr int kFewestSweeps = 4, kMostSweeps = 160;
+constexpr int kRestingSweeps = 2;  // of what was near enough before them: so a heap comes to rest
+constexpr int kBetweenLooks = 4;   // a look at the residual costs half a sweep,
+constexpr double kWorthALook = 4;  // and a sweep that changed more than so many times what is enough needs none
 
 // inverse = W^-1, rows x rows. Not a number where there is none: such a stop is in no cone.
 void invertOwn(int rows, const double* W, double* inverse) {
@@ -31,7 +37,7 @@ void invertOwn(int rows, const double* W, double* inverse) {
   }
 }
 
-int mostRows(const SweptProblem& problem) {
+int mostRows(const ContactProblem& problem) {
   int most = 0;
   for (int i = 0; i < problem.contactCount(); ++i) most = std::max(most, problem.rows(i));
   return most;
@@ -39,30 +45,31 @@ int mostRows(const SweptProblem& problem) {
 
 }  // namespace
 
-GaussSeidel::GaussSeidel(const SweptProblem& problem, SolverScratch& scratch, double* r)
+Sweeps::Sweeps(const ContactProblem& problem, SolverScratch& scratch, double* r)
     : problem_(problem),
       r_(r),
+      y_(scratch.y.data()),
       terms_(scratch.local.data()),
-      change_(scratch.step.data()),
-      way_(scratch.response.data()),
-      y_before_(scratch.rhs.data()),
-      y_way_(scratch.workspace.data()),
+      change_(scratch.change.data()),
+      way_(scratch.work.data()),
+      y_before_(scratch.direction.data()),
+      y_way_(scratch.way.data()),
       weight_(scratch.weight.data()) {
   const int most = mostRows(problem);
   stride_ = kTermsBefore + 2 * most * most;
   for (int i = 0; i < problem.contactCount(); ++i) fillTerms(i);
   const int size = kMoverFreedoms * problem_.movers;
-  std::copy(problem_.y, problem_.y + size, y_before_);
+  std::copy(y_, y_ + size, y_before_);
   std::fill(way_, way_ + problem_.rowCount(), 0.0);
   std::fill(y_way_, y_way_ + size, 0.0);
 }
 
-void GaussSeidel::fillTerms(int i) {
+void Sweeps::fillTerms(int i) {
   if (!problem_.round.empty() && problem_.round[static_cast<std::size_t>(i)].isRound()) return;
   const int rows = problem_.rows(i);
   double *const terms = termsOf(i), *const inverse = terms + kTermsBefore, *const W = inverse + rows * rows;
   std::fill(W, W + rows * rows, 0.0);
-  for (const ContactSide& side : problem_.sides[static_cast<std::size_t>(i)]) {
+  for (const ContactSide& side : problem_.sidesOf(i)) {
     if (side.mover >= 0) addCoupling(side, rows, side, rows, W, rows);
   }
   const bool is_isotropic = rows == kTorsionRow && isIsotropic(W, rows);
@@ -72,16 +79,16 @@ void GaussSeidel::fillTerms(int i) {
 }
 
 // Solves contact i with all others held; the movers' y follows.
-void GaussSeidel::relax(int i) {
+void Sweeps::relax(int i) {
   const int first = problem_.firstRow(i);
   double *const r_i = r_ + first, *const change_i = change_ + first;
-  const double *const q_i = problem_.q + first, *const way_i = way_ + first;
+  const double *const q_i = problem_.q.data() + first, *const way_i = way_ + first;
   withForm(problem_, i, [&](auto rows, const auto& form) {
     for (int k = 0; k < rows; ++k) work_of_way_ += q_i[k] * way_i[k];
     // What pushes on nothing and doesn't close: so are many of a heap's contacts, and most rows needn't be looked at.
-    if (r_i[kNormalRow] == 0 && normalVelocityOf(form, q_i[kNormalRow], problem_.y) >= 0) return std::fill(change_i, change_i + rows, 0.0);
+    if (r_i[kNormalRow] == 0 && normalVelocityOf(form, q_i[kNormalRow], y_) >= 0) return std::fill(change_i, change_i + rows, 0.0);
     double u[kMaxContactRows], r[kMaxContactRows];
-    velocityOf(form, rows, q_i, problem_.y, u);
+    velocityOf(form, rows, q_i, y_, u);
     const double shift = solveOwn(i, form, rows, u, r);
     double change2 = 0;
     for (int k = 0; k < rows; ++k) {
@@ -93,12 +100,12 @@ void GaussSeidel::relax(int i) {
     work_of_change_ += shift * change_i[kNormalRow];
     work_of_way_ += shift * way_i[kNormalRow];
     largest_change2_ = std::max(largest_change2_, weight_[i] * weight_[i] * change2);
-    addImpulse(form, rows, change_i, problem_.y);
+    addImpulse(form, rows, change_i, y_);
   });
 }
 
 // r = the impulse of contact i, which has the velocity u with the present one. Returns its mu |u_T| with r.
-[[gnu::always_inline]] inline double GaussSeidel::solveOwn(int i, const RoundContact& round, int, double* u, double* r) {
+[[gnu::always_inline]] inline double Sweeps::solveOwn(int i, const RoundContact& round, int, double* u, double* r) {
   const double* const r_i = r_ + problem_.firstRow(i);
   const double mu = problem_.friction(i);
   for (int k = 0; k < kNormalRow; ++k) r[k] = r_i[k] - round.inverse_W_tt * u[k];
@@ -106,7 +113,7 @@ void GaussSeidel::relax(int i) {
   return mu * limitFriction(mu, r) / round.inverse_W_tt;
 }
 template <class Rows>
-[[gnu::always_inline]] inline double GaussSeidel::solveOwn(int i, const ContactSides&, Rows rows, double* u, double* r) {
+[[gnu::always_inline]] inline double Sweeps::solveOwn(int i, std::span<const ContactSide>, Rows rows, double* u, double* r) {
   const double *const terms = termsOf(i), *const inverse = terms + kTermsBefore, *const W = inverse + rows * rows;
   const double* const r_i = r_ + problem_.firstRow(i);
   const double mu = problem_.friction(i);
@@ -129,7 +136,7 @@ template <class Rows>
   return mu * std::sqrt(tangentNorm2(u, rows));
 }
 
-void GaussSeidel::sweep(bool backwards) {
+void Sweeps::sweep(bool backwards) {
   const int n = problem_.contactCount();
   work_of_change_ = work_of_way_ = largest_change2_ = 0;
   slide_steps_ = 0;
@@ -158,9 +165,9 @@ struct LeastEnergy {
 }  // namespace
 
 // y follows r by linearity: only what the cones take back goes through A.
-void GaussSeidel::accelerate() {
+void Sweeps::accelerate() {
   const int size = kMoverFreedoms * problem_.movers;
-  double *const y = problem_.y, zz = 0, zp = 0, pp = 0;
+  double *const y = y_, zz = 0, zp = 0, pp = 0;
   double g_z = work_of_change_, g_p = work_of_way_;
   for (int j = 0; j < size; ++j) {
     const double z = y[j] - y_before_[j], p = y_way_[j];
@@ -179,7 +186,7 @@ void GaussSeidel::accelerate() {
   }
 }
 
-void GaussSeidel::goFurther(int i, double a, double b) {
+void Sweeps::goFurther(int i, double a, double b) {
   const int first = problem_.firstRow(i);
   double *const r_i = r_ + first, *const way_i = way_ + first;
   withForm(problem_, i, [&](auto rows, const auto& form) {
@@ -197,16 +204,34 @@ void GaussSeidel::goFurther(int i, double a, double b) {
       r_i[k] = inside;
       way_i[k] += back[k];
     }
-    addImpulse(form, rows, back, problem_.y);
+    addImpulse(form, rows, back, y_);
   });
 }
 
-void sweepGaussSeidel(const ScaledProblem& problem, int sweeps, SolverScratch& scratch, Iterate& it) {
-  respond(problem.sides, problem.first_row, it.r, problem.movers, problem.y);
-  GaussSeidel method({problem.first_row, problem.mu, problem.sides, problem.q, problem.y, problem.movers}, scratch, it.r);
-  const auto costOfSweep = [&] { return kPerContactSwept * problem.contactCount() + kPerSlideStep * method.slideSteps(); };
-  for (int n = 0; n < sweeps && spend(costOfSweep(), scratch); ++n) method.sweep(false);
-  evaluate(problem, it);
+SweptResult sweepUntil(const ContactProblem& problem, double enough, const ContactError& start, SolverScratch& scratch, double* r, double* u) {
+  const int n = problem.contactCount();
+  const bool rests = start.speed <= enough;
+  const int most = std::clamp(kVisits / n, kFewestSweeps, kMostSweeps);
+  Sweeps method(problem, scratch, r);
+  SweptResult result{0, start};
+  int measured = 0;
+  const auto isEnough = [&] {
+    if (measured != result.sweeps) result.error = respondedError(problem, r, scratch, u);
+    measured = result.sweeps;
+    return result.error.speed <= enough;
+  };
+  for (;;) {
+    const bool is_spent = !spend(kPerContactSwept * n, scratch);
+    method.sweep(false);  // to and fro would be half as fast: what was visited last learns nothing from being visited first
+    ++result.sweeps;
+    if (result.sweeps == most || (is_spent && result.sweeps >= kFewestSweeps)) break;  // contacts that are new have no impulse yet: every tick gets a few
+    const bool is_due = result.sweeps % kBetweenLooks == 0 ? method.largestChange() <= kWorthALook * enough
+                                                           : rests && result.sweeps == kRestingSweeps;
+    if (is_due && isEnough()) break;
+    method.accelerate();
+  }
+  isEnough();
+  return result;
 }
 
 }  // namespace pincer::engine

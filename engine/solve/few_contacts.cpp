@@ -1,0 +1,249 @@
+#include "pincer/engine/solve/few_contacts.h"
+
+#include <algorithm>
+
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/engine/solve/contact_equations.h"
+#include "pincer/engine/solve/interior_point.h"
+#include "pincer/engine/solve/newton.h"
+#include "pincer/engine/solve/point_problem.h"
+#include "pincer/engine/solve/residual.h"
+#include "pincer/engine/solve/squeeze.h"
+#include "pincer/engine/solve/sweeps.h"
+
+namespace pincer::engine {
+namespace {
+
+constexpr std::int64_t kPerContactScaled = 300, kPerPairScaled = 40;  // multiplications
+constexpr int kNewtonSteps = 12, kProximalRounds = 12, kInteriorPointSteps = 30, kShiftUpdates = 3, kMostSweptPasses = 60;  // each time
+constexpr double kNearSolution = 1e-8;    // residual from which Newton's method needs a step or two
+constexpr double kShiftedGap = 1e-6;      // of a problem with frozen shift, itself an approximation
+constexpr int kSweepsPerRound = 15;       // enough to leave the basin in which Newton's method failed
+constexpr int kGivingRounds = 12;
+constexpr int kAffordableContacts = 20;   // beyond, only one attempt from the interior
+constexpr double kContentSpeed = 1e-8;    // [m/s], or as much as a residual: enough once Newton's method failed. Contacts that contradict each other by the
+                                          // round-off of their gaps (a mesh at rest in a dish) have no better answer, and 10 nm/s is far below anything felt
+
+double contentResidual(const SolverOptions& options, double reference_speed) {
+  return options.accuracy > 0 ? std::max(kContentSpeed, kContentSpeed / reference_speed) : options.tolerance;
+}
+
+// The iterates of one solve, in scaled variables.
+class FewSearch {
+ public:
+  // r, u, residual: the warm start, evaluated
+  FewSearch(const ContactProblem& problem, EquationForm form, SolverScratch& scratch, const double* r, const double* u, double residual)
+      : form_(form),
+        unscaled_(problem),
+        problem_(scaleProblem(problem, form_ == EquationForm::kContacts, scratch)),
+        equations_(problem_, form_, scratch),
+        scratch_(scratch) {
+    Iterate* const iterates[] = {&current_, &trial_, &best_};
+    for (std::size_t k = 0; k < 3; ++k) *iterates[k] = {scratch.impulses[k].data(), scratch.velocities[k].data()};
+    for (int i = 0; i < problem.contactCount(); ++i)
+      for (int row = problem.firstRow(i); row < problem.firstRow(i + 1); ++row) {
+        current_.r[row] = r[row] * problem_.scale[i];
+        current_.u[row] = u[row] / problem_.scale[i];
+      }
+    current_.residual = residual;
+    std::fill(best_.r, best_.r + problem_.rowCount(), 0.0);
+    best_.residual = std::numeric_limits<double>::infinity();
+    const std::int64_t n = problem.contactCount();
+    spend(n * (kPerContactScaled + (problem_.W ? kPerPairScaled * n : 0)), scratch);
+  }
+
+  bool tryNewton(const SolverOptions& options) { return finish(options); }
+
+  // Where Newton's method failed.
+  SolveMethod goOn(const SolverOptions& options) {
+    if (isSpent() || (!(options.largest_give > 0) && isSqueezedNow())) return SolveMethod::kNotConverged;
+    restartFromBest();
+    evaluate(problem_, current_);
+    iterations_ += iterateProximally(problem_, 0.5 * options.tolerance, kProximalRounds, equations_, scratch_, current_, trial_);
+    keepBest();
+    if (isEnough(options) || giveWay(options)) return SolveMethod::kNewton;
+    if (isSqueezedNow() || isSpent()) return SolveMethod::kNotConverged;
+    iterations_ += followCentralPath(problem_, nullptr, kNearSolution, kInteriorPointSteps, equations_, scratch_, current_);
+    if (finish(options)) return SolveMethod::kInteriorPoint;
+    if (problem_.contactCount() > kAffordableContacts || isSpent()) return SolveMethod::kNotConverged;
+    if (iterateOnShift(options)) return SolveMethod::kInteriorPoint;
+    scaleSides(unscaled_, scratch_);
+    for (int sweeps = 0; sweeps < kMostSweptPasses && !isSpent(); sweeps += kSweepsPerRound) {
+      restartFromBest();
+      smooth();
+      if (finish(options)) return SolveMethod::kSweeps;
+    }
+    return SolveMethod::kNotConverged;
+  }
+
+  // What is within the tolerance already, brought to round-off.
+  SolveMethod polish(const SolverOptions& options) {
+    constexpr int kPolishSteps = 2;
+    keepBest();
+    iterations_ += iterateNewton(problem_, kStrictness * options.tolerance, kPolishSteps, equations_, scratch_, current_, trial_);
+    keepBest();
+    return SolveMethod::kNewton;
+  }
+
+  // As if contacts were soft; false if that fails as well.
+  bool soften(const SolverOptions& options) {
+    if (!iterateSoftly(problem_, options.tolerance, equations_, scratch_, current_, trial_, iterations_)) return false;
+    best_.residual = std::numeric_limits<double>::infinity();
+    keepBest();
+    return true;
+  }
+
+  // The best impulses and their velocities, in the caller's variables; none if nothing finite was found.
+  void write(double* r, double* u) const {
+    const bool found = std::isfinite(best_.residual);
+    for (int i = 0; i < problem_.contactCount(); ++i)
+      for (int row = problem_.firstRow(i); row < problem_.firstRow(i + 1); ++row) {
+        r[row] = found ? best_.r[row] / problem_.scale[i] : 0;
+        u[row] = best_.u[row] * problem_.scale[i];
+      }
+  }
+  double residual() const { return best_.residual; }
+  double give() const { return give_; }
+  int iterations() const { return iterations_; }
+
+ private:
+  // Passes over all contacts, of the scaled problem.
+  void smooth() {
+    const auto n = static_cast<std::size_t>(problem_.contactCount());
+    const ContactProblem scaled{problem_.first_row, problem_.mu, {problem_.sides.front().data(), 2 * n}, VectorMap(scratch_.q.data(), problem_.rowCount()), problem_.movers};
+    respond(scaled, current_.r, scratch_);
+    Sweeps sweeps(scaled, scratch_, current_.r);
+    for (int k = 0; k < kSweepsPerRound; ++k) sweeps.sweep(false);
+    spend(kSweepsPerRound * kPerContactSwept * problem_.contactCount(), scratch_);
+    evaluate(problem_, current_);
+    iterations_ += kSweepsPerRound;
+  }
+
+  bool isSpent() const { return scratch_.operations_left < 0; }
+
+  // Newton's method from `current`; true if what it finds will do.
+  bool finish(const SolverOptions& options) {
+    const double tolerance = 0.5 * options.tolerance;  // leaves room for the round-off of scaling back
+    keepBest();
+    iterations_ += iterateNewton(problem_, tolerance, kNewtonSteps, equations_, scratch_, current_, trial_);
+    keepBest();
+    return isEnough(options);
+  }
+  bool isEnough(const SolverOptions& options) const {
+    return best_.residual <= std::max(0.5 * options.tolerance, contentResidual(options, problem_.speed));
+  }
+
+  // Whether contacts that contradict each other have an answer if they give way a little.
+  bool giveWay(const SolverOptions& options) {
+    if (!(options.largest_give > 0)) return false;
+    restartFromBest();
+    if (isSqueezedNow()) std::fill(current_.r, current_.r + problem_.rowCount(), 0.0);
+    evaluate(problem_, current_);
+    double give = options.largest_give;
+    iterations_ += iterateGiving(problem_, 0.5 * options.tolerance, kGivingRounds, equations_, scratch_, current_, trial_, give);
+    if (!(give <= options.largest_give)) return false;
+    give_ = give;
+    best_.residual = std::numeric_limits<double>::infinity();
+    keepBest();
+    return true;
+  }
+
+  // Whether Newton's last iterate shows walls that close on a body.
+  bool isSqueezedNow() {
+    double* const r = scratch_.step.data();
+    for (int i = 0; i < problem_.contactCount(); ++i)
+      for (int row = problem_.firstRow(i); row < problem_.firstRow(i + 1); ++row) r[row] = current_.r[row] / problem_.scale[i];
+    return isSqueezed(unscaled_, scratch_.weight, r);
+  }
+
+  bool iterateOnShift(const SolverOptions& options) {
+    restartFromBest();
+    evaluate(problem_, current_);
+    takeShift();
+    for (int n = 0; n < kShiftUpdates; ++n) {
+      iterations_ += followCentralPath(problem_, scratch_.shift.data(), kShiftedGap, kInteriorPointSteps, equations_,
+                                       scratch_, current_);
+      takeShift();
+      if (finish(options)) return true;
+    }
+    return false;
+  }
+  void takeShift() {
+    for (int i = 0; i < problem_.contactCount(); ++i)
+      scratch_.shift.data()[i] = std::sqrt(tangentNorm2(current_.u + problem_.firstRow(i), problem_.rows(i)));
+  }
+
+  void keepBest() {
+    if (!(current_.residual < best_.residual)) return;
+    std::copy(current_.r, current_.r + problem_.rowCount(), best_.r);
+    std::copy(current_.u, current_.u + problem_.rowCount(), best_.u);
+    best_.residual = current_.residual;
+  }
+  void restartFromBest() { std::copy(best_.r, best_.r + problem_.rowCount(), current_.r); }
+
+  EquationForm form_;
+  const ContactProblem& unscaled_;
+  ScaledProblem problem_;
+  ContactEquations equations_;
+  SolverScratch& scratch_;
+  Iterate current_{}, trial_{}, best_{};
+  int iterations_ = 0;
+  double give_ = 0;
+};
+
+// What squeezes without end: as if contacts were soft. `r` and `result` are as they were if nothing is found.
+void yieldToWalls(const ContactProblem& problem, const SolverOptions& options, EquationForm form, SolverScratch& scratch, double* r, double* u,
+                  SolveResult& result) {
+  const double start = errorOf(problem, r, scratch, u).residual;
+  FewSearch search(problem, form, scratch, r, u, start);
+  if (!search.soften(options)) return;
+  search.write(r, u);
+  const ContactError error = errorOf(problem, r, scratch, u);
+  result.residual = error.residual;
+  result.error = error.speed;
+  result.iterations += search.iterations();
+  result.method = SolveMethod::kNotConverged;
+  result.converged = false;
+  result.yields = true;
+}
+
+// A point between walls that nothing else solved: `r`, `u` and `result` are as they were unless this does.
+void tryPointProblem(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch, double* r, double* u,
+                     SolveResult& result) {
+  const double enough = std::max(options.tolerance, contentResidual(options, referenceSpeed(problem)));
+  if (!solvePointProblem(problem, enough, scratch, r, u, result.residual)) return;
+  result.method = SolveMethod::kSweeps;
+  result.converged = true;
+}
+
+}  // namespace
+
+void solveFewContacts(const ContactProblem& problem, const SolverOptions& options, double start, SolverScratch& scratch, double* r, double* u,
+                      SolveResult& result) {
+  PINCER_ASSERT(problem.contactCount() <= kFewContacts);
+  const EquationForm form = chooseForm(problem, scratch);
+  FewSearch search(problem, form, scratch, r, u, start);
+  SolveMethod method = SolveMethod::kNewton;
+  if (start <= options.tolerance)
+    method = search.polish(options);
+  else if (!search.tryNewton(options))
+    method = search.goOn(options);
+  search.write(r, u);
+  result.method = method;
+  result.iterations += search.iterations();
+  result.residual = search.residual();
+  result.error = search.residual() * referenceSpeed(problem);
+  result.give = search.give();
+  result.converged = method != SolveMethod::kNotConverged;
+  if (result.give > 0) return;
+  projectOntoCones(problem, r);
+  const ContactError error = errorOf(problem, r, scratch, u);
+  result.residual = error.residual;
+  result.error = error.speed;
+  result.converged = result.converged && error.residual <= std::max(options.tolerance, contentResidual(options, referenceSpeed(problem)));
+  if (!result.converged) result.method = SolveMethod::kNotConverged;
+  if (!result.converged && isPointProblem(problem)) tryPointProblem(problem, options, scratch, r, u, result);
+  if (isSqueezed(problem, scratch.weight, r)) yieldToWalls(problem, options, form, scratch, r, u, result);
+}
+
+}  // namespace pincer::engine

@@ -1,0 +1,41 @@
+// mover_matrix: I + A^T G A in the movers' space, G a block per contact, and its factors.
+//
+// 6 x 6 blocks, one per mover and pair of movers that share a contact: linear in the contacts, whatever the number of pairs of them that see each other.
+#pragma once
+#include "pincer/engine/solve/solver_scratch.h"
+
+namespace pincer::engine {
+
+// Products of blocks in a factorisation, per contact, beyond which sweeps over the contacts are cheaper: where a hundred balls touch.
+constexpr int kProductsPerContact = 12;
+
+class MoverMatrix {
+ public:
+  // Finds the structure, in `scratch`. fits(): the factors do, in memory and in time.
+  MoverMatrix(const ContactProblem& problem, SolverScratch& scratch);
+  bool fits() const { return fits_; }
+
+  void clear();  // to I
+
+  // Adds A_i^T g A_i, to be called for all contacts in turn, from the first one on; `skip` where g is 0.
+  void addScaled(int i, double g);
+  void add(int i, const double (&G)[kMaxContactRows][kMaxContactRows]);
+  void skip(int i);
+
+  // False if the budget is spent, or the matrix is singular or not finite.
+  bool factorise();
+  void solve(double* x) const;  // x becomes H^-1 x
+  std::int64_t costOfFactorisation() const;  // and of filling it: multiplications
+  std::int64_t costOfSolution() const;
+
+ private:
+  template <class Rows, class Times>
+  void addBlocks(int i, Rows rows, const Times& times);
+
+  const ContactProblem& problem_;
+  SolverScratch& scratch_;
+  bool fits_;
+  const int* place_ = nullptr;
+};
+
+}  // namespace pincer::engine

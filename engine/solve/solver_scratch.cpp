@@ -1,0 +1,49 @@
+#include "pincer/engine/solve/solver_scratch.h"
+
+#include <algorithm>
+
+#include "pincer/engine/solve/few_contacts.h"
+#include "pincer/engine/solve/interior_point.h"
+#include "pincer/engine/solve/mover_matrix.h"
+
+namespace pincer::engine {
+namespace {
+
+constexpr int kBlocksPerMover = 64;   // of the factors: walls of forty bricks by twenty
+constexpr int kProductsAtLeast = 4096;  // for few contacts of many movers
+
+void sizeForFew(int contacts, int movers, SolverScratch& s) {
+  const auto n = static_cast<std::size_t>(contacts);
+  const std::size_t m = kMaxContactRows * n;
+  s.max_contacts = s.dense_contacts = contacts;
+  for (std::vector<double>* matrix : {&s.W, &s.jacobian}) matrix->resize(m * m);
+  for (std::vector<double>* vector : {&s.q, &s.step, &s.response, &s.shift_centre}) vector->resize(m);
+  for (std::vector<double>& vector : s.impulses) vector.resize(m);
+  for (std::vector<double>& vector : s.velocities) vector.resize(m);
+  s.rhs.resize(std::max(m, kMoverFreedoms * static_cast<std::size_t>(movers)));
+  s.workspace.resize(kInteriorPointVectors * m);
+  s.pivots.resize(m);
+  s.node.resize(static_cast<std::size_t>(movers));
+  s.sides.resize(n);
+  s.terms.resize(n);
+  for (std::vector<double>* per_contact : {&s.scale, &s.shift}) per_contact->resize(n);
+  s.active.resize(n);
+}
+
+}  // namespace
+
+SolverScratch::SolverScratch(int contacts, int movers)
+    : lu(std::min(movers, 2 * contacts), kBlocksPerMover * std::min({movers, 2 * contacts, BlockLu::kMaxNodes}),
+         std::max(kProductsAtLeast, kProductsPerContact * contacts)) {
+  const auto n = static_cast<std::size_t>(contacts), m = kMaxContactRows * n;
+  const std::size_t size = kMoverFreedoms * static_cast<std::size_t>(movers);
+  weight.resize(n);
+  for (std::vector<double>* per_row : {&r, &u, &centre, &best_r, &best_u, &give, &multiplier, &change, &work}) per_row->resize(m);
+  for (std::vector<double>* per_mover : {&y, &direction, &gradient, &way}) per_mover->resize(size);
+  local.resize(2 * (kMaxContactRows * m + n));
+  round.resize(n);
+  places.resize(4 * n);
+  sizeForFew(std::min(contacts, kFewContacts), movers, *this);
+}
+
+}  // namespace pincer::engine

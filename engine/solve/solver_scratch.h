@@ -1,0 +1,60 @@
+// solver_scratch: working memory of solveContacts, sized once; what it holds means nothing between calls, but for the structure of the last
+// factorisation.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "pincer/engine/solve/block_lu.h"
+#include "pincer/engine/solve/contact_problem.h"
+
+namespace pincer::engine {
+
+// Multiplications in a second, of iterations as they are counted: few enough that on an AMD EPYC at 3.7 GHz capped ticks take no longer than their cap
+// (`pincer stress` shows the longest; decision 4).
+constexpr double kOperationsPerSecond = 8e8;
+constexpr std::int64_t kNoLimit = std::numeric_limits<std::int64_t>::max() / 2;
+
+// How a contact takes part in the linear equations of contact_equations.h; blocks row-major with stride kMaxContactRows.
+enum class Coupling : std::uint8_t { kNone, kIdentity, kGeneral };
+struct ContactTerms {
+  static constexpr int kSize = kMaxContactRows * kMaxContactRows;
+  Coupling coupling = Coupling::kNone;
+  bool has_R = false;
+  double epsilon = 0;
+  double E[kSize], P[kSize], R[kSize], K_inverse[kSize], G[kSize];
+};
+
+// For at most `max_contacts` that touch at most `max_movers`.
+struct SolverScratch {
+  SolverScratch(int max_contacts, int max_movers);
+
+  std::int64_t operations_left = kNoLimit;  // of the budget; less than 0: spent
+  std::vector<double> weight;               // w_i, mean of W_ii's diagonal, per contact [1/kg]
+  // Per row: impulses and velocities of the iterate, the rounds' centre r_c, the best iterate, what contacts gave way by, and what methods need.
+  std::vector<double> r, u, centre, best_r, best_u, give, multiplier, change, work;
+  // Per mover: y = A^T r, a direction, a gradient, and what methods need.
+  std::vector<double> y, direction, gradient, way;
+  std::vector<double> local;        // sweeps.h
+  std::vector<RoundContact> round;  // round_contact.h
+  std::vector<int> places;          // mover_matrix.h
+  BlockLu lu;
+
+  // Of few_contacts.h: the scaled problem, linear equations, three iterates.
+  int max_contacts = 0, dense_contacts = 0;
+  std::vector<ContactSides> sides;
+  std::vector<double> W, q, scale, shift, jacobian, step, rhs, response, shift_centre, workspace;
+  std::array<std::vector<double>, 3> impulses, velocities;  // current, trial and best iterate
+  std::vector<int> active, pivots;                          // contacts in the dense equations; row swaps
+  std::vector<ContactTerms> terms;                          // contact_equations.h
+  std::vector<int> node;                                    // of movers in `lu`
+};
+
+// False, and nothing more may be spent, if that is more than what is left of the budget.
+inline bool spend(std::int64_t operations, SolverScratch& scratch) {
+  scratch.operations_left -= operations;
+  return scratch.operations_left >= 0;
+}
+
+}  // namespace pincer::engine

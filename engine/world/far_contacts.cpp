@@ -1,0 +1,70 @@
+#include "pincer/engine/world/far_contacts.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pincer/engine/motion/free_motion.h"
+
+namespace pincer::engine {
+namespace {
+
+constexpr double kFarTimes = 4;  // impulses of a hit pass on no more than twice its speed
+
+double fastestFree(const WorldModel& model, const WorldScratch& scratch) {
+  double fastest2 = 0;
+  for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+    const BodyModel& body = model.bodies[i];
+    const BodyScratch& s = scratch.bodies[i];
+    if (!body.dynamic && !body.driven) continue;
+    const double reach = std::min(body.bounding_radius, 1e6);
+    fastest2 = std::max(fastest2, 2 * (std::max(s.free.v_W.squaredNorm(), s.start.v_W.squaredNorm()) + reach * reach * s.free.w_W.squaredNorm()));
+  }
+  for (const PointScratch& point : scratch.points) fastest2 = std::max(fastest2, 2 * point.free.v_W.squaredNorm());
+  return std::sqrt(fastest2);
+}
+
+bool isJoined(const WorldModel& model, const Side& side) { return side.kind == SideKind::kBody && model.bodies[side.index].joint_group >= 0; }
+
+// At the end of this part of the tick, contacts included.
+Motion endMotion(const WorldModel& model, const WorldScratch& scratch, const Side& side) {
+  if (side.kind == SideKind::kPoint) {
+    const PointScratch& point = scratch.points[side.index];
+    return {point.free.v_W + point.response(point.impulse_W), point.free.w_W};
+  }
+  const BodyModel& body = model.bodies[side.index];
+  const BodyScratch& s = scratch.bodies[side.index];
+  if (!body.dynamic) return s.free;
+  return {s.free.v_W + body.inverse_mass * s.impulse_W, s.free.w_W + angularVelocity(body.rotation, s.X_WI_mid.q, s.angular_impulse_W)};
+}
+
+}  // namespace
+
+void markFarContacts(const WorldModel& model, WorldScratch& scratch) {
+  scratch.far_contacts = 0;
+  if (!(scratch.h > 0)) return;
+  const double limit = kFarTimes * fastestFree(model, scratch);
+  for (std::size_t i = 0; i < scratch.contacts.size(); ++i) {
+    Contact& c = scratch.contacts[i];
+    c.far = c.bias_C[kNormalRow] > 0 && scratch.q[static_cast<std::size_t>(scratch.first_row[i] + kNormalRow)] > limit && !isJoined(model, c.a) &&
+            !isJoined(model, c.b);
+    scratch.far_contacts += c.far;
+  }
+}
+
+bool haveFarClosed(const WorldModel& model, WorldScratch& scratch) {
+  if (scratch.far_contacts == 0) return false;
+  int closed = 0;
+  for (Contact& c : scratch.contacts) {
+    if (!c.far) continue;
+    double v_C[kMaxContactRows];
+    relativeVelocity(c, endMotion(model, scratch, c.a), endMotion(model, scratch, c.b), kTorsionRow, v_C);
+    for (int k = 0; k < kTorsionRow; ++k) c.u_C[k] = v_C[k] + c.bias_C[k];
+    if (c.u_C[kNormalRow] >= 0) continue;
+    c.far = false;
+    ++closed;
+  }
+  scratch.far_contacts -= closed;
+  return closed > 0;
+}
+
+}  // namespace pincer::engine
