@@ -74,7 +74,11 @@ class Search {
     if (problem_.calm && error_.speed <= restErrorOf(options_)) return true;
     return isWithinTolerance() && (!problem_.strict || error_.residual <= exactResidual(options_.tolerance, referenceSpeed(problem_)));
   }
-  double limit() const { return options_.accuracy > 0 ? std::max(options_.accuracy, kShareOfSlip * slip_) : 0; }
+  // What is enough [m/s].
+  double limit() const {
+    if (problem_.contactCount() <= kFewContacts) return restErrorOf(options_);
+    return std::clamp(kShareOfSlip * slip_, options_.accuracy, kMostAccuracies * options_.accuracy);
+  }
   bool isEnough() const { return isWithinTolerance() || error_.speed <= limit(); }
   bool isQuiet() const { return slip_ <= kQuiet * referenceSpeed(problem_); }
 
@@ -93,8 +97,9 @@ class Search {
   }
 
   void search() {
+    if (!problem_.round.empty() || scratch_.operations_left < 0) return sweep();
     MoverMatrix matrix(problem_, scratch_);
-    if (!matrix.fits() || scratch_.operations_left < 0) return sweep();
+    if (!matrix.fits()) return sweep();
     last_operation_ = scratch_.operations_left - std::max(kFewestOperations, kMostFactorisations * matrix.costOfFactorisation());
     ProximalRound round(problem_, matrix, scratch_);
     if (isEnough()) return polish(round);
@@ -197,10 +202,19 @@ class Search {
     return largest;
   }
 
-  // The centre is the answer for q + give.
+  // Takes the centre for the answer for q + give, if it is.
   void giveWay(double give) {
+    WorstResidual worst;
+    for (int i = 0; i < problem_.contactCount(); ++i) {
+      const int first = problem_.firstRow(i);
+      double *const u = scratch_.u.data() + first, *const r = scratch_.centre.data() + first;
+      for (int k = 0; k < problem_.rows(i); ++k) u[k] += scratch_.give[static_cast<std::size_t>(first + k)];
+      const double w = scratch_.weight[static_cast<std::size_t>(i)];
+      worst.add(naturalMap2(r, u, problem_.rows(i), problem_.friction(i), w), u[kNormalRow], w * r[kNormalRow]);
+    }
+    error_ = worst.relativeTo(referenceSpeed(problem_));
+    if (!isEnough()) return;
     result_.give = give;
-    for (int row = 0; row < rows(); ++row) scratch_.u[static_cast<std::size_t>(row)] += scratch_.give[static_cast<std::size_t>(row)];
     keep();
   }
 
@@ -233,12 +247,10 @@ class Search {
   }
 
   void sweep() {
-    const double enough = std::max(limit(), kSweptAccuracies * options_.accuracy);
-    ContactProblem swept = problem_;
-    findRoundContacts(scratch_.round, swept);
-    respond(swept, scratch_.best_r.data(), scratch_);
-    error_ = respondedError(swept, scratch_.best_r.data(), scratch_, scratch_.best_u.data());
-    const SweptResult sweeps = sweepUntil(swept, enough, error_, scratch_, scratch_.best_r.data(), scratch_.best_u.data());
+    const double enough = kMostAccuracies * options_.accuracy;
+    respond(problem_, scratch_.best_r.data(), scratch_);
+    error_ = respondedError(problem_, scratch_.best_r.data(), scratch_, scratch_.best_u.data());
+    const SweptResult sweeps = sweepUntil(problem_, enough, error_, scratch_, scratch_.best_r.data(), scratch_.best_u.data());
     result_.iterations += sweeps.sweeps;
     error_ = best_ = sweeps.error;
     result_.method = error_.speed <= enough ? SolveMethod::kSweeps : SolveMethod::kNotConverged;
@@ -255,7 +267,7 @@ class Search {
     result_.converged = result_.method != SolveMethod::kNotConverged;
   }
 
-  static constexpr double kSweptAccuracies = 100;  // of what is too entangled for anything else
+  static constexpr double kMostAccuracies = 100;  // of what slips, and of what is too entangled for anything but sweeps
   static constexpr int kPatience = 3, kMostFailures = 12, kSoftSteps = 12;
   static constexpr double kSoftEpsilons[] = {1e-3, 1e-2, 0.1};
 
@@ -305,13 +317,10 @@ void solveContacts(const ContactProblem& problem, const SolverOptions& options, 
   const bool is_solved = solveSmallProblem(problem, options, r, u, result);
   spend(kPerSmallStep * (1 + result.iterations), scratch);
   if (is_solved) return;
-  if (problem.contactCount() < kManyContacts) {
-    solveFew(problem, options, scratch, r, u, result);
-  } else {
+  const bool is_few = problem.contactCount() <= kFewContacts;
+  if (is_few) solveFew(problem, options, scratch, r, u, result);
+  if (!is_few || (!result.converged && !result.yields && problem.contactCount() >= kManyContacts && scratch.operations_left >= 0))
     result = Search(problem, options, scratch).run(r, u);
-    if (!result.converged && !result.yields && problem.contactCount() <= kFewContacts && scratch.operations_left >= 0)
-      solveFewContacts(problem, options, result.residual, scratch, r, u, result);
-  }
   if (result.converged || result.yields || !removeAddedEnergy(problem, r, u)) return;
   const ContactError error = errorOf(problem, r, scratch, u);
   result.residual = error.residual;

@@ -4,16 +4,18 @@
 //
 //   look at the warm start; good enough? done
 //   up to three contacts of one to three movers   Newton's method, with all sizes known to the compiler (small_problem.h)
-//   the movers' matrix can be factorised          far: alternation.h in tens of steps;  near: proximal_round.h, epsilon by how easily the last one went; a round
-//                                                 that fails: ten of the first, and five times the epsilon
-//   it can't (heaps)                              sweeps.h
+//   up to kFewContacts                            few_contacts.h; what it leaves unsolved goes on as if it were more
+//   between balls, or the movers' matrix doesn't factorise cheaply (heaps)   sweeps.h
+//   more                                          far: what slides by sweeps, what sticks by alternation.h in tens of steps;  near: proximal_round.h, epsilon by
+//                                                 how easily the last one went; a round that fails: the former again, and five times the epsilon
 //   spent, or no nearer                           the best iterate, in the cones, scaled so that it adds no energy, with its error
 //
 // The give e (r - r_c) is the error [m/s]. Where contacts contradict each other it doesn't vanish, and is the least that they have to give way by; where it is
 // large walls close on what is between them (squeeze.h): then contacts are soft, epsilon r, about no impulse at all.
 //
-// Enough is the tolerance, and of kManyContacts and more: max(options.accuracy, kShareOfSlip of the fastest slip of what pushes) [m/s]. Below it a heap
-// that still moves isn't solved further; one that is quiet is, to round-off, so that it comes to rest.
+// Enough is the tolerance, and of more than kFewContacts: options.accuracy, or kShareOfSlip of the fastest slip of what pushes, up to a hundred times the
+// accuracy [m/s]; a hundred times, where all is swept. Below it a heap that still moves isn't solved further; one that is quiet is, to round-off, so that it
+// comes to rest.
 //
 // A body that has come to rest under impulses that are off by less than the tolerance drifts until they aren't, then is put right, in a cycle
 // without end. So after an answer that took iterations the next ones are `strict`: a warm start must be exact to round-off, until it is clear that

@@ -15,7 +15,13 @@ namespace pincer::engine {
 namespace {
 
 constexpr std::int64_t kPerContactScaled = 300, kPerPairScaled = 40;  // multiplications
-constexpr int kNewtonSteps = 12, kProximalRounds = 12, kInteriorPointSteps = 30, kShiftUpdates = 3, kMostSweptPasses = 60;  // each time
+constexpr int kProximalRounds = 12, kInteriorPointSteps = 30;  // each time
+
+// How long each method is given: where the tolerance alone counts, not the tick, longer.
+struct Patience {
+  int newton_steps, shift_updates, sweeps;
+};
+constexpr Patience patienceOf(const SolverOptions& options) { return options.accuracy > 0 ? Patience{12, 3, 60} : Patience{20, 20, 300}; }
 constexpr double kNearSolution = 1e-8;    // residual from which Newton's method needs a step or two
 constexpr double kShiftedGap = 1e-6;      // of a problem with frozen shift, itself an approximation
 constexpr int kSweepsPerRound = 15;       // enough to leave the basin in which Newton's method failed
@@ -61,14 +67,14 @@ class FewSearch {
     evaluate(problem_, current_);
     iterations_ += iterateProximally(problem_, 0.5 * options.tolerance, kProximalRounds, equations_, scratch_, current_, trial_);
     keepBest();
-    if (isEnough(options) || giveWay(options)) return SolveMethod::kNewton;
+    if ((isEnough(options) && !isSqueezedNow()) || giveWay(options)) return SolveMethod::kNewton;
     if (isSqueezedNow() || isSpent()) return SolveMethod::kNotConverged;
     iterations_ += followCentralPath(problem_, nullptr, kNearSolution, kInteriorPointSteps, equations_, scratch_, current_);
     if (finish(options)) return SolveMethod::kInteriorPoint;
     if (problem_.contactCount() > kAffordableContacts || isSpent()) return SolveMethod::kNotConverged;
     if (iterateOnShift(options)) return SolveMethod::kInteriorPoint;
     scaleSides(unscaled_, scratch_);
-    for (int sweeps = 0; sweeps < kMostSweptPasses && !isSpent(); sweeps += kSweepsPerRound) {
+    for (int sweeps = 0; sweeps < patienceOf(options).sweeps && !isSpent(); sweeps += kSweepsPerRound) {
       restartFromBest();
       smooth();
       if (finish(options)) return SolveMethod::kSweeps;
@@ -125,9 +131,9 @@ class FewSearch {
   bool finish(const SolverOptions& options) {
     const double tolerance = 0.5 * options.tolerance;  // leaves room for the round-off of scaling back
     keepBest();
-    iterations_ += iterateNewton(problem_, tolerance, kNewtonSteps, equations_, scratch_, current_, trial_);
+    iterations_ += iterateNewton(problem_, tolerance, patienceOf(options).newton_steps, equations_, scratch_, current_, trial_);
     keepBest();
-    return isEnough(options);
+    return isEnough(options) && !(options.largest_give > 0 && isSqueezedNow());  // residuals are relative to impulses that grow without end
   }
   bool isEnough(const SolverOptions& options) const {
     return best_.residual <= std::max(0.5 * options.tolerance, contentResidual(options, problem_.speed));
@@ -160,7 +166,7 @@ class FewSearch {
     restartFromBest();
     evaluate(problem_, current_);
     takeShift();
-    for (int n = 0; n < kShiftUpdates; ++n) {
+    for (int n = 0; n < patienceOf(options).shift_updates; ++n) {
       iterations_ += followCentralPath(problem_, scratch_.shift.data(), kShiftedGap, kInteriorPointSteps, equations_,
                                        scratch_, current_);
       takeShift();

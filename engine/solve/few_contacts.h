@@ -1,5 +1,4 @@
-// few_contacts: fewer than kManyContacts contacts, to the tolerance, cheapest method first; and of up to kFewContacts what contact_solver.h's search left
-// unsolved.
+// few_contacts: up to kFewContacts contacts, to the tolerance, cheapest method first.
 //
 //   semi-smooth Newton (Alart-Curnier) -> the same with a proximal term -> interior point -> interior point with frozen shift, updated ->
 //   projected Gauss-Seidel with exact local solves -> best iterate, flagged.     Newton's method finishes what the others begin.
@@ -14,7 +13,8 @@
 namespace pincer::engine {
 
 struct SolverScratch;
-constexpr int kFewContacts = 40;  // beyond, a dense matrix costs more than any graph of movers that fits
+constexpr int kFewContacts = 60;    // beyond, what needs many factorisations costs milliseconds
+constexpr int kDenseContacts = 40;  // beyond, a dense matrix costs more than any graph of movers that fits
 
 // Solves `problem`, of at most kFewContacts, from `r` (in the cones) whose velocities `u` and residual `start` are; as solveContacts.
 void solveFewContacts(const ContactProblem& problem, const SolverOptions& options, double start, SolverScratch& scratch, double* r, double* u,

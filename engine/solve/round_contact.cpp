@@ -36,6 +36,8 @@ bool makeRound(std::span<const ContactSide> sides, RoundContact& c) {
   const int first = sides[0].mover >= 0 ? 0 : 1, second = 1 - first;
   const ContactSide& moving = sides[static_cast<std::size_t>(first)];
   if (moving.mover < 0) return false;
+  const double* const n = moving.A[kNormalRow];
+  if (dot3(n + 3, n + 3) > kRound * dot3(n, n)) return false;  // its line misses the centre: so do most that aren't round
   const double inverse = 1 / std::sqrt(dot3(moving.A[kNormalRow], moving.A[kNormalRow]));
   for (int k = 0; k < kTorsionRow; ++k) {
     for (int j = 0; j < 3; ++j) c.R[k][j] = inverse * moving.A[k][j];
@@ -56,11 +58,14 @@ bool makeRound(std::span<const ContactSide> sides, RoundContact& c) {
 }  // namespace
 
 void findRoundContacts(std::vector<RoundContact>& round, ContactProblem& problem) {
+  int found = 0;
   for (int i = 0; i < problem.contactCount(); ++i) {
     const auto place = static_cast<std::size_t>(i);
-    if (problem.rows(i) != kTorsionRow || !makeRound(problem.sidesOf(i), round[place])) round[place].inverse_W_tt = 0;
+    const bool is_round = problem.rows(i) == kTorsionRow && makeRound(problem.sidesOf(i), round[place]);
+    if (!is_round) round[place].inverse_W_tt = 0;
+    found += is_round;
   }
-  problem.round = {round.data(), problem.mu.size()};
+  if (2 * found > problem.contactCount()) problem.round = {round.data(), problem.mu.size()};
 }
 
 }  // namespace pincer::engine

@@ -13,7 +13,7 @@
 
 namespace pincer::engine {
 
-// Fills `round`, as large as problem.sides at least; `problem` looks there from now on. What isn't round is marked so.
+// Fills `round`, as large as the contacts at least; what isn't round is marked so. If most are, `problem` looks there from now on.
 void findRoundContacts(std::vector<RoundContact>& round, ContactProblem& problem);
 
 // velocityOf and the like of mobility.h, of a contact that is round.

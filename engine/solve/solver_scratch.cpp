@@ -15,7 +15,8 @@ constexpr int kProductsAtLeast = 4096;  // for few contacts of many movers
 void sizeForFew(int contacts, int movers, SolverScratch& s) {
   const auto n = static_cast<std::size_t>(contacts);
   const std::size_t m = kMaxContactRows * n;
-  s.max_contacts = s.dense_contacts = contacts;
+  s.max_contacts = contacts;
+  s.dense_contacts = std::min(contacts, kDenseContacts);
   for (std::vector<double>* matrix : {&s.W, &s.jacobian}) matrix->resize(m * m);
   for (std::vector<double>* vector : {&s.q, &s.step, &s.response, &s.shift_centre}) vector->resize(m);
   for (std::vector<double>& vector : s.impulses) vector.resize(m);

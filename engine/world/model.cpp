@@ -233,13 +233,32 @@ void listPairs(WorldModel& model, const std::vector<IndexPair>& excluded) {
   }
 }
 
+constexpr int kMostContacts = 65536;
+
+// What a body's own contacts may come to: those of a brick in a wall, of a ball in a heap, and near misses.
+int contactsOf(const contact::Shape& shape) {
+  if (std::holds_alternative<contact::Sphere>(shape)) return 8;
+  return std::holds_alternative<contact::Capsule>(shape) ? 10 : 24;
+}
+
+// Of the whole scene; the fewest are those of a hand-sized one.
+int contactCapacity(const WorldModel& model) {
+  constexpr std::int64_t kFewest = 64, kPerPoint = 8;
+  std::int64_t sum = kFewest + kPerPoint * std::ssize(model.points);
+  for (const BodyModel& body : model.bodies) sum += body.dynamic ? contactsOf(body.shape) : 0;
+  return static_cast<int>(std::min<std::int64_t>(sum, kMostContacts));
+}
+
 }  // namespace
 
 WorldBuilder::WorldBuilder(const WorldOptions& options) {
   requireRange("tick", options.h, 1e-5, 1e-2, "The tick is in seconds; 0.001 is the usual one.");
   requireRange("contact_margin", options.contact_margin, 1e-9, 1, "It is in metres; 0.001 suits hand-sized bodies.");
-  requireRange("max_contacts", options.max_contacts, 4, 16384, "64 suits hand-sized scenes; four to six per body suit heaps.");
+  if (options.max_contacts != 0)
+    requireRange("max_contacts", options.max_contacts, 4, kMostContacts, "0 takes as many as the bodies of the scene may well have.");
   requireRange("threads", options.threads, 1, 16, "1 suits hand-sized scenes; more pay where many heaps lie apart.");
+  if (options.solver.accuracy != 0)
+    requireRange("solver.accuracy", options.solver.accuracy, 1e-12, 1, "In m/s: 1e-6 is the usual one, 0 is exact, 1e-3 suits heaps that are only looked at.");
   requireRange("solver.tolerance", options.solver.tolerance, 1e-14, 1e-2, "1e-10 is the usual one.");
   if (options.solver.budget != 0)
     requireRange("solver.budget", options.solver.budget, 1e-6, 10, "In seconds; half a tick leaves time for everything else.");
@@ -356,6 +375,7 @@ WorldModel WorldBuilder::build() const {
     for (BodyModel& body : model.bodies) body.may_touch = true;
   }
   checkGroups(model);
+  if (model.options.max_contacts == 0) model.options.max_contacts = contactCapacity(model);
   return model;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "pincer/engine/solve/contact_solver.h"
+#include "pincer/engine/solve/few_contacts.h"
 #include "pincer/engine/solve/round_contact.h"
 #include "pincer/engine/solve/sweeps.h"
 #include "pincer/engine/world/contact_rows.h"
@@ -13,8 +14,7 @@
 namespace pincer::engine {
 namespace {
 
-constexpr int kManyRound = 200;  // contacts, from which it pays to know which are between balls
-constexpr double kLost = 0.3;         // residual that is no answer
+constexpr double kLost = 1e-2, kHeapLost = 0.3;  // residual that is no answer; of kFewContacts, whose impulses may be scaled down to add no energy
 constexpr int kStoppingSweeps = 30;    // instead
 constexpr double kLargestGive = 1e-4;  // by which contacts around loops of bodies may contradict each other [m/s]
 
@@ -36,7 +36,7 @@ class IslandSolve {
         is_limited ? std::max<std::int64_t>(scratch_.operations_left, 0) * island_.rows / scratch_.islands.rows : kNoLimit;
     const std::int64_t reserve = is_limited ? reserveForStops() : 0;
     memory_.operations_left = share - reserve;
-    if (island_.contacts > kManyRound) findRoundContacts(memory_.round, problem_);
+    if (island_.contacts > kFewContacts) findRoundContacts(memory_.round, problem_);
     SolverOptions options = options_;
     if (is_loop_ && scratch_.h > 0) {
       fit(PushingBy::kLastTick);
@@ -93,7 +93,7 @@ class IslandSolve {
   // What is kept of the budget for stopOnly: support doesn't depend on it.
   std::int64_t reserveForStops() const { return kStoppingSweeps * kPerContactSwept * island_.contacts; }
   double offsetRate() const { return scratch_.h > 0 ? kTangentCorrection / tick_ : 0; }
-  bool isLost() const { return !island_.result.converged && !island_.result.yields && island_.result.residual > kLost; }
+  bool isLost() const { return !island_.result.converged && !island_.result.yields && island_.result.residual > (island_.contacts > kFewContacts ? kHeapLost : kLost); }
 
   const SolverOptions& options_;
   WorldScratch& scratch_;

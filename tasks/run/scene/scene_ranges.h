@@ -36,6 +36,7 @@ inline constexpr NumberRule kTime = {.min = 0, .max = kLongestDuration, .remedy 
 inline constexpr NumberRule kGravity = {.min = -1e3, .max = 1e3, .remedy = "In m/s^2; on Earth [0, 0, -9.81]."};
 inline constexpr NumberRule kTick = {.min = 1e-5, .max = 1e-2, .remedy = "In seconds; a haptic tick is 0.001."};
 inline constexpr NumberRule kDuration = {.min = 0, .max = kLongestDuration, .min_open = true, .remedy = "In seconds."};
+inline constexpr NumberRule kAccuracy = {.min = 0, .max = 1, .remedy = "In m/s, of contacts of many that move; usual: 1e-6; 0: exact."};
 inline constexpr NumberRule kTolerance = {.min = 1e-14, .max = 1e-2, .remedy = "Of the solver's relative residual; usual: 1e-10."};
 inline constexpr NumberRule kBudget = {.min = 1e-6, .max = 10, .remedy = "In seconds; half a tick leaves time for everything else."};
 inline constexpr NumberRule kPositionTolerance = {

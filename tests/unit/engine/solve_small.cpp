@@ -33,7 +33,7 @@ SmallTrial tryGrasps(int fingers, bool torsion) {
     four.q = p.q.replicate(4, 1);
     SolverScratch scratch(4 * n, four.movers);
     Eigen::VectorXd r = Eigen::VectorXd::Zero(m), u = r, r4 = Eigen::VectorXd::Zero(4 * m), u4 = r4;
-    solveContacts(four.view(), {}, scratch, {r4.data(), 4 * m}, {u4.data(), 4 * m});
+    solveContacts(four.view(), {.accuracy = 0}, scratch, {r4.data(), 4 * m}, {u4.data(), 4 * m});
     r = 1.01 * r4.head(m);
     SolveResult result;
     ++trial.all;

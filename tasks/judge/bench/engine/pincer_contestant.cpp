@@ -82,7 +82,6 @@ class PincerEngine : public BenchEngine {
     options.position_tolerance = step.tolerance;
     options.max_parts = 64;
     options.sleep = false;  // as with the others
-    options.max_contacts = std::max(64, 6 * static_cast<int>(world.bodies.size()));
     return options;
   }
 
