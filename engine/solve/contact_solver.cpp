@@ -301,8 +301,9 @@ void solveFew(const ContactProblem& problem, const SolverOptions& options, Solve
   weighContacts(problem, scratch);
   const ContactError start = errorOf(problem, r, scratch, u);
   const bool is_exact = !problem.strict || start.residual <= exactResidual(options.tolerance, referenceSpeed(problem));
+  const bool rests = problem.calm && start.speed <= restErrorOf(options);
   result = {SolveMethod::kWarmStart, 0, start.residual, start.speed, start.residual, true};
-  if (!(start.residual <= options.tolerance && is_exact)) solveFewContacts(problem, options, start.residual, scratch, r, u, result);
+  if (!rests && !(start.residual <= options.tolerance && is_exact)) solveFewContacts(problem, options, start.residual, scratch, r, u, result);
 }
 
 }  // namespace
@@ -325,6 +326,15 @@ void solveContacts(const ContactProblem& problem, const SolverOptions& options, 
   const ContactError error = errorOf(problem, r, scratch, u);
   result.residual = error.residual;
   result.error = error.speed;
+}
+
+bool restsAsItIs(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch, const double* r, double* u, SolveResult& result) {
+  if (!problem.calm) return false;
+  weighContacts(problem, scratch);
+  const ContactError error = errorOf(problem, r, scratch, u);
+  if (!(error.speed <= restErrorOf(options))) return false;
+  result = {SolveMethod::kWarmStart, 0, error.residual, error.speed, error.residual, true};
+  return true;
 }
 
 double contactResidual(const ContactProblem& problem, const Eigen::Ref<const Eigen::VectorXd>& r, SolverScratch& scratch,

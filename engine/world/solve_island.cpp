@@ -37,6 +37,10 @@ class IslandSolve {
     const std::int64_t reserve = is_limited ? reserveForStops() : 0;
     memory_.operations_left = share - reserve;
     if (island_.contacts > kFewContacts) findRoundContacts(memory_.round, problem_);
+    if (restsAsItIs(problem_, options_, memory_, island_.r, island_.u, island_.result)) {
+      island_.operations = 0;
+      return;
+    }
     SolverOptions options = options_;
     if (is_loop_ && scratch_.h > 0) {
       fit(PushingBy::kLastTick);

@@ -175,11 +175,11 @@ TEST(Solver, GaussSeidelIsExactForOneSoftContact) {
 TEST(Solver, AllocatesNothing) {
   if (!pincer::tests::allocationsAreCounted()) GTEST_SKIP() << "the sanitizer owns the allocator";
   RandomScenes random(18);
-  SolverScratch scratch(28, 6);
+  SolverScratch scratch(80, 6);
   int methods[7] = {};
   for (int n = 0; n < 300; ++n) {
     OwnedContactProblem p =
-        n % 10 == 0 ? random.ring(28, 0.01) : random.cluster(random.integer(1, 6), random.integer(1, 12), 100, 3, n % 2 == 0);
+        n % 10 == 0 ? random.cluster(6, 80, 10, 0.8, false) : random.cluster(random.integer(1, 6), random.integer(1, 12), 100, 3, n % 2 == 0);
     const ContactProblem view = p.view();
     Eigen::VectorXd r = Eigen::VectorXd::Zero(p.q.size()), u = r;
     const VectorMap r_map(r.data(), r.size()), u_map(u.data(), u.size());

@@ -86,7 +86,7 @@ TEST(Budget, SpinningNeedlesGainNoEnergyWhereItRunsOut) {
 TEST(Budget, SweepsOfAProblemThatHasNoneLeftAreCounted) {
   tests::RandomScenes random(5);
   for (int n = 0; n < 20; ++n) {
-    tests::OwnedContactProblem p = random.stack(3, 1, 1e-3);
+    tests::OwnedContactProblem p = random.stack(20, 1, 1e-3);  // eighty contacts
     SolverScratch scratch(static_cast<int>(p.mu.size()), p.movers);
     Eigen::VectorXd r = Eigen::VectorXd::Zero(p.q.size()), u = r;
     scratch.operations_left = 0;

@@ -28,6 +28,9 @@ Measurement solveLatencyMeasurement(int rounds);
 // What bodies at rest cost beside one that moves; the least of so many rounds.
 Measurement sleepMeasurement(int rounds);
 
+// Walls of bricks, heaps of balls and hulls, pegs in holes, by sizes; `whole`: stand for a minute, and the large ones.
+std::vector<Measurement> familyMeasurements(bool whole);
+
 // The records of a scene: pincer's runs against its bounds, the others' beside them, and the ratios to the best of them.
 std::vector<Record> recordsOfRace(const BenchScene& scene, const std::vector<Contestant>& contestants, const std::vector<RaceRun>& runs);
 

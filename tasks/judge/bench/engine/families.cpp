@@ -1,0 +1,153 @@
+// Families of scenes, pincer alone: what they cost tick by tick, how far they are off, whether they come to rest. (Beside peers: walls/3x8 of scenes_resting.cpp.)
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "pincer/tasks/judge/bench/engine/engine_bench.h"
+#include "pincer/tasks/judge/bench/engine/family_worlds.h"
+#include "pincer/tasks/run/measure/timing.h"
+
+namespace pincer::tasks {
+namespace {
+
+// What a run showed.
+struct FamilyRun {
+  std::vector<double> us;  // of each tick, of this thread
+  int flagged = 0;
+  double error = 0, overlap = 0;      // of contact velocities [m/s]; [m]; the largest of all ticks
+  double end_overlap = 0;             // in the last tick [m]
+  double moved = 0, moved_after = 0;  // of the last body: altogether, and after half of the time [m]
+  bool rests = false;                 // the last ten ticks changed nothing, to the bit
+};
+
+class FamilyRunner {
+ public:
+  explicit FamilyRunner(FamilyWorld world) : world_(std::move(world)), scratch_(engine::makeScratch(world_.model)) {}
+
+  FamilyRun run(double seconds, MeasureContext& context) {
+    const int ticks = static_cast<int>(std::lround(seconds / world_.model.options.h));
+    const Vec3 start = place();
+    Vec3 half = start;
+    std::uint64_t hash = 0;
+    for (int n = 0; n < ticks && !context.interrupted(); ++n) {
+      tick();
+      if (n == ticks / 2) half = place();
+      if (n == ticks - 11) hash = bodiesHash();
+      if (n % 64 == 0) context.progress(static_cast<double>(n) / ticks);
+    }
+    run_.end_overlap = overlap();
+    run_.moved = (place() - start).norm();
+    run_.moved_after = (place() - half).norm();
+    run_.rests = hash == bodiesHash();
+    return std::move(run_);
+  }
+
+ private:
+  void tick() {
+    const double before = threadCpuSeconds();
+    const engine::StepReport report = engine::step(world_.model, world_.state, *scratch_);
+    run_.us.push_back(1e6 * (threadCpuSeconds() - before));
+    run_.flagged += report.status != engine::kStepOk;
+    run_.error = std::max(run_.error, report.solve.error);
+    run_.overlap = std::max(run_.overlap, overlap());
+  }
+  double overlap() const {
+    double deepest = 0;
+    for (int k = 0; k < engine::contactCount(*scratch_); ++k) deepest = std::max(deepest, -engine::contactAt(*scratch_, k).gap);
+    return deepest;
+  }
+  // Of what can be seen: places and velocities.
+  std::uint64_t bodiesHash() const {
+    engine::WorldState seen = world_.state;
+    seen.tick = 0;
+    seen.time = 0;
+    return engine::hashOf(seen);
+  }
+  const Vec3& place() const { return world_.state.bodies.back().X_WI.p; }
+
+  FamilyWorld world_;
+  engine::ScratchHandle scratch_;
+  FamilyRun run_;
+};
+
+double shareOf(std::vector<double> us, double share) {
+  std::sort(us.begin(), us.end());
+  return us.empty() ? 0 : us[std::min(us.size() - 1, static_cast<std::size_t>(share * static_cast<double>(us.size())))];
+}
+
+double meanOf(const std::vector<double>& us) {
+  double sum = 0;
+  for (const double x : us) sum += x;
+  return us.empty() ? 0 : sum / static_cast<double>(us.size());
+}
+
+void addCosts(const FamilyRun& run, std::vector<Record>& records) {
+  records.push_back(unbounded("tick, mean", meanOf(run.us), "us"));
+  records.push_back(unbounded("tick, median", shareOf(run.us, 0.5), "us"));
+  records.push_back(unbounded("tick, p99 over the median", shareOf(run.us, 0.99) / shareOf(run.us, 0.5), "-"));
+  records.push_back(unbounded("tick, longest", shareOf(run.us, 1), "us"));
+  records.push_back(unbounded("contact velocities off by, largest", run.error, "m/s"));
+}
+
+// A wall that stands must come to rest to the bit; unflagged, unless it is laid with gaps and overlaps.
+Measurement wallMeasurement(const std::string& name, const WallSpec& spec, double seconds) {
+  return {"walls/" + name, [=](MeasureContext& context) {
+            const FamilyRun run = FamilyRunner(wallWorld(spec)).run(seconds, context);
+            const bool is_exact = spec.jitter == 0;  // else its bricks hit each other first
+            std::vector<Record> records = {is_exact ? atMost("ticks flagged", run.flagged, "-", 0) : unbounded("ticks flagged", run.flagged, "-"),
+                                           atMost("top moves in the second half", 1e6 * run.moved_after, "um", 1e-3),
+                                           exactly("changes in the last ten ticks", !run.rests, "-", 0)};
+            addCosts(run, records);
+            return records;
+          }};
+}
+
+Measurement hitMeasurement(const std::string& name, const WallSpec& spec, double seconds) {
+  return {"walls/" + name, [=](MeasureContext& context) {
+            const FamilyRun run = FamilyRunner(wallWorld(spec)).run(seconds, context);
+            std::vector<Record> records = {unbounded("ticks flagged", run.flagged, "-"),
+                                           unbounded("tick, longest over the mean", shareOf(run.us, 1) / meanOf(run.us), "-")};
+            addCosts(run, records);
+            return records;
+          }};
+}
+
+Measurement heapMeasurement(const std::string& name, const std::function<FamilyWorld()>& make, double seconds, double bound_um) {
+  return {name, [=](MeasureContext& context) {
+            const FamilyRun run = FamilyRunner(make()).run(seconds, context);
+            std::vector<Record> records = {atMost("overlap at the end", 1e6 * run.end_overlap, "um", bound_um),
+                                           unbounded("overlap, deepest", 1e6 * run.overlap, "um"),
+                                           unbounded("ticks flagged", 100.0 * run.flagged / static_cast<double>(run.us.size()), "%")};
+            addCosts(run, records);
+            return records;
+          }};
+}
+
+}  // namespace
+
+std::vector<Measurement> familyMeasurements(bool whole) {
+  const double stands = whole ? 60 : 2;
+  std::vector<Measurement> all;
+  for (const auto& [columns, rows] : {std::pair(1, 1), {1, 5}, {2, 4}, {2, 9}, {3, 8}, {3, 10}, {10, 10}})
+    all.push_back(wallMeasurement(fmt::format("{}x{}", columns, rows), {.columns = columns, .rows = rows}, stands));
+  for (const double mu : {0.3, 0.9}) all.push_back(wallMeasurement(fmt::format("5x8-mu-{}", mu), {.columns = 5, .rows = 8, .mu = mu}, stands));
+  all.push_back(wallMeasurement("5x8-heading-30", {.columns = 5, .rows = 8, .heading = 0.52}, stands));
+  all.push_back(wallMeasurement("3x10-jitter-10um", {.columns = 3, .rows = 10, .jitter = 1e-5}, stands));
+  all.push_back(wallMeasurement("3x10-jitter-100um", {.columns = 3, .rows = 10, .jitter = 1e-4}, stands));
+  all.push_back(hitMeasurement("6x6-hit", {.columns = 6, .rows = 6, .hit_speed = 10}, 1));
+  all.push_back(heapMeasurement("heaps/balls-100", [] { return ballWorld(100, 5, 1); }, 2, 22));
+  all.push_back(heapMeasurement("hulls/50", [] { return hullWorld(50, 1); }, whole ? 3 : 1.5, 20));
+  for (const double play : {5e-5, 1e-4, 2e-4})
+    all.push_back(heapMeasurement(fmt::format("pegs/play-{}um", 1e6 * play), [=] { return pegWorld(play, 8e-3); }, 0.5, 20));
+  if (!whole) return all;
+  for (const auto& [columns, rows] : {std::pair(20, 6), {20, 10}, {40, 20}})
+    all.push_back(wallMeasurement(fmt::format("{}x{}", columns, rows), {.columns = columns, .rows = rows}, columns * rows > 400 ? 10 : stands));
+  all.push_back(wallMeasurement("20x10-jitter-10um", {.columns = 20, .rows = 10, .jitter = 1e-5}, 10));
+  all.push_back(hitMeasurement("20x10-hit", {.columns = 20, .rows = 10, .hit_speed = 10}, 1));
+  all.push_back(wallMeasurement("3x8-masses-1e3", {.columns = 3, .rows = 8, .mass_ratio = 1e3}, 10));
+  all.push_back(heapMeasurement("heaps/balls-400", [] { return ballWorld(400, 8, 1); }, 3, 22));
+  all.push_back(heapMeasurement("hulls/100", [] { return hullWorld(100, 1); }, 3, 20));
+  return all;
+}
+
+}  // namespace pincer::tasks

@@ -1,0 +1,144 @@
+#include "pincer/tasks/judge/bench/engine/family_worlds.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "pincer/contact/polytope.h"
+
+namespace pincer::tasks {
+namespace {
+
+// Uniform numbers: a linear congruential sequence (D. E. Knuth, The Art of Computer Programming 2, 3rd ed., 1997, 3.3.4, line 26).
+class Uniform {
+ public:
+  explicit Uniform(std::uint64_t seed) : state_(seed) {}
+  double operator()(double low, double high) {
+    state_ = 6364136223846793005u * state_ + 1442695040888963407u;
+    return low + (high - low) * static_cast<double>(state_ >> 11) * 0x1p-53;
+  }
+  Vec3 within(double half) {
+    const double x = (*this)(-half, half), y = (*this)(-half, half), z = (*this)(-half, half);
+    return {x, y, z};
+  }
+  // On the unit sphere, even.
+  Vec3 direction() {
+    for (;;) {
+      const Vec3 v = within(1);
+      if (v.squaredNorm() > 1e-2 && v.squaredNorm() <= 1) return v.normalized();
+    }
+  }
+
+ private:
+  std::uint64_t state_;
+};
+
+engine::Material rough(double mu) {
+  engine::Material material;
+  material.mu_s = material.mu_d = mu;
+  return material;
+}
+
+class WorldMaker {
+ public:
+  WorldMaker(double mu, bool sleep) : material_(rough(mu)) {
+    options_.sleep = sleep;
+    add("floor", contact::HalfSpace{}, 0, Vec3::Zero());
+  }
+  // Of no mass: it never moves.
+  void add(const std::string& name, const contact::Shape& shape, double mass, const Vec3& p, const Quat& q = Quat::Identity(),
+           const Vec3& v = Vec3::Zero()) {
+    bodies_.push_back({name, shape, mass > 0, mass, material_});
+    starts_.push_back({{q, p}, v, Vec3::Zero()});
+  }
+  // Four walls around the z axis, `half` from it.
+  void addCrate(double half) {
+    for (const Vec3& n : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0)})
+      add(fmt::format("side{}", bodies_.size()), contact::HalfSpace{}, 0, -half * n, Quat::FromTwoVectors(Vec3::UnitZ(), n));
+  }
+  FamilyWorld make() const {
+    engine::WorldBuilder builder(options_);
+    for (const engine::BodySpec& body : bodies_) builder.addBody(body);
+    engine::WorldModel model = builder.build();
+    engine::WorldState state = engine::makeState(model, starts_, {});
+    return {std::move(model), std::move(state)};
+  }
+
+ private:
+  engine::Material material_;
+  engine::WorldOptions options_;
+  std::vector<engine::BodySpec> bodies_;
+  std::vector<engine::BodyStart> starts_;
+};
+
+}  // namespace
+
+FamilyWorld wallWorld(const WallSpec& spec) {
+  constexpr double kLength = 0.04, kWidth = 0.02, kHeight = 0.02, kApart = 1e-3, kMass = 0.05;
+  const Quat q(Eigen::AngleAxisd(spec.heading, Vec3::UnitZ()));
+  Uniform uniform(spec.seed);
+  WorldMaker maker(spec.mu, spec.sleep);
+  const contact::Box brick{0.5 * Vec3(kLength, kWidth, kHeight)};
+  for (int row = 0; row < spec.rows; ++row) {
+    for (int column = 0; column < spec.columns; ++column) {
+      const double x = column * (kLength + kApart) + (row % 2 == 1 ? 0.25 * kLength : 0);
+      const Vec3 p = Vec3(x, 0, (row + 0.5) * kHeight) + uniform.within(spec.jitter);
+      const double mass = kMass * std::pow(spec.mass_ratio, uniform(-0.5, 0.5));
+      maker.add(fmt::format("brick{}_{}", row, column), brick, mass, q * p, q);
+    }
+  }
+  if (spec.hit_speed > 0) {
+    constexpr double kRadius = 0.05, kBallMass = 10;
+    const Vec3 p(0.5 * spec.columns * (kLength + kApart), -0.3, std::max(kRadius, 0.5 * spec.rows * kHeight));
+    maker.add("ball", contact::Sphere{kRadius}, kBallMass, q * p, q, q * Vec3(0, spec.hit_speed, 0));
+  }
+  return maker.make();
+}
+
+FamilyWorld hullWorld(int hulls, std::uint64_t seed) {
+  constexpr int kCorners = 20, kPerRow = 3;
+  constexpr double kSpacing = 0.038, kDensity = 1000, kFilled = 0.7;  // of the ellipsoid's volume, about
+  Uniform uniform(seed);
+  WorldMaker maker(0.5, false);
+  maker.addCrate(0.06);
+  for (int i = 0; i < hulls; ++i) {
+    const Vec3 half = Vec3::Constant(0.015) + uniform.within(0.003);
+    std::vector<Vec3> corners;
+    for (int k = 0; k < kCorners; ++k) corners.push_back(uniform.direction().cwiseProduct(half));
+    const int layer = i / (kPerRow * kPerRow), row = i / kPerRow % kPerRow, column = i % kPerRow;
+    const Vec3 p(kSpacing * (column - 1), kSpacing * (row - 1), 0.03 + kSpacing * layer), axis = uniform.direction();
+    const Quat q(Eigen::AngleAxisd(uniform(0, 3), axis));
+    const std::string name = fmt::format("hull{}", i);
+    maker.add(name, contact::Convex{contact::Polytope::hullOf(corners, name)}, kFilled * kDensity * 4.19 * half.prod(), p, q);
+  }
+  return maker.make();
+}
+
+FamilyWorld ballWorld(int balls, int side, std::uint64_t seed) {
+  constexpr double kRadius = 0.01, kSpacing = 0.0215;
+  Uniform uniform(seed);
+  WorldMaker maker(0.5, false);
+  maker.addCrate(0.5 * side * kSpacing + 0.001);
+  for (int i = 0; i < balls; ++i) {
+    const int layer = i / (side * side), row = i / side % side, column = i % side;
+    const Vec3 place(column - 0.5 * (side - 1), row - 0.5 * (side - 1), layer + 0.55);
+    maker.add(fmt::format("ball{}", i), contact::Sphere{kRadius}, 0.05, kSpacing * place + uniform.within(5e-4));
+  }
+  return maker.make();
+}
+
+FamilyWorld pegWorld(double play, double tilt) {
+  constexpr double kRadius = 0.01, kHalfLength = 0.03;
+  WorldMaker maker(0.2, false);
+  const double bottom = 0.015, hole = kRadius + 0.5 * play;  // the floor lies below the hole
+  for (int k = 0; k < 8; ++k) {
+    const Quat q(Eigen::AngleAxisd(0.25 * M_PI * k, Vec3::UnitZ()));
+    maker.add(fmt::format("rim{}", k), contact::Box{{0.01, 0.02, 0.02}}, 0, q * Vec3(hole + 0.01, 0, bottom + 0.02), q);
+  }
+  const Quat q(Eigen::AngleAxisd(tilt, Vec3::UnitX()));
+  maker.add("peg", contact::Cylinder{kRadius, kHalfLength}, 0.1, Vec3(0, 0, bottom + 0.04 + kHalfLength + 0.001), q);
+  return maker.make();
+}
+
+}  // namespace pincer::tasks
