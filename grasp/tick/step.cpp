@@ -40,6 +40,16 @@ void setInputs(const GraspModel& model, const GraspState& state, std::span<const
 
 namespace {
 
+// Angular impulse about the normal at the mean place that the contacts' forces make by being apart.
+double momentOfPoints(const GraspScratch& scratch, int finger, const FingerReport& report) {
+  double moment = 0;
+  for (const engine::Contact& c : scratch.world.contacts) {
+    if (c.a.kind != engine::SideKind::kPoint || c.a.index != finger || !c.active()) continue;
+    moment += report.n_W.dot((c.p_W - report.p_WC).cross(c.impulse_W));
+  }
+  return moment;
+}
+
 // Sums the contacts of one finger into its report; returns the way from its centre to their force-weighted mean place, or its direction.
 Vec3 sumContacts(const GraspScratch& scratch, int finger, double h, FingerReport& report) {
   Vec3 p_sum = Vec3::Zero(), n_sum = Vec3::Zero(), impulse_W = Vec3::Zero(), tangential_W = Vec3::Zero();
@@ -72,6 +82,7 @@ Vec3 sumContacts(const GraspScratch& scratch, int finger, double h, FingerReport
   if (pushing > 1) {
     report.p_WC = p_sum / normal;
     if (n_sum.squaredNorm() > 0) report.n_W = n_sum.normalized();
+    report.torsion += momentOfPoints(scratch, finger, report) / h;
   }
   PINCER_ASSERT(isUnitIfFinite(report.n_W) && report.body >= 0);
   const Vec3 to_mean = report.p_WC - scratch.world.points[finger].p_mid_W;
