@@ -177,7 +177,8 @@ class PadQuery {
       least = std::min(least, p.phi);
       alike += (p.n_W - main.n_B).squaredNorm() < kSameNormal * kSameNormal;
     }
-    return alike > 1 && std::abs(least - main.phi) < kSameGap * boundingRadiusOf(finger_);
+    const double eased = tracker_.balls[0].slots[main.feature % kMaxSurfaceContacts].ease;
+    return alike > 1 && std::abs(least - (main.phi - eased)) < kSameGap * boundingRadiusOf(finger_);
   }
 
   // The deepest first; of more than there is room for the deepest.

@@ -71,6 +71,7 @@ class SceneDrawing {
   void addArrow(const Vec3& from_W, const Vec3& along_W, double thickness, const Paint& paint, DrawList& list) const;
 
   std::vector<grasp::FingerModel> fingers_;
+  std::vector<int> tips_;  // per finger: its own geometry, -1 of spheres, which are drawn as human fingers
   std::vector<BodyLook> bodies_;
   std::vector<Quat> plain_q_WF_;  // of fingers whose device says nothing of their orientation
   int ball_, rod_, cone_, head_, finger_, pad_, nail_;
