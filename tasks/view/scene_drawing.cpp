@@ -111,7 +111,7 @@ DrawList SceneDrawing::compose(const Snapshot& snapshot, const ViewChoice& choic
   if (snapshot.trial.blind) return list;
   for (std::size_t i = 0; i < snapshot.fingers.size(); ++i) {
     addFinger(snapshot, i, list);
-    if (choice.devices) addDevice(snapshot.fingers[i], fingers_[i].radius, list);
+    if (choice.devices) addDevice(snapshot.fingers[i], i, list);
   }
   const double scale = metresPerNewton(snapshot);
   for (int i = 0; i < snapshot.contact_count; ++i) addContact(snapshot.contacts[static_cast<std::size_t>(i)], choice, scale, list);
@@ -149,17 +149,19 @@ void SceneDrawing::addFinger(const Snapshot& snapshot, std::size_t finger, DrawL
   if (seen.q_WF) list.push_back({pad_, placed(X_WM, r), {.colour = kPad, .gloss = 0.25f}});
 }
 
-void SceneDrawing::addDevice(const FingerSnapshot& finger, double radius, DrawList& list) const {
-  list.push_back({ball_,
-                  placed({Quat::Identity(), finger.p_WF}, Vec3::Constant(radius)),
+void SceneDrawing::addDevice(const FingerSnapshot& seen, std::size_t finger, DrawList& list) const {
+  const bool is_tip = tips_[finger] >= 0;
+  list.push_back({is_tip ? tips_[finger] : ball_,
+                  placed({is_tip ? seen.q_WF.value_or(Quat::Identity()) : Quat::Identity(), seen.p_WF},
+                         Vec3::Constant(is_tip ? 1 : fingers_[finger].radius)),
                   {.colour = kDevice, .alpha = 0.16f, .gloss = 0.5f},
                   Layer::kMark});
-  const Vec3 spring = finger.p_WF - finger.p_WP;
+  const Vec3 spring = seen.p_WF - seen.p_WP;
   if (spring.norm() < 1e-5) return;
   const double thin = 0.02 * size_;
   const Paint paint{.colour = kDevice, .glow = 0.6f};
-  list.push_back({ball_, placed({Quat::Identity(), finger.p_WF}, Vec3::Constant(2.5 * thin)), paint, Layer::kMark});
-  list.push_back({rod_, placed(pointing(finger.p_WP, spring), Vec3(thin, thin, spring.norm())), paint, Layer::kMark});
+  list.push_back({ball_, placed({Quat::Identity(), seen.p_WF}, Vec3::Constant(2.5 * thin)), paint, Layer::kMark});
+  list.push_back({rod_, placed(pointing(seen.p_WP, spring), Vec3(thin, thin, spring.norm())), paint, Layer::kMark});
 }
 
 double SceneDrawing::metresPerNewton(const Snapshot& snapshot) const {
