@@ -11,8 +11,8 @@
 #include "pincer/tasks/run/files/file_limits.h"
 #include "pincer/tasks/run/files/strict_json.h"
 #include "pincer/tasks/run/scene.h"
-#include "pincer/tasks/run/simulation.h"
 #include "pincer/tasks/run/scene/scene_keys.h"
+#include "pincer/tasks/run/simulation.h"
 #include "pincer/tests/support/error_of.h"
 #include "pincer/tests/support/temporary_directory.h"
 
