@@ -51,32 +51,45 @@ bool areApart(const PosedSolid& a, const PosedSolid& b, double reach) {
   return length > 0 && !(gapAlong(a, b, n) < reach);
 }
 
+// Both posed about the same origin.
+void collidePosed(const PosedSolid& A, const PosedSolid& B, double margin, const Vec3& last_n, PairPoints& out) {
+  out.count = 0;
+  const double size = std::min(boundingRadius(A.shape), boundingRadius(B.shape)), reach = margin + roundingOf(A) + roundingOf(B);
+  const auto finish = [&](const Separation& s) { return s.gap < reach && overlapFacets(A, B, s, size, margin, out); };
+  if (std::holds_alternative<Capsule>(A.shape) && std::holds_alternative<Capsule>(B.shape)) {
+    finish(separateCapsules(A, B));
+    return;
+  }
+  if (std::holds_alternative<Box>(A.shape) && std::holds_alternative<Box>(B.shape)) {
+    const Separation s = separateBoxes(A, B);
+    // Apart, the nearest may be two corners, or a corner and an edge: none of the 15 directions.
+    if (!(s.gap < reach) || finish(s) || s.gap < 0) return;
+  } else if (last_n == Vec3::Zero() && areApart(A, B, reach)) {
+    return;
+  }
+  finish(separate(A, B, size, reach, last_n));
+}
+
 }  // namespace
 
 void collideConvex(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin, const Vec3& last_n_W,
                    PairPoints& out) {
   out.count = 0;
-  const double radius_a = boundingRadius(a), radius_b = boundingRadius(b);
   PINCER_ASSERT(isConvex(a) && isConvex(b) && a.index() <= b.index());
-  const double furthest = radius_a + radius_b + margin;
+  const double furthest = boundingRadius(a) + boundingRadius(b) + margin;
   const Vec3 p_BA = X_WA.p - X_WB.p;
   if (!(p_BA.squaredNorm() < furthest * furthest)) return;
-  const PosedSolid A{a, X_WA.q.toRotationMatrix(), 0.5 * p_BA}, B{b, X_WB.q.toRotationMatrix(), -0.5 * p_BA};
-  const double size = std::min(radius_a, radius_b), reach = margin + roundingOf(a) + roundingOf(b);
-  const auto finish = [&](const Separation& s) {
-    const bool found = s.gap < reach && overlapFacets(A, B, s, size, margin, out);
-    for (int i = 0; i < out.count; ++i) out.points[static_cast<std::size_t>(i)].p_W += 0.5 * (X_WA.p + X_WB.p);
-    return found;
-  };
-  if (std::holds_alternative<Capsule>(a) && std::holds_alternative<Capsule>(b)) return static_cast<void>(finish(separateCapsules(A, B)));
-  if (std::holds_alternative<Box>(a) && std::holds_alternative<Box>(b)) {
-    const Separation s = separateBoxes(A, B);
-    // Apart, the nearest may be two corners, or a corner and an edge: none of the 15 directions.
-    if (!(s.gap < reach) || finish(s) || s.gap < 0) return;
-  } else if (last_n_W == Vec3::Zero() && areApart(A, B, reach)) {
-    return;
-  }
-  finish(separate(A, B, size, reach, last_n_W));
+  collidePosed({a, X_WA.q.toRotationMatrix(), 0.5 * p_BA}, {b, X_WB.q.toRotationMatrix(), -0.5 * p_BA}, margin, last_n_W, out);
+  for (int i = 0; i < out.count; ++i) out.points[static_cast<std::size_t>(i)].p_W += 0.5 * (X_WA.p + X_WB.p);
+}
+
+void collidePadWithConvex(const Shape& core, double rounding, const Pose& X_BF, const Shape& body, double margin, const Vec3& last_n_B,
+                          PairPoints& out) {
+  PINCER_ASSERT(isConvex(core) && isConvex(body) && rounding >= 0);
+  // Half of the way each from the origin in between, as two bodies are: round-off is theirs alike.
+  const PosedSolid pad{core, X_BF.q.toRotationMatrix(), 0.5 * X_BF.p, rounding}, solid{body, Mat3::Identity(), -0.5 * X_BF.p};
+  collidePosed(pad, solid, margin, last_n_B, out);
+  for (int i = 0; i < out.count; ++i) out.points[static_cast<std::size_t>(i)].p_W += 0.5 * X_BF.p;
 }
 
 }  // namespace pincer::contact

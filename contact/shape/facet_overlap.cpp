@@ -234,7 +234,7 @@ class KnownGaps {
 class Surfaces {
  public:
   Surfaces(const PosedSolid& a, const PosedSolid& b, const FlatFacet& fa, const FlatFacet& fb, const View& view)
-      : a_(a), b_(b), fa_(fa), fb_(fb), view_(view), rounding_a_(roundingOf(a.shape)), rounding_b_(roundingOf(b.shape)) {}
+      : a_(a), b_(b), fa_(fa), fb_(fb), view_(view), rounding_a_(roundingOf(a)), rounding_b_(roundingOf(b)) {}
   double top(const Vec2& x) const { return height(a_, fa_, -1, rounding_a_, x); }
   double bottom(const Vec2& x) const { return height(b_, fb_, 1, rounding_b_, x); }
   double roundings() const { return rounding_a_ + rounding_b_; }

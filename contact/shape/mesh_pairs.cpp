@@ -19,7 +19,7 @@ constexpr double kBesideFace = 0.35;
 class MeshOnSolid {
  public:
   MeshOnSolid(const Mesh& mesh, const PosedSolid& solid, const MeshScale& scale)
-      : features_(mesh.surface->features()), solid_(solid), scale_(scale), rounding_(roundingOf(solid.shape)) {}
+      : features_(mesh.surface->features()), solid_(solid), scale_(scale), rounding_(roundingOf(solid)) {}
 
   void find() {
     Vec3 low, high;
@@ -89,6 +89,7 @@ class MeshOnSolid {
     NearestPoint s{};
     onSolid(p, [&](const auto& solid, const Vec3& p_B) { s = nearestPoint(solid, p_B); });
     s.n_B = solid_.outwards(s.n_B);
+    s.distance -= solid_.skin;
     return s;
   }
 
@@ -109,7 +110,8 @@ class MeshOnSolid {
     if (s.distance < scale_.slack()) {
       phi = -kInfinity;
       onSolid(p, [&](const auto& solid, const Vec3& p_B) {
-        visitWalls(solid, p_B, [&](const Vec3& n_B, double height) {
+        visitWalls(solid, p_B, [&](const Vec3& n_B, double core_height) {
+          const double height = core_height - solid_.skin;
           if (!(height > phi)) return;
           const Vec3 out = solid_.outwards(n_B);
           if (features_.liesAbove(vertex, out, kConeSlack)) phi = height, n = out;
@@ -156,14 +158,14 @@ class MeshOnSolid {
   void lookAlongEdge(const Edge& edge, const EdgeContact& s) {
     const EdgePart part = partOverFacet(edge.p, edge.e, edge.length, s.n, solid_, scale_.slack());
     for (std::uint32_t end = 0; part.found && end < 2; ++end) {
-      const auto [t, phi] = part.ends[end];
+      const double t = part.ends[end].t, phi = part.ends[end].phi - solid_.skin;
       const bool is_corner = t <= 0 || t >= edge.length;
       if (is_corner && features_.liesAbove(edge.ends[t > 0], s.n, kConeSlack)) continue;  // lookAtCorner's
       offerOnEdge(edge, t, s.n, phi, meshFeatureOf(kMeshEdgeEnds, 2 * edge.name + end));
     }
     constexpr double kSameGap = 1e-6;  // [m], as in contact_candidates.cpp
     const double phi_s = s.gap - rounding_, along = edge.e.dot(s.p - edge.p);
-    if (part.found && (part.is_over_face || phi_s > std::min(part.ends[0].phi, part.ends[1].phi) - kSameGap)) return;
+    if (part.found && (part.is_over_face || phi_s > std::min(part.ends[0].phi, part.ends[1].phi) - solid_.skin - kSameGap)) return;
     if (along >= -scale_.slack() && along <= edge.length + scale_.slack())
       offerOnEdge(edge, along, s.n, phi_s, meshFeatureOf(kMeshEdges, edge.name));
   }
@@ -201,6 +203,15 @@ void collideMeshWithConvex(const Mesh& mesh, const Pose& X_WA, const Shape& soli
   MeshOnSolid search(mesh, posed, {std::min(radius_a, radius_b), margin});
   search.find();
   search.candidates().keepBest(X_WA, out);
+}
+
+void collidePadWithMesh(const Shape& core, double rounding, const Pose& X_BF, const Mesh& mesh, double margin, PairPoints& out) {
+  out.count = 0;
+  const PosedSolid pad{core, X_BF.q.toRotationMatrix(), X_BF.p, rounding};
+  MeshOnSolid search(mesh, pad, {std::min(mesh.surface->boundingRadius(), boundingRadius(core) + rounding), margin});
+  search.find();
+  search.candidates().keepBest(Pose{}, out);
+  for (int i = 0; i < out.count; ++i) out.points[static_cast<std::size_t>(i)].n_W *= -1;
 }
 
 }  // namespace pincer::contact

@@ -25,4 +25,8 @@ namespace pincer::contact {
 // As collideShapes (pair_query.h); n out of the solid (b) towards the mesh (a), both poses in W. Allocates nothing.
 void collideMeshWithConvex(const Mesh& mesh, const Pose& X_WA, const Shape& solid, const Pose& X_WB, double margin, PairPoints& out);
 
+// Of a fingertip that is the convex `core` at X_BF with a ball of radius `rounding` >= 0 [m] about it, with the mesh's flat triangles: points
+// in the mesh's frame B, normals out of the mesh. Allocates nothing once the mesh's features are built.
+void collidePadWithMesh(const Shape& core, double rounding, const Pose& X_BF, const Mesh& mesh, double margin, PairPoints& out);
+
 }  // namespace pincer::contact

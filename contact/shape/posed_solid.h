@@ -6,8 +6,9 @@ namespace pincer::contact {
 
 struct PosedSolid {
   const Shape& shape;
-  Mat3 R;  // solid's frame in the world's axes
-  Vec3 p;  // of the solid's origin [m]
+  Mat3 R;           // solid's frame in the world's axes
+  Vec3 p;           // of the solid's origin [m]
+  double skin = 0;  // radius of a ball about all of it, beside the shape's own rounding: a fingertip's pad [m]
 
   // Written out by columns: Eigen's 3x3 product is a call of its own here.
   Vec3 outwards(const Vec3& v) const { return v.x() * R.col(0) + v.y() * R.col(1) + v.z() * R.col(2); }
@@ -16,5 +17,7 @@ struct PosedSolid {
   Vec3 support(const Vec3& d) const { return place(supportOf(shape, inwards(d))); }
   Vec3 inset(const Vec3& d) const { return place(insetOf(shape, inwards(d))); }
 };
+
+inline double roundingOf(const PosedSolid& solid) { return roundingOf(solid.shape) + solid.skin; }
 
 }  // namespace pincer::contact

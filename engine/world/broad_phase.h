@@ -31,6 +31,8 @@ class BroadPhase {
   // Pairs, sorted by (a, b), of which at least one is dynamic and whose boxes, grown by half the contact margin and by what they may move in a
   // tick, overlap; from the predicted poses in `scratch`. Valid until the next call.
   std::span<const BodyPair> candidates(const WorldModel& model, const WorldScratch& scratch);
+  // Bodies, ascending, whose boxes of the last candidates() may be nearer than `reach` [m] to `p_W`, and all without bounds. Valid until the next call.
+  std::span<const int> bodiesNear(const Vec3& p_W, double reach);
 
  private:
   struct Tree;
@@ -38,6 +40,7 @@ class BroadPhase {
   std::unique_ptr<Tree> tree_;
   std::vector<int> dynamic_, unbounded_;
   std::vector<BodyPair> pairs_, sorted_;
+  std::vector<int> near_;
   std::vector<int> first_;  // per body, while sorting
 };
 

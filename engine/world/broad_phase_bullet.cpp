@@ -91,6 +91,7 @@ BroadPhase::BroadPhase(const WorldModel& model) : tree_((contact::letBulletThrow
   }
   for (std::vector<BodyPair>* pairs : {&pairs_, &sorted_}) pairs->reserve((kPairsPerBody + unbounded_.size()) * model.bodies.size());
   first_.resize(model.bodies.size() + 1);
+  near_.reserve(model.bodies.size());
 }
 
 BroadPhase::~BroadPhase() = default;
@@ -121,6 +122,39 @@ std::span<const BodyPair> BroadPhase::candidates(const WorldModel& model, const 
   sortBy(&BodyPair::a);
   PINCER_ASSERT(isAscending(pairs_, [](const BodyPair& p) { return std::pair(p.a, p.b); }));
   return pairs_;
+}
+
+namespace {
+
+struct NearBodies final : btBroadphaseAabbCallback {
+  explicit NearBodies(std::vector<int>& all) : bodies(all) {}
+  bool process(const btBroadphaseProxy* proxy) override {
+    bodies.push_back(bodyOf(*proxy));
+    return true;
+  }
+  std::vector<int>& bodies;
+};
+
+}  // namespace
+
+// The tree's boxes lie about the present ones and depend on the past; what is looked at beyond reach changes nothing but trackers that are reset.
+std::span<const int> BroadPhase::bodiesNear(const Vec3& p_W, double reach) {
+  near_.assign(unbounded_.begin(), unbounded_.end());
+  const btVector3 centre(p_W.x(), p_W.y(), p_W.z()), half(reach, reach, reach);
+  const btVector3 low = centre - half, high = centre + half;
+  NearBodies found(near_);
+  tree_->bullet.aabbTest(low, high, found);
+  const auto is_far = [&](int body) {
+    const btBroadphaseProxy* const proxy = tree_->proxies[static_cast<std::size_t>(body)];
+    if (!proxy) return false;
+    for (int k = 0; k < 3; ++k) {
+      if (!(proxy->m_aabbMin[k] <= high[k] && low[k] <= proxy->m_aabbMax[k])) return true;
+    }
+    return false;
+  };
+  near_.erase(std::remove_if(near_.begin(), near_.end(), is_far), near_.end());
+  std::sort(near_.begin(), near_.end());
+  return near_;
 }
 
 // Counts and places, keeping the order of equals: a third of the time of comparing.

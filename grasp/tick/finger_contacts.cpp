@@ -49,6 +49,12 @@ class FingerLook {
     take(contact::querySphere(b.shape, p_BC, f_.radius, margin, state_.trackers[pair], scratch_.world.patches), body, margin);
   }
 
+  // Distance of the finger's centre from a body's box, which holds the body's own way in the tick, beyond which it needn't be looked at [m].
+  double furthest() const {
+    const engine::WorldOptions& options = model_.world.options;
+    return f_.radius + std::max(f_.reach, options.contact_margin) + options.h * point_.start.v_W.norm();
+  }
+
  private:
   // Without a root: of what fingers hold, as a rule, the bounding sphere is.
   bool isWithinReach(const engine::BodyModel& b, const engine::BodyScratch& mid) const {
@@ -140,6 +146,12 @@ void findFingerContacts(const GraspModel& model, int finger, GraspState& state, 
   scratch.fingers[finger].gap = std::numeric_limits<double>::max();
   scratch.nearest_n_W[finger].setZero();
   FingerLook look(model, state, scratch, finger);
+  if (scratch.world.broad_phase) {
+    const double reach = look.furthest();
+    scratch.fingers[finger].gap = reach - model.fingers[finger].radius;  // nothing else is nearer
+    for (const int body : scratch.world.broad_phase->bodiesNear(scratch.world.points[finger].p_mid_W, reach)) look.at(body);
+    return;
+  }
   const int bodies = static_cast<int>(model.world.bodies.size());
   for (int body = 0; body < bodies; ++body) look.at(body);
 }

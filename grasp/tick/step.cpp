@@ -40,13 +40,32 @@ void setInputs(const GraspModel& model, const GraspState& state, std::span<const
 
 namespace {
 
+// The contacts of one finger: they follow each other, sorted by id. Of thousands of fingers each would else look at all contacts.
+std::span<const engine::Contact> contactsOf(const GraspScratch& scratch, int finger) {
+  const std::vector<engine::Contact>& all = scratch.world.contacts;
+  const auto less = [](const engine::Contact& c, std::uint64_t id) { return c.id < id; };
+  const auto first = std::lower_bound(all.begin(), all.end(), engine::contactId(1, finger, 0, 0), less);
+  const auto is_other = [&](const engine::Contact& c) { return c.a.kind != engine::SideKind::kPoint || c.a.index != finger; };
+  return {first, std::find_if(first, all.end(), is_other)};
+}
+
+// Angular impulse about the normal at the mean place that the contacts' forces make by being apart.
+double momentOfPoints(const GraspScratch& scratch, int finger, const FingerReport& report) {
+  double moment = 0;
+  for (const engine::Contact& c : contactsOf(scratch, finger)) {
+    if (!c.active()) continue;
+    moment += report.n_W.dot((c.p_W - report.p_WC).cross(c.impulse_W));
+  }
+  return moment;
+}
+
 // Sums the contacts of one finger into its report; returns the way from its centre to their force-weighted mean place, or its direction.
 Vec3 sumContacts(const GraspScratch& scratch, int finger, double h, FingerReport& report) {
   Vec3 p_sum = Vec3::Zero(), n_sum = Vec3::Zero(), impulse_W = Vec3::Zero(), tangential_W = Vec3::Zero();
   double normal = 0, torsion = 0, largest = 0;  // impulses
   int pushing = 0;
-  for (const engine::Contact& c : scratch.world.contacts) {
-    if (c.a.kind != engine::SideKind::kPoint || c.a.index != finger || !c.active()) continue;
+  for (const engine::Contact& c : contactsOf(scratch, finger)) {
+    if (!c.active()) continue;
     const double r_n = c.r[engine::kNormalRow];
     const Vec3 n_W = c.n_W();
     impulse_W += c.impulse_W;
@@ -72,6 +91,7 @@ Vec3 sumContacts(const GraspScratch& scratch, int finger, double h, FingerReport
   if (pushing > 1) {
     report.p_WC = p_sum / normal;
     if (n_sum.squaredNorm() > 0) report.n_W = n_sum.normalized();
+    report.torsion += momentOfPoints(scratch, finger, report) / h;
   }
   PINCER_ASSERT(isUnitIfFinite(report.n_W) && report.body >= 0);
   const Vec3 to_mean = report.p_WC - scratch.world.points[finger].p_mid_W;

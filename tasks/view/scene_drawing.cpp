@@ -12,6 +12,7 @@ namespace pincer::tasks {
 namespace {
 
 const Vec3f kSkin(0.83f, 0.50f, 0.37f), kPad(0.88f, 0.40f, 0.34f), kNail(0.93f, 0.72f, 0.64f);
+const Vec3f kTip(0.20f, 0.22f, 0.25f);
 const Vec3f kStick(0.02f, 0.50f, 0.20f), kSlip(0.95f, 0.10f, 0.03f), kNormal(0.02f, 0.07f, 0.30f), kPorcelain(0.50f, 0.52f, 0.54f);
 const Vec3f kFloor(0.50f, 0.52f, 0.55f), kDevice(0.10f, 0.30f, 0.85f);
 const std::array<Vec3f, 6> kBodyColours = {Vec3f(0.90f, 0.42f, 0.06f), Vec3f(0.06f, 0.36f, 0.62f), Vec3f(0.30f, 0.55f, 0.16f),
@@ -68,6 +69,7 @@ SceneDrawing::SceneDrawing(const grasp::GraspModel& model, const Snapshot& start
       finger_(renderer.add(fingerMesh(kFingerBehind))),
       pad_(renderer.add(padMesh(kPadAngle))),
       nail_(renderer.add(nailMesh())) {
+  for (const grasp::FingerModel& finger : fingers_) tips_.push_back(finger.shape ? renderer.add(tipMesh(*finger.shape)) : -1);
   for (const engine::BodyModel& body : model.world.bodies) bodies_.push_back(bodyLook(body));
   const double reach = radius(start);
   std::size_t next_colour = 0;
@@ -109,7 +111,7 @@ DrawList SceneDrawing::compose(const Snapshot& snapshot, const ViewChoice& choic
   if (snapshot.trial.blind) return list;
   for (std::size_t i = 0; i < snapshot.fingers.size(); ++i) {
     addFinger(snapshot, i, list);
-    if (choice.devices) addDevice(snapshot.fingers[i], fingers_[i].radius, list);
+    if (choice.devices) addDevice(snapshot.fingers[i], i, list);
   }
   const double scale = metresPerNewton(snapshot);
   for (int i = 0; i < snapshot.contact_count; ++i) addContact(snapshot.contacts[static_cast<std::size_t>(i)], choice, scale, list);
@@ -130,6 +132,11 @@ void SceneDrawing::addBodies(const Snapshot& snapshot, const ViewChoice& choice,
 void SceneDrawing::addFinger(const Snapshot& snapshot, std::size_t finger, DrawList& list) const {
   const FingerSnapshot& seen = snapshot.fingers[finger];
   const grasp::FingerModel& model = fingers_[finger];
+  if (tips_[finger] >= 0) {
+    const Pose X_WF{seen.q_WF.value_or(Quat::Identity()), seen.p_WP};
+    list.push_back({tips_[finger], placed(X_WF), {.colour = kTip, .gloss = 0.3f}});
+    return;
+  }
   const Vec3 r = Vec3::Constant(model.radius);
   Pose X_WM{plain_q_WF_[finger], seen.p_WP};
   if (seen.q_WF) {
@@ -142,17 +149,19 @@ void SceneDrawing::addFinger(const Snapshot& snapshot, std::size_t finger, DrawL
   if (seen.q_WF) list.push_back({pad_, placed(X_WM, r), {.colour = kPad, .gloss = 0.25f}});
 }
 
-void SceneDrawing::addDevice(const FingerSnapshot& finger, double radius, DrawList& list) const {
-  list.push_back({ball_,
-                  placed({Quat::Identity(), finger.p_WF}, Vec3::Constant(radius)),
+void SceneDrawing::addDevice(const FingerSnapshot& seen, std::size_t finger, DrawList& list) const {
+  const bool is_tip = tips_[finger] >= 0;
+  list.push_back({is_tip ? tips_[finger] : ball_,
+                  placed({is_tip ? seen.q_WF.value_or(Quat::Identity()) : Quat::Identity(), seen.p_WF},
+                         Vec3::Constant(is_tip ? 1 : fingers_[finger].radius)),
                   {.colour = kDevice, .alpha = 0.16f, .gloss = 0.5f},
                   Layer::kMark});
-  const Vec3 spring = finger.p_WF - finger.p_WP;
+  const Vec3 spring = seen.p_WF - seen.p_WP;
   if (spring.norm() < 1e-5) return;
   const double thin = 0.02 * size_;
   const Paint paint{.colour = kDevice, .glow = 0.6f};
-  list.push_back({ball_, placed({Quat::Identity(), finger.p_WF}, Vec3::Constant(2.5 * thin)), paint, Layer::kMark});
-  list.push_back({rod_, placed(pointing(finger.p_WP, spring), Vec3(thin, thin, spring.norm())), paint, Layer::kMark});
+  list.push_back({ball_, placed({Quat::Identity(), seen.p_WF}, Vec3::Constant(2.5 * thin)), paint, Layer::kMark});
+  list.push_back({rod_, placed(pointing(seen.p_WP, spring), Vec3(thin, thin, spring.norm())), paint, Layer::kMark});
 }
 
 double SceneDrawing::metresPerNewton(const Snapshot& snapshot) const {

@@ -66,11 +66,12 @@ class SceneDrawing {
   static void addMeshes(const engine::BodyModel& body, double reach, Renderer& renderer, BodyLook& look);
   void addBodies(const Snapshot& snapshot, const ViewChoice& choice, DrawList& list) const;
   void addFinger(const Snapshot& snapshot, std::size_t finger, DrawList& list) const;
-  void addDevice(const FingerSnapshot& finger, double radius, DrawList& list) const;
+  void addDevice(const FingerSnapshot& seen, std::size_t finger, DrawList& list) const;
   void addContact(const ContactSnapshot& contact, const ViewChoice& choice, double metres_per_newton, DrawList& list) const;
   void addArrow(const Vec3& from_W, const Vec3& along_W, double thickness, const Paint& paint, DrawList& list) const;
 
   std::vector<grasp::FingerModel> fingers_;
+  std::vector<int> tips_;  // per finger: its own geometry, -1 of spheres, which are drawn as human fingers
   std::vector<BodyLook> bodies_;
   std::vector<Quat> plain_q_WF_;  // of fingers whose device says nothing of their orientation
   int ball_, rod_, cone_, head_, finger_, pad_, nail_;

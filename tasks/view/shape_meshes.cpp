@@ -197,6 +197,61 @@ ViewMesh shapeMesh(const contact::Shape& shape, MeshLook look, double extent) {
   return drawn;
 }
 
+namespace {
+
+// Of the hull of a pad: each face moved out by the rounding, and its edges and corners rounded by strips and caps of small facets.
+void addRoundEdge(ViewMesh& mesh, const Vec3& from, const Vec3& to, const Vec3& n, const Vec3& m, double rho) {
+  constexpr int kParts = 6;
+  const auto normal = [&](int i) -> Vec3 { return (n + (m - n) * (static_cast<double>(i) / kParts)).normalized(); };
+  for (int i = 0; i < kParts; ++i) {
+    const Vec3 a = normal(i), b = normal(i + 1);
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    for (const auto& [p, d] : {std::pair(from, a), std::pair(to, a), std::pair(to, b), std::pair(from, b)}) {
+      mesh.vertices.push_back({(p + rho * d).cast<float>(), d.cast<float>(), Vec3f::Ones()});
+    }
+    mesh.triangles.insert(mesh.triangles.end(), {first, first + 1, first + 2, first, first + 2, first + 3});
+  }
+}
+
+ViewMesh meshOf(const contact::PadTip& pad) {
+  ViewMesh mesh;
+  const contact::Polytope& hull = *pad.hull;
+  const auto vertex = [&](int i) -> const Vec3& { return hull.vertices()[static_cast<std::size_t>(i)]; };
+  for (const auto& face : hull.faces()) {
+    std::vector<Vec3> corners;
+    for (const int i : hull.cornersOf(face)) corners.push_back(vertex(i) + pad.rounding * face.n);
+    addFace(mesh, corners, face.n);
+  }
+  for (const auto& edge : hull.edges()) {
+    const Vec3 &left = hull.faces()[static_cast<std::size_t>(edge.left)].n, &right = hull.faces()[static_cast<std::size_t>(edge.right)].n;
+    addRoundEdge(mesh, vertex(edge.to), vertex(edge.from), left, right, pad.rounding);
+  }
+  const ViewMesh ball = meshOf(contact::Sphere{pad.rounding});
+  for (const Vec3& corner : hull.vertices()) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    for (ViewVertex v : ball.vertices) {
+      v.p += corner.cast<float>();
+      mesh.vertices.push_back(v);
+    }
+    for (const std::uint32_t i : ball.triangles) mesh.triangles.push_back(first + i);
+  }
+  return mesh;
+}
+
+// A ball's points, each moved to the support point along its normal.
+ViewMesh roundTip(const contact::FingerShape& tip) {
+  ViewMesh mesh = meshOf(contact::Sphere{1});
+  for (ViewVertex& v : mesh.vertices) v.p = contact::supportOf(tip, v.n.cast<double>().normalized()).cast<float>();
+  return mesh;
+}
+
+}  // namespace
+
+ViewMesh tipMesh(const contact::FingerShape& tip) {
+  if (const auto* pad = std::get_if<contact::PadTip>(&tip)) return meshOf(*pad);
+  return closed(roundTip(tip));
+}
+
 ViewMesh ballMesh() { return closed(meshOf(contact::Sphere{1})); }
 ViewMesh rodMesh() { return closed(revolve({{0, 1, 0, 1}, {1, 1, 0, 1}, {1, 1, 1, 0}, {1, 0, 1, 0}, {1, 0, 0, -1}, {0, 0, 0, -1}}, 24)); }
 ViewMesh openConeMesh() {

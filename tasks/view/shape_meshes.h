@@ -1,5 +1,6 @@
 // shape_meshes: the shapes of contact/ as triangles to be drawn, in their own frames [m].
 #pragma once
+#include "pincer/contact/finger_shape.h"
 #include "pincer/contact/shape.h"
 #include "pincer/tasks/view/draw_list.h"
 
@@ -12,6 +13,9 @@ enum class MeshLook : std::uint8_t {
 
 // A half-space is a disc of radius `extent` [m]; a dish ends at this distance from its axis, and has a rim and an outside to be seen.
 ViewMesh shapeMesh(const contact::Shape& shape, MeshLook look, double extent);
+
+// A fingertip that isn't a sphere, in its own frame F: faces flat, edges round, where it touches.
+ViewMesh tipMesh(const contact::FingerShape& tip);
 
 // Of unit size, to be stretched: a ball of radius 1; a rod of radius 1 from z = 0 to 1; a cone with its apex at the origin, open towards
 // z = 1, where its radius is 1, and the same closed and pointing the other way (an arrow's head: base at z = 0, tip at 1).

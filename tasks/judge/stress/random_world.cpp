@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "pincer/contact/pair_query.h"
+#include "pincer/contact/polytope.h"
 
 namespace pincer::tasks {
 namespace {
@@ -36,6 +37,15 @@ contact::Shape anyShape(Random& random, double size) {
     default:
       return contact::Capsule{size / 4, size / 4};
   }
+}
+
+// A flat block with rounded edges, 5 to 40 mm wide.
+contact::PadTip anyPad(Random& random) {
+  const double width = logUniform(random, 5e-3, 40e-3);
+  const Vec3 half = 0.5 * width * anyVector(random, 0.2, 1);
+  std::vector<Vec3> corners;
+  for (int i = 0; i < 8; ++i) corners.push_back({i & 1 ? half.x() : -half.x(), i & 2 ? half.y() : -half.y(), i & 4 ? half.z() : -half.z()});
+  return {contact::Polytope::hullOf(corners, "pad"), 5e-4};
 }
 
 // Collects what a class draws, and builds the model from it.
@@ -189,6 +199,10 @@ class Draft {
       finger.coupling.mass = random_.below(2) == 0 ? 0 : logUniform(random_, 1e-3, 0.1);
       finger.coupling.stiffness = Vec3::Constant(kind_ == StressClass::kStiffness ? logUniform(random_, 10, 1e6) : 1000);
       finger.coupling.damping = Vec3::Constant(random_.uniform(0, 10));
+      if (kind_ == StressClass::kPads) {
+        finger.coupling.stiffness = Vec3::Constant(logUniform(random_, 10, 1e4));
+        finger.shape = anyPad(random_);
+      }
       fingers.push_back(finger);
       const double angle = 2 * M_PI * i / count;
       devices.push_back(Vec3(math::cos(angle), math::sin(angle), 0) * (size + 0.01) + Vec3(0, 0, size));

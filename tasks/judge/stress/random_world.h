@@ -23,9 +23,10 @@ enum class StressClass {
   kStiffness,  // two fingers close on an object, 10 to 1e6 N/m
   kTeleport,   // fingers jump by up to 50 mm now and then
   kNoise,      // fingers tremble by up to 1 mm from tick to tick
+  kPads,       // two to four flat pads of 5 to 40 mm close on an object, 10 to 1e4 N/m
 };
-constexpr std::string_view kStressClassNames[] = {"mass-ratio", "redundant", "overlap",   "spin",     "tick",
-                                                  "inertia",    "heap",      "stiffness", "teleport", "noise"};
+constexpr std::string_view kStressClassNames[] = {"mass-ratio", "redundant", "overlap",  "spin",  "tick", "inertia",
+                                                  "heap",       "stiffness", "teleport", "noise", "pads"};
 
 struct StressWorld {
   // `threads` solve it (engine::WorldOptions).

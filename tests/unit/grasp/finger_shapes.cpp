@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <string>
 
 #include "pincer/contact/finger_query.h"
 #include "pincer/contact/generated_meshes.h"
@@ -224,6 +225,73 @@ TEST(FingerShape, ProblemsAreNamed) {
   EXPECT_EQ(problemWith(padTip()), "");
 }
 
+// A pad with flat faces, 20 x 20 x 4 mm with its rounding.
+PadTip flatPad() {
+  std::vector<Vec3> corners;
+  for (int i = 0; i < 8; ++i) corners.push_back({i & 1 ? 9.5e-3 : -9.5e-3, i & 2 ? 9.5e-3 : -9.5e-3, i & 4 ? 1.5e-3 : -1.5e-3});
+  return {Polytope::hullOf(corners, "pad"), 5e-4};
+}
+
+FingerContacts padOn(const Shape& body, const Pose& X_BF) {
+  FingerTracker tracker;
+  PatchCache cache(64);
+  return queryFinger(body, flatPad(), X_BF, 1e-3, tracker, cache);
+}
+
+// The facets' overlap: of a smaller box its own corners, of a larger one the pad's core; all at the gap that the pose says.
+TEST(FlatPad, TouchesFlatShapesWithTheCornersOfWhatTheyShare) {
+  const double gap = -1e-5;
+  const auto corners = [&](const Shape& body, double top, double x, double y) {
+    const FingerContacts found = padOn(body, {Quat::Identity(), Vec3(0, 0, top + 2e-3 + gap)});
+    ASSERT_EQ(found.count, 4) << body.index();
+    double sum_x = 0, sum_y = 0;
+    for (int i = 0; i < 4; ++i) {
+      const SurfaceContact& c = found.points[static_cast<std::size_t>(i)];
+      EXPECT_NEAR(c.phi, gap, 1e-15);  // sums of lengths of 0.1 m
+      EXPECT_LT((c.n_B - Vec3::UnitZ()).norm(), 1e-15);
+      EXPECT_NEAR(std::abs(c.p_BS.x()), x, 1e-12);
+      EXPECT_NEAR(std::abs(c.p_BS.y()), y, 1e-12);
+      EXPECT_NEAR(c.p_BS.z(), top, 1e-15);
+      sum_x += c.p_BS.x();
+      sum_y += c.p_BS.y();
+    }
+    EXPECT_NEAR(sum_x, 0, 1e-12);
+    EXPECT_NEAR(sum_y, 0, 1e-12);
+  };
+  corners(Box{Vec3(0.02, 0.03, 0.01)}, 0.01, 9.5e-3, 9.5e-3);
+  corners(Box{Vec3(0.005, 0.03, 0.01)}, 0.01, 5e-3, 9.5e-3);
+  corners(Box{Vec3(0.005, 0.004, 0.01)}, 0.01, 5e-3, 4e-3);
+  corners(HalfSpace{}, 0, 9.5e-3, 9.5e-3);
+}
+
+// A rod that lies across: the two ends of the line that it shares with the pad.
+TEST(FlatPad, TouchesARodAlongALine) {
+  const Pose X_BF{tests::about(Vec3(1, 0, 0), M_PI / 2), Vec3(0, -(5e-3 + 2e-3 - 1e-5), 0)};
+  const FingerContacts found = padOn(Capsule{5e-3, 0.03}, X_BF);
+  ASSERT_EQ(found.count, 2);
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_NEAR(found.points[static_cast<std::size_t>(i)].phi, -1e-5, 1e-12);
+    EXPECT_NEAR(std::abs(found.points[static_cast<std::size_t>(i)].p_BS.z()), 9.5e-3, 1e-9);
+  }
+}
+
+TEST(FlatPad, KeepsItsPointsWhileItTiltsAndSlides) {
+  const Shape box = Box{Vec3(0.02, 0.03, 0.01)};
+  FingerTracker tracker;
+  PatchCache cache(8);
+  std::array<std::uint32_t, 4> first{};
+  for (int i = 0; i < 100; ++i) {
+    const Pose X_BF{tests::about(Vec3(1, 0.3, 0), 1e-5 * i), Vec3(1e-5 * i, 2e-5 * i, 0.012)};
+    const FingerContacts found = queryFinger(box, flatPad(), X_BF, 1e-3, tracker, cache);
+    ASSERT_EQ(found.count, 4);
+    std::array<std::uint32_t, 4> names{};
+    for (std::size_t k = 0; k < 4; ++k) names[k] = found.points[k].feature;
+    std::sort(names.begin(), names.end());
+    if (i == 0) first = names;
+    EXPECT_EQ(names, first) << i;
+  }
+}
+
 }  // namespace
 }  // namespace pincer::contact
 
@@ -249,6 +317,48 @@ TEST(FingerShape, EllipsoidsHoldABall) {
   EXPECT_NEAR(scratch.fingers[0].n_W.x(), -1, 0.01);
   // The pad looks down (-z of F); the touch is a quarter of the way round, on the side towards +x: distal.
   EXPECT_GT(placeOnPad(model.fingers[0], scratch.fingers[0].touch).x(), 0.008);
+}
+
+// A box between flat pads, 18 times what holds it, nudged: it buzzed and fell after 7 s when each pad touched it at one point.
+TEST(FlatPad, HoldsANudgedBox) {
+  engine::WorldBuilder builder{engine::WorldOptions{}};
+  builder.addBody({"box", contact::Box{Vec3(0.015, 0.02, 0.025)}, true, 0.1, {0.6, 0.6, 0, 0}});
+  std::vector<FingerModel> fingers = {tests::softFinger("left", 5000), tests::softFinger("right", 5000)};
+  for (FingerModel& f : fingers) f.shape = contact::flatPad();
+  const GraspModel model = buildGrasp(builder, fingers);
+  GraspState state =
+      makeState(model, {tests::startAt(Vec3(0, 0, 0.1), Vec3::Zero(), Vec3(0, 0.3, 0))}, {Vec3(-0.017, 0, 0.1), Vec3(0.017, 0, 0.1)});
+  GraspScratch scratch(model);
+  std::vector<FingerInput> inputs(2);
+  for (int i = 0; i < 2; ++i) inputs[i].p_WF = Vec3(i == 0 ? -0.014 : 0.014, 0, 0.1);
+  for (int i = 0; i < 1000; ++i) step(model, state, scratch, inputs);
+  const Pose held = state.world.bodies[0].X_WI;
+  for (int i = 0; i < 9000; ++i) EXPECT_EQ(step(model, state, scratch, inputs).status, engine::kStepOk);
+  EXPECT_LT((state.world.bodies[0].X_WI.p - held.p).norm(), 1e-12);
+  EXPECT_LT(angleBetween(state.world.bodies[0].X_WI.q, held.q), 1e-9);
+  EXPECT_NEAR(state.world.bodies[0].X_WI.q.w(), 1, 1e-9);
+}
+
+// More bodies than pairs are looked at one by one: what is out of reach changes nothing, to the bit.
+TEST(ManyFingers, FeelTheSameWithFarBodiesAround) {
+  const auto run = [](int others) {
+    engine::WorldBuilder builder{engine::WorldOptions{}};
+    builder.addBody({"ball", contact::Sphere{0.02}, true, 0.1, {0.5, 0.5, 0, 0}});
+    std::vector<engine::BodyStart> starts = {tests::startAt(Vec3(0, 0, 0.1))};
+    for (int i = 0; i < others; ++i) {
+      builder.addBody({"other" + std::to_string(i), contact::Sphere{0.02}, true, 0.1, {0.5, 0.5, 0, 0}});
+      starts.push_back(tests::startAt(Vec3(0.5 + 0.1 * i, 0, 0.1)));
+    }
+    const GraspModel model = buildGrasp(builder, {tests::softFinger("left"), tests::softFinger("right")});
+    GraspState state = makeState(model, starts, {Vec3(-0.028, 0, 0.1), Vec3(0.028, 0, 0.1)});
+    GraspScratch scratch(model);
+    std::vector<FingerInput> inputs(2);
+    for (int i = 0; i < 2; ++i) inputs[i].p_WF = Vec3(i == 0 ? -0.026 : 0.026, 0, 0.1);
+    for (int i = 0; i < 300; ++i) step(model, state, scratch, inputs);
+    EXPECT_TRUE(scratch.fingers[0].touching && scratch.fingers[1].touching);
+    return state.world.bodies[0].X_WI.p;
+  };
+  EXPECT_EQ(run(0), run(engine::kAllPairsBodies + 4));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "pincer/contact/generated_meshes.h"
+#include "pincer/contact/polytope.h"
 #include "pincer/contact/smooth_mesh.h"
 #include "pincer/grasp/baseline.h"
 #include "pincer/grasp/energy_ledger.h"
@@ -117,6 +118,66 @@ std::vector<Record> tipsCost(MeasureContext&) {
           unbounded("two ellipsoids, median", cost(contact::EllipsoidTip{Vec3(8e-3, 7e-3, 6e-3)}), "us")};
 }
 
+// Flat against flat: four points each, where spheres have one.
+std::vector<Record> padsCost(MeasureContext&) {
+  const contact::Shape box = contact::Box{Vec3(kCostBall, kCostBall, kCostBall)};
+  constexpr double kRounding = 5e-4, kHalf = 9.5e-3;  // [m]
+  std::vector<Vec3> corners;
+  for (int i = 0; i < 8; ++i) {
+    const double x = kBenchTip - kRounding;
+    corners.push_back({i & 1 ? x : -x, i & 2 ? kHalf : -kHalf, i & 4 ? kHalf : -kHalf});
+  }
+  const contact::PadTip pad{contact::Polytope::hullOf(corners, "pad"), kRounding};
+  const double spheres = medianTick(heldBall(2, box)), pads = medianTick(heldBall(2, box, grasp::FingerMethod::kProxy, pad));
+  return {unbounded("two spheres on a box, median", spheres, "us"), unbounded("two flat pads on it, median", pads, "us"),
+          unbounded("pads over spheres", pads / spheres, "-")};
+}
+
+// `n` balls 200 mm apart in rows of 32, each between two spheres; all sway, so that none sleeps.
+double costPerPinch(int n) {
+  constexpr double kApart = 0.2;  // [m]
+  constexpr int kPerRow = 32;
+  engine::WorldOptions options = benchWorld(true);
+  options.max_contacts = 16384;
+  engine::WorldBuilder builder(options);
+  std::vector<grasp::FingerModel> models;
+  std::vector<engine::BodyStart> starts;
+  std::vector<Vec3> devices;
+  for (int i = 0; i < n; ++i) {
+    const Vec3 p(kApart * (i % kPerRow), kApart * (i / kPerRow), 0.1);
+    builder.addBody({fmt::format("ball{}", i), contact::Sphere{kCostBall}, true, 0.075, {0.6, 0.6, 0, 0}});
+    starts.push_back({{Quat::Identity(), p}, Vec3::Zero(), Vec3::Zero()});
+    for (const double side : {-1.0, 1.0}) {
+      models.push_back(benchFinger("finger"));
+      models.back().name = fmt::format("f{}", models.size());
+      devices.push_back(p + Vec3(side * (kCostBall + kBenchTip - 2e-3), 0, 0));
+    }
+  }
+  const grasp::GraspModel model = grasp::buildGrasp(std::move(builder), models);
+  grasp::GraspState state = grasp::makeState(model, starts, devices);
+  const grasp::ScratchHandle scratch = grasp::makeScratch(model);
+  std::vector<grasp::FingerInput> inputs(models.size());
+  const auto lead = [&](std::int64_t k) {
+    const double up = 1e-3 * math::sin(0.01 * static_cast<double>(k));
+    for (std::size_t i = 0; i < inputs.size(); ++i) inputs[i].p_WF = devices[i] + Vec3(0, 0, up);
+    grasp::step(model, state, *scratch, inputs);
+  };
+  const int calls = std::max(1, 300 / n);
+  return costOfCalls(lead, {.warm_up = 200, .batches = 31, .calls_per_batch = calls, .single_calls = 0}).median / (1000.0 * n);
+}
+
+std::vector<Record> pinchesCost(MeasureContext&) {
+  std::vector<Record> records;
+  double one = 0, most = 0;
+  for (const int n : {1, 10, 100, 1000}) {
+    most = costPerPinch(n);
+    if (n == 1) one = most;
+    records.push_back(unbounded(fmt::format("{} pinches in one world, per pinch, median", n), most, "us"));
+  }
+  records.push_back(atMost("per pinch of 1000, over one alone", most / one, "-", 1.5));
+  return records;
+}
+
 std::vector<Record> passivityCost(MeasureContext&) {
   HeldBall held = heldBall(2, contact::Sphere{kCostBall});
   grasp::PassivityState ports(2);
@@ -136,7 +197,8 @@ std::vector<Record> passivityCost(MeasureContext&) {
 }  // namespace
 
 std::vector<Measurement> graspCostMeasurements() {
-  return {{"cost/fingers", fingersCost}, {"cost/methods", methodsCost}, {"cost/tips", tipsCost}, {"cost/passivity", passivityCost}};
+  return {{"cost/fingers", fingersCost}, {"cost/methods", methodsCost}, {"cost/tips", tipsCost},
+          {"cost/pads", padsCost},       {"cost/pinches", pinchesCost}, {"cost/passivity", passivityCost}};
 }
 
 }  // namespace pincer::tasks

@@ -1,0 +1,219 @@
+// Objects between two flat pads: held, shaken, let slip, spun, rolled. The answers are closed forms:
+//
+//   stuck     the object moves as its pads do
+//   slip      mu = .98 m g/(2 N): falls with .02 g and doesn't turn
+//   spin      four corners at radius r carry N/4 each: w' = -2 mu N r / I, about the pads' normal
+//   rod       pads that move apart by d turn a rod of radius R between them by d/(2 R), without slip
+#include <array>
+
+#include "pincer/contact/polytope.h"
+#include "pincer/grasp/step.h"
+#include "pincer/tasks/judge/verify/scene_run.h"
+#include "pincer/tasks/judge/verify/verify.h"
+
+namespace pincer::tasks {
+namespace {
+
+constexpr double kHalfThickness = 2e-3;  // of a pad, along x [m]
+constexpr double kRounding = 5e-4;       // of its edges [m]
+constexpr double kUp = 0.1;              // height of the object's centre [m]
+
+contact::PadTip flatPad(double width) {
+  const double a = 0.5 * width - kRounding, b = kHalfThickness - kRounding;
+  std::vector<Vec3> corners;
+  for (int i = 0; i < 8; ++i) corners.push_back({i & 1 ? b : -b, i & 2 ? a : -a, i & 4 ? a : -a});
+  return {contact::Polytope::hullOf(corners, "pad"), kRounding};
+}
+
+struct PadGrip {
+  contact::Shape shape;
+  double half = 0.015;  // of the object along x [m]
+  double mass = 0.1, mu = 0.6;
+  double width = 0.02;                    // of the pads [m]
+  double press = 15;                      // N [N]
+  Vec3 stiffness = Vec3::Constant(5000);  // along x: 0 presses with a force, else with a spring [N/m]
+  Eigen::Array<bool, 3, 1> locked{false, false, false};
+  Vec3 gravity_W{0, 0, -kVerifyG};
+  Vec3 w_W = Vec3::Zero();  // of the object at the start [rad/s]
+};
+
+// An object between two pads at -x and +x, which just touch it.
+class PadRun {
+ public:
+  explicit PadRun(const PadGrip& grip) : grip_(grip) {
+    engine::WorldOptions options;
+    options.gravity_W = grip.gravity_W;
+    engine::WorldBuilder builder(options);
+    builder.addBody({"object", grip.shape, true, grip.mass, {grip.mu, grip.mu}});
+    std::vector<grasp::FingerModel> fingers(2);
+    std::vector<Vec3> places;
+    for (int i = 0; i < 2; ++i) {
+      grasp::FingerModel& f = fingers[static_cast<std::size_t>(i)];
+      f.name = i == 0 ? "left" : "right";
+      f.shape = flatPad(grip.width);
+      f.coupling.stiffness = grip.stiffness;
+      f.coupling.damping = Vec3::Constant(5);
+      f.coupling.locked = grip.locked;
+      if (!(grip.stiffness.x() > 0)) f.coupling.mass = 0.05;
+      places.push_back(Vec3(sideOf(i) * (grip.half + kHalfThickness), 0, kUp));
+    }
+    model = grasp::buildGrasp(std::move(builder), fingers);
+    engine::BodyStart start;
+    start.X_WB.p = Vec3(0, 0, kUp);
+    start.w_W = grip.w_W;
+    state = grasp::makeState(model, {start}, places);
+    scratch_ = grasp::makeScratch(model);
+  }
+
+  // One tick to where the left pad is displaced by `d`, the right one by `sign` d, at the velocity `v` and `sign` v.
+  void tick(const Vec3& d = Vec3::Zero(), const Vec3& v = Vec3::Zero(), double sign = 1) {
+    const bool sprung = grip_.stiffness.x() > 0;
+    for (int i = 0; i < 2; ++i) {
+      const double way = i == 0 ? 1 : sign, deep = sprung ? grip_.press / grip_.stiffness.x() : 0;
+      grasp::FingerInput& in = inputs_[static_cast<std::size_t>(i)];
+      in.p_WF = Vec3(sideOf(i) * (grip_.half + kHalfThickness - deep), 0, kUp) + way * d;
+      in.v_WF = way * v;
+      in.f_W = sprung ? Vec3(Vec3::Zero()) : Vec3(-sideOf(i) * grip_.press, 0, 0);
+    }
+    flagged += grasp::step(model, state, *scratch_, inputs_).status != engine::kStepOk;
+    ++ticks;
+  }
+  double time() const { return static_cast<double>(ticks) * model.world.options.h; }
+  const Vec3& place() const { return state.world.bodies[0].X_WI.p; }
+  const Quat& turned() const { return state.world.bodies[0].X_WI.q; }
+  Vec3 padsPlace() const { return 0.5 * (state.world.points[0].p_W + state.world.points[1].p_W); }
+
+  grasp::GraspModel model;
+  grasp::GraspState state;
+  std::int64_t ticks = 0, flagged = 0;
+
+ private:
+  static double sideOf(int finger) { return finger == 0 ? -1 : 1; }
+  PadGrip grip_;
+  grasp::ScratchHandle scratch_;
+  std::array<grasp::FingerInput, 2> inputs_;
+};
+
+const contact::Shape kBrick = contact::Box{Vec3(0.015, 0.02, 0.025)};
+
+// Nudged at the start; judged from when the nudge has been taken up.
+std::vector<Record> hold(const PadGrip& grip, MeasureContext& context) {
+  PadRun run(grip);
+  double slip = 0, turn = 0;
+  while (run.time() < 1) run.tick();
+  const Vec3 p = run.place() - run.padsPlace();
+  const Quat q = run.turned();
+  while (run.time() < 60 && !context.interrupted()) {
+    run.tick();
+    slip = std::max(slip, (run.place() - run.padsPlace() - p).norm());
+    turn = std::max(turn, angleBetween(q, run.turned()));
+  }
+  return {atMost("slip in 60 s", 1e6 * slip, "um", 1e-6), atMost("rotation in 60 s", turn, "rad", 1e-9),
+          exactly("flagged ticks", static_cast<double>(run.flagged), "-", 0)};
+}
+
+Measurement holdOf(const char* name, const contact::Shape& shape, double width) {
+  PadGrip grip{shape};
+  grip.width = width;
+  grip.w_W = Vec3(0, 0.3, 0);
+  return {name, [grip](MeasureContext& context) { return hold(grip, context); }};
+}
+
+// The pads' targets go 20 mm to and fro at 5 Hz, their swing growing in the first second.
+std::vector<Record> shake(const Vec3& along, MeasureContext&) {
+  PadGrip grip{kBrick};
+  grip.mass = 0.15;
+  grip.mu = 2.5;
+  grip.press = 10;
+  grip.stiffness = Vec3(0, 2000, 2000);
+  PadRun run(grip);
+  double slip = 0, turn = 0;
+  for (int i = 0; i < 500; ++i) run.tick();
+  const Vec3 p = run.place() - run.padsPlace();
+  const double w = 10 * M_PI;
+  for (int i = 1; i <= 5000; ++i) {
+    const double t = 1e-3 * i, swing = 0.02 * std::min(t, 1.0), rate = t < 1 ? 0.02 : 0;
+    run.tick(swing * math::sin(w * t) * along, (swing * w * math::cos(w * t) + rate * math::sin(w * t)) * along);
+    slip = std::max(slip, (run.place() - run.padsPlace() - p).norm());
+    turn = std::max(turn, angleBetween(Quat::Identity(), run.turned()));
+  }
+  return {atMost("slip against the pads", 1e6 * slip, "um", 1e-6), atMost("rotation", turn, "rad", 1e-9),
+          exactly("flagged ticks", static_cast<double>(run.flagged), "-", 0)};
+}
+
+std::vector<Record> slipsOut(MeasureContext&) {
+  PadGrip grip{kBrick};
+  grip.press = 10;
+  grip.mu = 0.98 * grip.mass * kVerifyG / (2 * grip.press);
+  grip.stiffness.setZero();
+  grip.locked = {false, true, true};
+  PadRun run(grip);
+  for (int i = 0; i < 300; ++i) run.tick();
+  const double whole = 0.5 * 0.02 * kVerifyG * run.time() * run.time();
+  return {atMost("way, error over the whole way", std::abs((kUp - run.place().z()) / whole - 1), "-", 1e-9),
+          atMost("rotation", angleBetween(Quat::Identity(), run.turned()), "rad", 1e-6),
+          exactly("flagged ticks", static_cast<double>(run.flagged), "-", 0)};
+}
+
+std::vector<Record> spinsDown(MeasureContext&) {
+  PadGrip grip{kBrick};
+  grip.press = 2;
+  grip.mu = 0.3;
+  grip.stiffness.setZero();
+  grip.locked = {false, true, true};
+  grip.gravity_W.setZero();
+  grip.w_W = Vec3(20, 0, 0);
+  PadRun run(grip);
+  const double inertia = grip.mass * (0.04 * 0.04 + 0.05 * 0.05) / 12, r = std::sqrt(2.0) * (0.5 * grip.width - kRounding);
+  const double braking = 2 * grip.mu * grip.press * r / inertia, end = grip.w_W.x() / braking;
+  while (run.time() < 0.5 * end) run.tick();
+  const double w = engine::bodyAngularVelocity(run.model.world, run.state.world, 0).x();
+  const double error = std::abs((grip.w_W.x() - w) / (braking * run.time()) - 1);
+  while (run.time() < end + 0.02) run.tick();
+  return {atMost("torque while it slips over 2 mu N r, less 1", error, "-", 1e-3),
+          atMost("spin 20 ms after I w/(2 mu N r)", engine::bodyAngularVelocity(run.model.world, run.state.world, 0).norm(), "rad/s", 1e-6),
+          exactly("flagged ticks", static_cast<double>(run.flagged), "-", 0)};
+}
+
+// 20 strokes of 10 mm to and fro of each pad, against each other.
+std::vector<Record> rollsRod(MeasureContext&) {
+  PadGrip grip{contact::Capsule{0.005, 0.02}};
+  grip.half = 0.005;
+  grip.mass = 0.02;
+  grip.mu = 0.8;
+  grip.width = 0.04;
+  grip.press = 5;
+  grip.stiffness = Vec3(0, 20000, 20000);
+  grip.gravity_W.setZero();
+  PadRun run(grip);
+  for (int i = 0; i < 200; ++i) run.tick();
+  constexpr int kStrokes = 20, kTicks = 500;
+  double worst = 0;
+  for (int i = 1; i <= kStrokes * kTicks; ++i) {
+    const double phase = 2 * M_PI * i / kTicks, rate = 2 * M_PI / (kTicks * 1e-3);
+    run.tick(Vec3(0, 0.005 * (1 - math::cos(phase)), 0), Vec3(0, 0.005 * rate * math::sin(phase), 0), -1);
+    const double d = run.state.world.points[0].p_W.y() - run.state.world.points[1].p_W.y();
+    const double angle = 2 * math::atan2(run.turned().z(), run.turned().w());
+    worst = std::max(worst, std::abs(std::abs(angle) - std::abs(d) / (2 * grip.half)));
+  }
+  return {atMost("angle against rolling without slip, over 20 strokes", 1e3 * worst, "mrad", 1e-6),
+          exactly("flagged ticks", static_cast<double>(run.flagged), "-", 0)};
+}
+
+}  // namespace
+
+std::vector<Measurement> verifyPads() {
+  return {holdOf("pads/hold-5mm", kBrick, 0.005),
+          holdOf("pads/hold-10mm", kBrick, 0.01),
+          holdOf("pads/hold-20mm", kBrick, 0.02),
+          holdOf("pads/hold-40mm", kBrick, 0.04),
+          holdOf("pads/hold-cylinder", contact::Cylinder{0.015, 0.03}, 0.02),
+          holdOf("pads/hold-rod", contact::Capsule{0.015, 0.03}, 0.02),
+          {"pads/shake-across", [](MeasureContext& c) { return shake(Vec3::UnitY(), c); }},
+          {"pads/shake-along", [](MeasureContext& c) { return shake(Vec3::UnitZ(), c); }},
+          {"pads/slip-0.98", slipsOut},
+          {"pads/spin-down", spinsDown},
+          {"pads/roll-rod", rollsRod}};
+}
+
+}  // namespace pincer::tasks
