@@ -18,7 +18,8 @@ bool Alternation::factorise() {
 bool Alternation::run(int steps, bool resume) {
   constexpr std::int64_t kPerContact = 250;
   if (!resume) {
-    for (int row = 0; row < problem_.rowCount(); ++row) scratch_.multiplier[static_cast<std::size_t>(row)] = -scratch_.u[static_cast<std::size_t>(row)];
+    for (int row = 0; row < problem_.rowCount(); ++row)
+      scratch_.multiplier[static_cast<std::size_t>(row)] = -scratch_.u[static_cast<std::size_t>(row)];
     factored_ = 0;
   }
   if (!factorise()) return false;
@@ -29,7 +30,8 @@ bool Alternation::run(int steps, bool resume) {
 
 void Alternation::takeStep() {
   const double* const q = problem_.q.data();
-  double *const b = scratch_.work.data(), *const l = scratch_.multiplier.data(), *const z = scratch_.centre.data(), *const y = scratch_.direction.data();
+  double *const b = scratch_.work.data(), *const l = scratch_.multiplier.data(), *const z = scratch_.centre.data(),
+                *const y = scratch_.direction.data();
   std::fill(y, y + kMoverFreedoms * problem_.movers, 0.0);
   for (int i = 0; i < problem_.contactCount(); ++i) {
     const int first = problem_.firstRow(i);

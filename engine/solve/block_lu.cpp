@@ -102,7 +102,8 @@ void BlockLu::begin(int nodes) {
 void BlockLu::connect(int a, int b) {
   PINCER_ASSERT(0 <= a && a < nodes_ && 0 <= b && b < nodes_);
   if (a == b) return;
-  const std::uint64_t edge = static_cast<std::uint64_t>(std::min(a, b)) * static_cast<std::uint64_t>(nodes_) + static_cast<std::uint64_t>(std::max(a, b));
+  const std::uint64_t edge =
+      static_cast<std::uint64_t>(std::min(a, b)) * static_cast<std::uint64_t>(nodes_) + static_cast<std::uint64_t>(std::max(a, b));
   if (!edges_.empty() && edges_.back() == edge) return;  // contacts of one pair follow each other
   if (edges_.size() < edges_.capacity()) edges_.push_back(edge);
 }

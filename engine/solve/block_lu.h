@@ -29,7 +29,9 @@ class BlockLu {
   int products() const { return products_; }  // of blocks, in a factorisation
 
   // Where the row-major block H_ab lies, for connected a and b; the same as long as the structure is.
-  int place(int a, int b) const { return slots_[static_cast<std::size_t>(a) * static_cast<std::size_t>(nodes_) + static_cast<std::size_t>(b)]; }
+  int place(int a, int b) const {
+    return slots_[static_cast<std::size_t>(a) * static_cast<std::size_t>(nodes_) + static_cast<std::size_t>(b)];
+  }
   double* block(int place) { return blocks_.data() + kBlock * kBlock * place; }
 
   // Values: clear (to the identity), add to blocks, factorise, solve as often as wanted. False if a block is singular or not finite.
@@ -53,9 +55,9 @@ class BlockLu {
   bool kept_fits_ = false;
   std::vector<int> slots_;  // of block (a, b), -1 for none
   std::vector<double> blocks_;
-  std::vector<std::uint64_t> neighbours_;  // per node a set of those not yet eliminated, while ordering
-  std::vector<int> degree_;                // of them; -1: eliminated
-  std::vector<int> order_, first_later_;   // nodes as eliminated; who each couples to then: entries first_later_[k] .. of
+  std::vector<std::uint64_t> neighbours_;   // per node a set of those not yet eliminated, while ordering
+  std::vector<int> degree_;                 // of them; -1: eliminated
+  std::vector<int> order_, first_later_;    // nodes as eliminated; who each couples to then: entries first_later_[k] .. of
   std::vector<int> later_, lower_, upper_;  // the node, and the places of H_later,node and H_node,later
   std::vector<int> targets_;                // of a factorisation's products, in its order
 };

@@ -58,10 +58,10 @@ struct alignas(64) RoundContact {
 
 // Views onto memory that somebody else owns (engine/world's scratch). n contacts, m rows in all.
 struct ContactProblem {
-  std::span<const int> first_row;       // size n + 1; contact i owns rows first_row[i] .. first_row[i + 1] - 1
-  std::span<const double> mu;           // size n, each >= 0 [-]
-  std::span<const ContactSide> sides;   // contact by contact: two each, or those of first_side
-  VectorMap q;                          // m
+  std::span<const int> first_row;      // size n + 1; contact i owns rows first_row[i] .. first_row[i + 1] - 1
+  std::span<const double> mu;          // size n, each >= 0 [-]
+  std::span<const ContactSide> sides;  // contact by contact: two each, or those of first_side
+  VectorMap q;                         // m
   int movers = 0;
   bool strict = false;                       // the warm start is only taken where it is exact to round-off, see contact_solver.h
   bool calm = false;                         // nothing of it moves faster than rest (restErrorOf)

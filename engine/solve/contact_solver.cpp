@@ -19,12 +19,12 @@ namespace {
 constexpr double kLeastEpsilon = 1e-5, kFirstEpsilon = 0.1, kMostEpsilon = 1;  // e over w: range, and the first at most
 constexpr double kEpsilonOfError = 1e3;                                        // the first is that times the start's error [s/m]
 constexpr double kEasier = 0.2, kHarder = 5;                                   // epsilon after a short round, after one that failed
-constexpr int kEasySteps = 3, kMostRoundSteps = 8;                                  // of a round
+constexpr int kEasySteps = 3, kMostRoundSteps = 8;                             // of a round
 constexpr double kFar = 1e-3;                                                  // from which rounds fail more often than not [m/s]
 constexpr double kShareOfSlip = 3e-4;                                          // of what pushes: below it, in motion, errors don't show
 constexpr double kSliding = 0.05;                                              // of the problem's speeds: what slips faster is swept
 constexpr double kStillFading = 0.7;                                           // of an error or a give, from one time to the next
-constexpr int kAlternations = 10, kSweepsAtATime = 8;                                 // at a time
+constexpr int kAlternations = 10, kSweepsAtATime = 8;                          // at a time
 
 constexpr std::int64_t kPerContactLooked = 150, kPerSmallStep = 1000;  // multiplications; of three contacts at most
 constexpr std::int64_t kFewestOperations = 60'000'000;                 // of a search: some 80 ms
@@ -47,9 +47,7 @@ double fastestSlip(const ContactProblem& problem, const double* r, const double*
 class Search {
  public:
   Search(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch)
-      : problem_(problem),
-        options_(options),
-        scratch_(scratch) {}
+      : problem_(problem), options_(options), scratch_(scratch) {}
 
   SolveResult run(double* r, double* u) {
     weighContacts(problem_, scratch_);
@@ -172,7 +170,7 @@ class Search {
       const int before = result_.iterations;
       if (!round.solve(epsilon, kMostRoundSteps, result_.iterations)) {
         epsilon = std::min(kMostEpsilon, kHarder * epsilon);
-          if (++failures > kMostFailures) return;
+        if (++failures > kMostFailures) return;
         slides() ? smooth() : alternate(alternation, false);
         continue;
       }
@@ -297,13 +295,15 @@ bool removeAddedEnergy(const ContactProblem& problem, double* r, const double* u
   return true;
 }
 
-void solveFew(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch, double* r, double* u, SolveResult& result) {
+void solveFew(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch, double* r, double* u,
+              SolveResult& result) {
   weighContacts(problem, scratch);
   const ContactError start = errorOf(problem, r, scratch, u);
   const bool is_exact = !problem.strict || start.residual <= exactResidual(options.tolerance, referenceSpeed(problem));
   const bool rests = problem.calm && start.speed <= restErrorOf(options);
   result = {SolveMethod::kWarmStart, 0, start.residual, start.speed, start.residual, true};
-  if (!rests && !(start.residual <= options.tolerance && is_exact)) solveFewContacts(problem, options, start.residual, scratch, r, u, result);
+  if (!rests && !(start.residual <= options.tolerance && is_exact))
+    solveFewContacts(problem, options, start.residual, scratch, r, u, result);
 }
 
 }  // namespace
@@ -328,7 +328,8 @@ void solveContacts(const ContactProblem& problem, const SolverOptions& options, 
   result.error = error.speed;
 }
 
-bool restsAsItIs(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch, const double* r, double* u, SolveResult& result) {
+bool restsAsItIs(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch, const double* r, double* u,
+                 SolveResult& result) {
   if (!problem.calm) return false;
   weighContacts(problem, scratch);
   const ContactError error = errorOf(problem, r, scratch, u);

@@ -15,20 +15,21 @@ namespace pincer::engine {
 namespace {
 
 constexpr std::int64_t kPerContactScaled = 300, kPerPairScaled = 40;  // multiplications
-constexpr int kProximalRounds = 12, kInteriorPointSteps = 30;  // each time
+constexpr int kProximalRounds = 12, kInteriorPointSteps = 30;         // each time
 
 // How long each method is given: where the tolerance alone counts, not the tick, longer.
 struct Patience {
   int newton_steps, shift_updates, sweeps;
 };
 constexpr Patience patienceOf(const SolverOptions& options) { return options.accuracy > 0 ? Patience{12, 3, 60} : Patience{20, 20, 300}; }
-constexpr double kNearSolution = 1e-8;    // residual from which Newton's method needs a step or two
-constexpr double kShiftedGap = 1e-6;      // of a problem with frozen shift, itself an approximation
-constexpr int kSweepsPerRound = 15;       // enough to leave the basin in which Newton's method failed
+constexpr double kNearSolution = 1e-8;  // residual from which Newton's method needs a step or two
+constexpr double kShiftedGap = 1e-6;    // of a problem with frozen shift, itself an approximation
+constexpr int kSweepsPerRound = 15;     // enough to leave the basin in which Newton's method failed
 constexpr int kGivingRounds = 12;
-constexpr int kAffordableContacts = 20;   // beyond, only one attempt from the interior
-constexpr double kContentSpeed = 1e-8;    // [m/s], or as much as a residual: enough once Newton's method failed. Contacts that contradict each other by the
-                                          // round-off of their gaps (a mesh at rest in a dish) have no better answer, and 10 nm/s is far below anything felt
+constexpr int kAffordableContacts = 20;  // beyond, only one attempt from the interior
+constexpr double kContentSpeed =
+    1e-8;  // [m/s], or as much as a residual: enough once Newton's method failed. Contacts that contradict each other by the
+           // round-off of their gaps (a mesh at rest in a dish) have no better answer, and 10 nm/s is far below anything felt
 
 double contentResidual(const SolverOptions& options, double reference_speed) {
   return options.accuracy > 0 ? std::max(kContentSpeed, kContentSpeed / reference_speed) : options.tolerance;
@@ -116,7 +117,11 @@ class FewSearch {
   // Passes over all contacts, of the scaled problem.
   void smooth() {
     const auto n = static_cast<std::size_t>(problem_.contactCount());
-    const ContactProblem scaled{problem_.first_row, problem_.mu, {problem_.sides.front().data(), 2 * n}, VectorMap(scratch_.q.data(), problem_.rowCount()), problem_.movers};
+    const ContactProblem scaled{problem_.first_row,
+                                problem_.mu,
+                                {problem_.sides.front().data(), 2 * n},
+                                VectorMap(scratch_.q.data(), problem_.rowCount()),
+                                problem_.movers};
     respond(scaled, current_.r, scratch_);
     Sweeps sweeps(scaled, scratch_, current_.r);
     for (int k = 0; k < kSweepsPerRound; ++k) sweeps.sweep(false);
@@ -167,8 +172,7 @@ class FewSearch {
     evaluate(problem_, current_);
     takeShift();
     for (int n = 0; n < patienceOf(options).shift_updates; ++n) {
-      iterations_ += followCentralPath(problem_, scratch_.shift.data(), kShiftedGap, kInteriorPointSteps, equations_,
-                                       scratch_, current_);
+      iterations_ += followCentralPath(problem_, scratch_.shift.data(), kShiftedGap, kInteriorPointSteps, equations_, scratch_, current_);
       takeShift();
       if (finish(options)) return true;
     }
@@ -198,8 +202,8 @@ class FewSearch {
 };
 
 // What squeezes without end: as if contacts were soft. `r` and `result` are as they were if nothing is found.
-void yieldToWalls(const ContactProblem& problem, const SolverOptions& options, EquationForm form, SolverScratch& scratch, double* r, double* u,
-                  SolveResult& result) {
+void yieldToWalls(const ContactProblem& problem, const SolverOptions& options, EquationForm form, SolverScratch& scratch, double* r,
+                  double* u, SolveResult& result) {
   const double start = errorOf(problem, r, scratch, u).residual;
   FewSearch search(problem, form, scratch, r, u, start);
   if (!search.soften(options)) return;
@@ -224,8 +228,8 @@ void tryPointProblem(const ContactProblem& problem, const SolverOptions& options
 
 }  // namespace
 
-void solveFewContacts(const ContactProblem& problem, const SolverOptions& options, double start, SolverScratch& scratch, double* r, double* u,
-                      SolveResult& result) {
+void solveFewContacts(const ContactProblem& problem, const SolverOptions& options, double start, SolverScratch& scratch, double* r,
+                      double* u, SolveResult& result) {
   PINCER_ASSERT(problem.contactCount() <= kFewContacts);
   const EquationForm form = chooseForm(problem, scratch);
   FewSearch search(problem, form, scratch, r, u, start);

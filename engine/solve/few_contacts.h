@@ -17,7 +17,7 @@ constexpr int kFewContacts = 60;    // beyond, what needs many factorisations co
 constexpr int kDenseContacts = 40;  // beyond, a dense matrix costs more than any graph of movers that fits
 
 // Solves `problem`, of at most kFewContacts, from `r` (in the cones) whose velocities `u` and residual `start` are; as solveContacts.
-void solveFewContacts(const ContactProblem& problem, const SolverOptions& options, double start, SolverScratch& scratch, double* r, double* u,
-                      SolveResult& result);
+void solveFewContacts(const ContactProblem& problem, const SolverOptions& options, double start, SolverScratch& scratch, double* r,
+                      double* u, SolveResult& result);
 
 }  // namespace pincer::engine

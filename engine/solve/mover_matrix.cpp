@@ -90,7 +90,7 @@ template <class Rows, class Times>
 
 void MoverMatrix::addScaled(int i, double g) {
   withRows(problem_.rows(i), [&](auto rows) {
-    addBlocks(i, rows, [&](const ContactSide& b, DoublePair (&GA)[kMaxContactRows][3]) {
+    addBlocks(i, rows, [&](const ContactSide& b, DoublePair(&GA)[kMaxContactRows][3]) {
       for (int l = 0; l < rows; ++l) {
         const DoublePair* const A = reinterpret_cast<const DoublePair*>(b.A[l]);
         for (int j = 0; j < 3; ++j) GA[l][j] = g * A[j];
@@ -101,7 +101,7 @@ void MoverMatrix::addScaled(int i, double g) {
 
 void MoverMatrix::add(int i, const double (&G)[kMaxContactRows][kMaxContactRows]) {
   withRows(problem_.rows(i), [&](auto rows) {
-    addBlocks(i, rows, [&](const ContactSide& b, DoublePair (&GA)[kMaxContactRows][3]) {
+    addBlocks(i, rows, [&](const ContactSide& b, DoublePair(&GA)[kMaxContactRows][3]) {
       for (int k = 0; k < rows; ++k) {
         for (int j = 0; j < 3; ++j) GA[k][j] = DoublePair{0, 0};
         for (int l = 0; l < rows; ++l) {
@@ -119,9 +119,7 @@ void MoverMatrix::skip(int i) {
   place_ += moving * moving;
 }
 
-bool MoverMatrix::factorise() {
-  return spend(costOfFactorisation(), scratch_) && scratch_.lu.factorise();
-}
+bool MoverMatrix::factorise() { return spend(costOfFactorisation(), scratch_) && scratch_.lu.factorise(); }
 
 std::int64_t MoverMatrix::costOfFactorisation() const {
   constexpr std::int64_t kPerContact = 600, kPerProduct = 216;

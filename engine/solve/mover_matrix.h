@@ -24,7 +24,7 @@ class MoverMatrix {
 
   // False if the budget is spent, or the matrix is singular or not finite.
   bool factorise();
-  void solve(double* x) const;  // x becomes H^-1 x
+  void solve(double* x) const;               // x becomes H^-1 x
   std::int64_t costOfFactorisation() const;  // and of filling it: multiplications
   std::int64_t costOfSolution() const;
 

@@ -19,7 +19,7 @@ constexpr int kStepsPerRound = 8;
 constexpr double kGivingEpsilon = 1e-2, kMoreEpsilon = 10;  // of contacts that give way: as long as a round isn't solved, more
 constexpr int kStepsPerGivingRound = 12;
 constexpr double kSoftEpsilons[] = {1e-3, 1e-2, 0.1};  // of contacts that are soft: the first with which Newton's method gets there
-constexpr double kFadesStill = 0.5;                   // of the give of the round before
+constexpr double kFadesStill = 0.5;                    // of the give of the round before
 constexpr int kPatience = 5;                  // steps without a residual half as large as the best before, after which it won't come
 constexpr int kTrials = 6;                    // step lengths 1, 1/2, .. 1/32
 constexpr double kSufficientDecrease = 1e-4;  // Armijo's, on |Phi|^2

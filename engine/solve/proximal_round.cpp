@@ -8,8 +8,8 @@
 namespace pincer::engine {
 namespace {
 
-constexpr double kRoundTolerance = 1e-3;     // of |y - A^T r| at a round's start
-constexpr int kRoundTrials = 6;                   // step lengths 1, 1/2, .. 1/32
+constexpr double kRoundTolerance = 1e-3;   // of |y - A^T r| at a round's start
+constexpr int kRoundTrials = 6;            // step lengths 1, 1/2, .. 1/32
 constexpr double kRoundSufficient = 1e-4;  // Armijo's
 
 // r = C(x), x overwritten.

@@ -5,8 +5,8 @@
 // s is one number per contact, so the cones and the law are unchanged; r^ and u^ are both in sqrt(J). The diagonal of W^ is about 1, whatever
 // the masses, so Alart-Curnier's rho, the line search's merit and the regularisation need no tuning.
 #pragma once
-#include "pincer/engine/solve/solver_scratch.h"
 #include "pincer/engine/solve/contact_problem.h"
+#include "pincer/engine/solve/solver_scratch.h"
 
 namespace pincer::engine {
 

@@ -130,8 +130,7 @@ class SmallProblem {
       w_[i] = trace * (1.0 / rows);
     }
     for (int i = 0; i < count; ++i) {
-      for (int j = i + 1; j < count; ++j)
-        fillCoupling(problem.sidesOf(i), problem.sidesOf(j), rows * i, rows * j);
+      for (int j = i + 1; j < count; ++j) fillCoupling(problem.sidesOf(i), problem.sidesOf(j), rows * i, rows * j);
     }
   }
 

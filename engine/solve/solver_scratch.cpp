@@ -9,7 +9,7 @@
 namespace pincer::engine {
 namespace {
 
-constexpr int kBlocksPerMover = 64;   // of the factors: walls of forty bricks by twenty
+constexpr int kBlocksPerMover = 64;     // of the factors: walls of forty bricks by twenty
 constexpr int kProductsAtLeast = 4096;  // for few contacts of many movers
 
 void sizeForFew(int contacts, int movers, SolverScratch& s) {

@@ -208,7 +208,8 @@ void Sweeps::goFurther(int i, double a, double b) {
   });
 }
 
-SweptResult sweepUntil(const ContactProblem& problem, double enough, const ContactError& start, SolverScratch& scratch, double* r, double* u) {
+SweptResult sweepUntil(const ContactProblem& problem, double enough, const ContactError& start, SolverScratch& scratch, double* r,
+                       double* u) {
   const int n = problem.contactCount();
   const bool rests = start.speed <= enough;
   const int most = std::clamp(kVisits / n, kFewestSweeps, kMostSweeps);
@@ -224,9 +225,10 @@ SweptResult sweepUntil(const ContactProblem& problem, double enough, const Conta
     const bool is_spent = !spend(kPerContactSwept * n, scratch);
     method.sweep(false);  // to and fro would be half as fast: what was visited last learns nothing from being visited first
     ++result.sweeps;
-    if (result.sweeps == most || (is_spent && result.sweeps >= kFewestSweeps)) break;  // contacts that are new have no impulse yet: every tick gets a few
-    const bool is_due = result.sweeps % kBetweenLooks == 0 ? method.largestChange() <= kWorthALook * enough
-                                                           : rests && result.sweeps == kRestingSweeps;
+    if (result.sweeps == most || (is_spent && result.sweeps >= kFewestSweeps))
+      break;  // contacts that are new have no impulse yet: every tick gets a few
+    const bool is_due =
+        result.sweeps % kBetweenLooks == 0 ? method.largestChange() <= kWorthALook * enough : rests && result.sweeps == kRestingSweeps;
     if (is_due && isEnough()) break;
     method.accelerate();
   }

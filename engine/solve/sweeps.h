@@ -64,6 +64,7 @@ struct SweptResult {
   int sweeps = 0;
   ContactError error;
 };
-SweptResult sweepUntil(const ContactProblem& problem, double enough, const ContactError& start, SolverScratch& scratch, double* r, double* u);
+SweptResult sweepUntil(const ContactProblem& problem, double enough, const ContactError& start, SolverScratch& scratch, double* r,
+                       double* u);
 
 }  // namespace pincer::engine

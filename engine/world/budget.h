@@ -1,6 +1,6 @@
 // budget: what a tick spends of solver.budget besides its solves, and what it does once that has run out.
 //
-// Counted in multiplications, not measured (solve/cascade.h); scratch.operations_left below 0 is spent. Then what is left of the tick is done in one
+// Counted in multiplications, not measured (solve/solver_scratch.h); scratch.operations_left below 0 is spent. Then what is left of the tick is done in one
 // part, however far bodies turn in it, with impulses that are best iterates: its answer is flagged, and must not have more energy than there was.
 #pragma once
 #include "pincer/engine/world/scratch.h"

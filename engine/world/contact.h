@@ -47,9 +47,9 @@ struct Contact {
   Vec3 impulse_W;   // impulse on a at p_W [N s]; b got exactly its negative
   Vec3 u_C;         // velocity of a relative to b at the end of the tick, biases included [m/s]
   bool sliding = false;
-  int settling = 0;     // see ContactMemory; of the last tick before the solve, of this one after it
+  int settling = 0;       // see ContactMemory; of the last tick before the solve, of this one after it
   double rest_speed = 0;  // the last tick's impulses still fit: what moves slower is at rest (rest.h) [m/s]; 0: they don't
-  bool yields = false;  // walls close on what is between them (solve/squeeze.h)
+  bool yields = false;    // walls close on what is between them (solve/squeeze.h)
   // Remembered (remember_contacts.cpp).
   bool still = false;  // nothing of it or of its bodies changed in this tick, where that was asked
 

@@ -258,7 +258,8 @@ WorldBuilder::WorldBuilder(const WorldOptions& options) {
     requireRange("max_contacts", options.max_contacts, 4, kMostContacts, "0 takes as many as the bodies of the scene may well have.");
   requireRange("threads", options.threads, 1, 16, "1 suits hand-sized scenes; more pay where many heaps lie apart.");
   if (options.solver.accuracy != 0)
-    requireRange("solver.accuracy", options.solver.accuracy, 1e-12, 1, "In m/s: 1e-6 is the usual one, 0 is exact, 1e-3 suits heaps that are only looked at.");
+    requireRange("solver.accuracy", options.solver.accuracy, 1e-12, 1,
+                 "In m/s: 1e-6 is the usual one, 0 is exact, 1e-3 suits heaps that are only looked at.");
   requireRange("solver.tolerance", options.solver.tolerance, 1e-14, 1e-2, "1e-10 is the usual one.");
   if (options.solver.budget != 0)
     requireRange("solver.budget", options.solver.budget, 1e-6, 10, "In seconds; half a tick leaves time for everything else.");

@@ -16,8 +16,8 @@ bool same(const BodyState& a, const BodyState& b) {
 }
 bool same(const ContactMemory& a, const ContactMemory& b) {
   return a.id == b.id && a.r == b.r && a.offset_C == b.offset_C && a.t1_W == b.t1_W && a.n_W == b.n_W && a.arm_a_W == b.arm_a_W &&
-         a.arm_b_W == b.arm_b_W && a.active == b.active && a.sliding == b.sliding && a.closing == b.closing &&
-         a.anchored == b.anchored && a.open_ticks == b.open_ticks && a.settling == b.settling;
+         a.arm_b_W == b.arm_b_W && a.active == b.active && a.sliding == b.sliding && a.closing == b.closing && a.anchored == b.anchored &&
+         a.open_ticks == b.open_ticks && a.settling == b.settling;
 }
 bool same(const MotionInput& a, const MotionInput& b) {
   return a.X_WB.p == b.X_WB.p && same(a.X_WB.q, b.X_WB.q) && a.motion.v_W == b.motion.v_W && a.motion.w_W == b.motion.w_W;

@@ -14,7 +14,8 @@
 namespace pincer::engine {
 namespace {
 
-constexpr double kLost = 1e-2, kHeapLost = 0.3;  // residual that is no answer; of kFewContacts, whose impulses may be scaled down to add no energy
+constexpr double kLost = 1e-2,
+                 kHeapLost = 0.3;      // residual that is no answer; of kFewContacts, whose impulses may be scaled down to add no energy
 constexpr int kStoppingSweeps = 30;    // instead
 constexpr double kLargestGive = 1e-4;  // by which contacts around loops of bodies may contradict each other [m/s]
 
@@ -62,7 +63,8 @@ class IslandSolve {
   static ContactProblem problemOf(Island& island, IslandScratch& s) {
     const auto n = static_cast<std::size_t>(island.contacts);
     const std::span<const ContactSide> sides(s.sides[static_cast<std::size_t>(island.place)].data(), 2 * n);
-    return {{island.first_row, n + 1}, {island.mu, n}, sides, VectorMap(island.q, island.rows), island.movers, island.settling > 0, island.calm};
+    return {{island.first_row, n + 1}, {island.mu, n}, sides, VectorMap(island.q, island.rows), island.movers,
+            island.settling > 0,       island.calm};
   }
 
   void fit(PushingBy pushing) {
@@ -97,7 +99,10 @@ class IslandSolve {
   // What is kept of the budget for stopOnly: support doesn't depend on it.
   std::int64_t reserveForStops() const { return kStoppingSweeps * kPerContactSwept * island_.contacts; }
   double offsetRate() const { return scratch_.h > 0 ? kTangentCorrection / tick_ : 0; }
-  bool isLost() const { return !island_.result.converged && !island_.result.yields && island_.result.residual > (island_.contacts > kFewContacts ? kHeapLost : kLost); }
+  bool isLost() const {
+    return !island_.result.converged && !island_.result.yields &&
+           island_.result.residual > (island_.contacts > kFewContacts ? kHeapLost : kLost);
+  }
 
   const SolverOptions& options_;
   WorldScratch& scratch_;

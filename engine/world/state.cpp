@@ -40,7 +40,8 @@ void add(Fnv1a& hash, const ContactMemory& c) {
   }
   for (const Vec3& v : {c.t1_W, c.n_W, c.arm_a_W, c.arm_b_W}) hash.add(v);
   hash.add(static_cast<std::uint64_t>(c.active) | static_cast<std::uint64_t>(c.sliding) << 1 | static_cast<std::uint64_t>(c.closing) << 2 |
-           static_cast<std::uint64_t>(c.anchored) << 3 | static_cast<std::uint64_t>(c.open_ticks) << 4 | static_cast<std::uint64_t>(c.settling) << 8);
+           static_cast<std::uint64_t>(c.anchored) << 3 | static_cast<std::uint64_t>(c.open_ticks) << 4 |
+           static_cast<std::uint64_t>(c.settling) << 8);
 }
 
 bool isFinite(const BodyStart& s) {

@@ -6,7 +6,7 @@
 //             contacts or without, or 2e-8 m/s
 //   energy    of worlds without fingers never above what it began with, and what getting out of an initial overlap may lift
 //   floor     no centre of mass is more than 10 um below the floor
-//   cap       one world in five runs again with a budget of 0.5 ms (engine/solve/cascade.h), under the same checks; shown with its
+//   cap       one world in five runs again with a budget of 0.5 ms (engine/solve/solver_scratch.h), under the same checks; shown with its
 //             longest ticks: where the tick may not be cut any more, needles can sink into the floor (seeds 61, 196, 296, 921 of inertia), three
 //             worlds in a hundred at most
 //   threads   one world in twenty ends with the same bits where two threads solve

@@ -27,7 +27,8 @@ void checkVersion(const JsonValue& json) {
 void readSolver(const JsonValue& json, engine::WorldOptions& options) {
   json.allowOnly(keys::kSolver);
   if (const JsonValue* v = json.find("tolerance")) options.solver.tolerance = v->number(ranges::kTolerance);
-  if (const JsonValue* v = json.find("max_contacts")) options.max_contacts = v->integer(4, 65536, "A whole number of contacts; left out, the scene's bodies decide.");
+  if (const JsonValue* v = json.find("max_contacts"))
+    options.max_contacts = v->integer(4, 65536, "A whole number of contacts; left out, the scene's bodies decide.");
   if (const JsonValue* v = json.find("position_tolerance")) options.position_tolerance = v->number(ranges::kPositionTolerance);
   if (const JsonValue* v = json.find("max_parts")) options.max_parts = v->integer(2, 1024, "How many parts a tick may be cut into.");
   if (const JsonValue* v = json.find("accuracy")) options.solver.accuracy = v->number(ranges::kAccuracy);

@@ -9,8 +9,8 @@ using Word = std::string_view;
 
 inline constexpr std::array<Word, 12> kScene = {"version", "description", "gravity", "tick",    "duration", "solver",
                                                 "bodies",  "pairs",       "joints",  "fingers", "record",   "expect"};
-inline constexpr std::array<Word, 8> kSolver = {"tolerance", "accuracy", "max_contacts", "contact_margin",
-                                                "position_tolerance", "max_parts", "sleep", "budget"};
+inline constexpr std::array<Word, 8> kSolver = {"tolerance",          "accuracy",  "max_contacts", "contact_margin",
+                                                "position_tolerance", "max_parts", "sleep",        "budget"};
 inline constexpr std::array<Word, 11> kBody = {"name",       "shape",    "static",           "mass",    "density", "position", "rotation",
                                                "trajectory", "velocity", "angular_velocity", "material"};
 inline constexpr std::array<Word, 1> kBodyTrajectory = {"keyframes"};

@@ -89,8 +89,8 @@ TEST_P(RandomProblems, GiveTheSameBitsAgain) {
 // As another island leaves it that had no finite answer. Which one that is depends on the number of threads.
 void fillWithNaN(SolverScratch& s) {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  for (std::vector<double>* vector : {&s.weight, &s.r, &s.u, &s.centre, &s.best_r, &s.best_u, &s.give, &s.multiplier, &s.change, &s.work, &s.y,
-                                      &s.direction, &s.gradient, &s.way, &s.local})
+  for (std::vector<double>* vector : {&s.weight, &s.r, &s.u, &s.centre, &s.best_r, &s.best_u, &s.give, &s.multiplier, &s.change, &s.work,
+                                      &s.y, &s.direction, &s.gradient, &s.way, &s.local})
     std::fill(vector->begin(), vector->end(), kNaN);
 }
 
@@ -178,8 +178,8 @@ TEST(Solver, AllocatesNothing) {
   SolverScratch scratch(80, 6);
   int methods[7] = {};
   for (int n = 0; n < 300; ++n) {
-    OwnedContactProblem p =
-        n % 10 == 0 ? random.cluster(6, 80, 10, 0.8, false) : random.cluster(random.integer(1, 6), random.integer(1, 12), 100, 3, n % 2 == 0);
+    OwnedContactProblem p = n % 10 == 0 ? random.cluster(6, 80, 10, 0.8, false)
+                                        : random.cluster(random.integer(1, 6), random.integer(1, 12), 100, 3, n % 2 == 0);
     const ContactProblem view = p.view();
     Eigen::VectorXd r = Eigen::VectorXd::Zero(p.q.size()), u = r;
     const VectorMap r_map(r.data(), r.size()), u_map(u.data(), u.size());

@@ -1,10 +1,10 @@
 // Contacts between balls in their short form do what A does.
 #include <gtest/gtest.h>
 
-#include "pincer/engine/solve/sweeps.h"
 #include "pincer/engine/solve/mobility.h"
 #include "pincer/engine/solve/residual.h"
 #include "pincer/engine/solve/round_contact.h"
+#include "pincer/engine/solve/sweeps.h"
 #include "pincer/tests/support/contact_problems.h"
 
 namespace pincer::engine {

@@ -1,10 +1,10 @@
 // Accelerated sweeps.
 #include <gtest/gtest.h>
 
+#include "pincer/engine/solve/contact_solver.h"
 #include "pincer/engine/solve/local_contact.h"
 #include "pincer/engine/solve/residual.h"
 #include "pincer/engine/solve/sweeps.h"
-#include "pincer/engine/solve/contact_solver.h"
 #include "pincer/tests/support/contact_problems.h"
 
 namespace pincer::engine {
@@ -25,7 +25,8 @@ struct Ticks {
     SolverScratch scratch(static_cast<int>(p.mu.size()), p.movers);
     weighContacts(problem, scratch);
     ContactError error = errorOf(problem, r.data(), scratch, u.data());
-    for (int tick = 0; tick < 200 && error.speed > enough; ++tick) error = sweepUntil(problem, enough, error, scratch, r.data(), u.data()).error;
+    for (int tick = 0; tick < 200 && error.speed > enough; ++tick)
+      error = sweepUntil(problem, enough, error, scratch, r.data(), u.data()).error;
     residual = error.residual;
   }
 };

@@ -94,9 +94,10 @@ Measurement wallMeasurement(const std::string& name, const WallSpec& spec, doubl
   return {"walls/" + name, [=](MeasureContext& context) {
             const FamilyRun run = FamilyRunner(wallWorld(spec)).run(seconds, context);
             const bool is_exact = spec.jitter == 0;  // else its bricks hit each other first
-            std::vector<Record> records = {is_exact ? atMost("ticks flagged", run.flagged, "-", 0) : unbounded("ticks flagged", run.flagged, "-"),
-                                           atMost("top moves in the second half", 1e6 * run.moved_after, "um", 1e-3),
-                                           exactly("changes in the last ten ticks", !run.rests, "-", 0)};
+            std::vector<Record> records = {
+                is_exact ? atMost("ticks flagged", run.flagged, "-", 0) : unbounded("ticks flagged", run.flagged, "-"),
+                atMost("top moves in the second half", 1e6 * run.moved_after, "um", 1e-3),
+                exactly("changes in the last ten ticks", !run.rests, "-", 0)};
             addCosts(run, records);
             return records;
           }};
@@ -130,23 +131,30 @@ std::vector<Measurement> familyMeasurements(bool whole) {
   std::vector<Measurement> all;
   for (const auto& [columns, rows] : {std::pair(1, 1), {1, 5}, {2, 4}, {2, 9}, {3, 8}, {3, 10}, {10, 10}})
     all.push_back(wallMeasurement(fmt::format("{}x{}", columns, rows), {.columns = columns, .rows = rows}, stands));
-  for (const double mu : {0.3, 0.9}) all.push_back(wallMeasurement(fmt::format("5x8-mu-{}", mu), {.columns = 5, .rows = 8, .mu = mu}, stands));
+  for (const double mu : {0.3, 0.9})
+    all.push_back(wallMeasurement(fmt::format("5x8-mu-{}", mu), {.columns = 5, .rows = 8, .mu = mu}, stands));
   all.push_back(wallMeasurement("5x8-heading-30", {.columns = 5, .rows = 8, .heading = 0.52}, stands));
   all.push_back(wallMeasurement("3x10-jitter-10um", {.columns = 3, .rows = 10, .jitter = 1e-5}, stands));
   all.push_back(wallMeasurement("3x10-jitter-100um", {.columns = 3, .rows = 10, .jitter = 1e-4}, stands));
   all.push_back(hitMeasurement("6x6-hit", {.columns = 6, .rows = 6, .hit_speed = 10}, 1));
-  all.push_back(heapMeasurement("heaps/balls-100", [] { return ballWorld(100, 5, 1); }, 2, 22));
-  all.push_back(heapMeasurement("hulls/50", [] { return hullWorld(50, 1); }, whole ? 3 : 1.5, 20));
+  all.push_back(heapMeasurement(
+      "heaps/balls-100", [] { return ballWorld(100, 5, 1); }, 2, 22));
+  all.push_back(heapMeasurement(
+      "hulls/50", [] { return hullWorld(50, 1); }, whole ? 3 : 1.5, 20));
   for (const double play : {5e-5, 1e-4, 2e-4})
-    all.push_back(heapMeasurement(fmt::format("pegs/play-{}um", 1e6 * play), [=] { return pegWorld(play, 8e-3); }, 0.5, 20));
+    all.push_back(heapMeasurement(
+        fmt::format("pegs/play-{}um", 1e6 * play), [=] { return pegWorld(play, 8e-3); }, 0.5, 20));
   if (!whole) return all;
   for (const auto& [columns, rows] : {std::pair(20, 6), {20, 10}, {40, 20}})
-    all.push_back(wallMeasurement(fmt::format("{}x{}", columns, rows), {.columns = columns, .rows = rows}, columns * rows > 400 ? 10 : stands));
+    all.push_back(
+        wallMeasurement(fmt::format("{}x{}", columns, rows), {.columns = columns, .rows = rows}, columns * rows > 400 ? 10 : stands));
   all.push_back(wallMeasurement("20x10-jitter-10um", {.columns = 20, .rows = 10, .jitter = 1e-5}, 10));
   all.push_back(hitMeasurement("20x10-hit", {.columns = 20, .rows = 10, .hit_speed = 10}, 1));
   all.push_back(wallMeasurement("3x8-masses-1e3", {.columns = 3, .rows = 8, .mass_ratio = 1e3}, 10));
-  all.push_back(heapMeasurement("heaps/balls-400", [] { return ballWorld(400, 8, 1); }, 3, 22));
-  all.push_back(heapMeasurement("hulls/100", [] { return hullWorld(100, 1); }, 3, 20));
+  all.push_back(heapMeasurement(
+      "heaps/balls-400", [] { return ballWorld(400, 8, 1); }, 3, 22));
+  all.push_back(heapMeasurement(
+      "hulls/100", [] { return hullWorld(100, 1); }, 3, 20));
   return all;
 }
 
