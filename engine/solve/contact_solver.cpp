@@ -15,6 +15,7 @@
 
 namespace pincer::engine {
 namespace {
+
 // The parameters of the search; docs/engine.md gives their reasons.
 constexpr double kLeastEpsilon = 1e-5, kFirstEpsilon = 0.1, kMostEpsilon = 1;  // e over w: range, and the first at most
 constexpr double kEpsilonOfError = 1e3;                                        // the first is that times the start's error [s/m]
@@ -245,7 +246,7 @@ class Search {
   }
 
   void sweep() {
-    const double enough = kMostAccuracies * options_.accuracy;
+    const double enough = std::max(kMostAccuracies * options_.accuracy, options_.tolerance * referenceSpeed(problem_));
     respond(problem_, scratch_.best_r.data(), scratch_);
     error_ = respondedError(problem_, scratch_.best_r.data(), scratch_, scratch_.best_u.data());
     const SweptResult sweeps = sweepUntil(problem_, enough, error_, scratch_, scratch_.best_r.data(), scratch_.best_u.data());
@@ -328,9 +329,10 @@ void solveContacts(const ContactProblem& problem, const SolverOptions& options, 
   result.error = error.speed;
 }
 
-bool restsAsItIs(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch, const double* r, double* u,
+bool restsAsItIs(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch, double* r, double* u,
                  SolveResult& result) {
   if (!problem.calm) return false;
+  projectOntoCones(problem, r);
   weighContacts(problem, scratch);
   const ContactError error = errorOf(problem, r, scratch, u);
   if (!(error.speed <= restErrorOf(options))) return false;

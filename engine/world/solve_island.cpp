@@ -14,8 +14,8 @@
 namespace pincer::engine {
 namespace {
 
-constexpr double kLost = 1e-2,
-                 kHeapLost = 0.3;      // residual that is no answer; of kFewContacts, whose impulses may be scaled down to add no energy
+constexpr double kLost = 1e-2;         // residual that is no answer
+constexpr double kHeapLost = 0.3;      // of more than kFewContacts, whose impulses may have been scaled down to add no energy
 constexpr int kStoppingSweeps = 30;    // instead
 constexpr double kLargestGive = 1e-4;  // by which contacts around loops of bodies may contradict each other [m/s]
 
