@@ -69,7 +69,7 @@ class FewSearch {
     iterations_ += iterateProximally(problem_, 0.5 * options.tolerance, kProximalRounds, equations_, scratch_, current_, trial_);
     keepBest();
     if ((isEnough(options) && !isSqueezedNow()) || giveWay(options)) return SolveMethod::kNewton;
-    if (isSqueezedNow() || isSpent()) return SolveMethod::kNotConverged;
+    if (!options.thorough || isSqueezedNow() || isSpent()) return SolveMethod::kNotConverged;
     iterations_ += followCentralPath(problem_, nullptr, kNearSolution, kInteriorPointSteps, equations_, scratch_, current_);
     if (finish(options)) return SolveMethod::kInteriorPoint;
     if (problem_.contactCount() > kAffordableContacts || isSpent()) return SolveMethod::kNotConverged;

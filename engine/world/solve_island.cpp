@@ -42,16 +42,11 @@ class IslandSolve {
       island_.operations = 0;
       return;
     }
-    SolverOptions options = options_;
-    if (is_loop_ && scratch_.h > 0) {
-      fit(PushingBy::kLastTick);
-      options.largest_give = kLargestGive;
-    }
-    solve(options);
+    is_loop_&& scratch_.h > 0 ? solveLoop() : solve(options_);
     if (scratch_.h > 0 && memory_.operations_left >= 0 && isWedged(problem_, island_.r, island_.result)) {
       fit(PushingBy::kWedged);
       std::fill(island_.r, island_.r + island_.rows, 0.0);  // or the squeeze would stay
-      solveAgain(options);
+      solveAgain(options_);
     }
     if (island_.result.give > 0) giveWay(scratch_.h, offsetRate(), problem_, memory_.give.data(), island_.q, order_, scratch_.contacts);
     std::int64_t spent = share - reserve - memory_.operations_left;
@@ -65,6 +60,22 @@ class IslandSolve {
     const std::span<const ContactSide> sides(s.sides[static_cast<std::size_t>(island.place)].data(), 2 * n);
     return {{island.first_row, n + 1}, {island.mu, n}, sides, VectorMap(island.q, island.rows), island.movers,
             island.settling > 0,       island.calm};
+  }
+
+  // What a loop of bodies asks for is fitted to what pushed in the last tick, once more to the impulses found if that fails; then contacts give way.
+  void solveLoop() {
+    fit(PushingBy::kLastTick);
+    SolverOptions giving = options_;
+    giving.largest_give = kLargestGive;
+    if (island_.contacts > kFewContacts) return solve(giving);
+    SolverOptions quick = options_;
+    quick.thorough = false;
+    solve(quick);
+    if (island_.result.converged) return;
+    const bool is_small = island_.contacts < kManyContacts;
+    fit(PushingBy::kImpulses);
+    solveAgain(is_small ? options_ : giving);
+    if (is_small && !island_.result.converged) solveAgain(giving);
   }
 
   void fit(PushingBy pushing) {

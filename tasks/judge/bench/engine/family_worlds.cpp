@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pincer/contact/elementary.h"
 #include "pincer/contact/polytope.h"
 
 namespace pincer::tasks {
@@ -76,7 +77,7 @@ class WorldMaker {
 
 FamilyWorld wallWorld(const WallSpec& spec) {
   constexpr double kLength = 0.04, kWidth = 0.02, kHeight = 0.02, kApart = 1e-3, kMass = 0.05;
-  const Quat q(Eigen::AngleAxisd(spec.heading, Vec3::UnitZ()));
+  const Quat q = quatFromRotationVector(spec.heading * Vec3::UnitZ());
   Uniform uniform(spec.seed);
   WorldMaker maker(spec.mu, spec.sleep);
   const contact::Box brick{0.5 * Vec3(kLength, kWidth, kHeight)};
@@ -84,7 +85,7 @@ FamilyWorld wallWorld(const WallSpec& spec) {
     for (int column = 0; column < spec.columns; ++column) {
       const double x = column * (kLength + kApart) + (row % 2 == 1 ? 0.25 * kLength : 0);
       const Vec3 p = Vec3(x, 0, (row + 0.5) * kHeight) + uniform.within(spec.jitter);
-      const double mass = kMass * std::pow(spec.mass_ratio, uniform(-0.5, 0.5));
+      const double mass = kMass * math::pow(spec.mass_ratio, uniform(-0.5, 0.5));
       maker.add(fmt::format("brick{}_{}", row, column), brick, mass, q * p, q);
     }
   }
@@ -108,7 +109,7 @@ FamilyWorld hullWorld(int hulls, std::uint64_t seed) {
     for (int k = 0; k < kCorners; ++k) corners.push_back(uniform.direction().cwiseProduct(half));
     const int layer = i / (kPerRow * kPerRow), row = i / kPerRow % kPerRow, column = i % kPerRow;
     const Vec3 p(kSpacing * (column - 1), kSpacing * (row - 1), 0.03 + kSpacing * layer), axis = uniform.direction();
-    const Quat q(Eigen::AngleAxisd(uniform(0, 3), axis));
+    const Quat q = quatFromRotationVector(uniform(0, 3) * axis);
     const std::string name = fmt::format("hull{}", i);
     maker.add(name, contact::Convex{contact::Polytope::hullOf(corners, name)}, kFilled * kDensity * 4.19 * half.prod(), p, q);
   }
@@ -133,10 +134,10 @@ FamilyWorld pegWorld(double play, double tilt) {
   WorldMaker maker(0.2, false);
   const double bottom = 0.015, hole = kRadius + 0.5 * play;  // the floor lies below the hole
   for (int k = 0; k < 8; ++k) {
-    const Quat q(Eigen::AngleAxisd(0.25 * M_PI * k, Vec3::UnitZ()));
+    const Quat q = quatFromRotationVector(0.25 * M_PI * k * Vec3::UnitZ());
     maker.add(fmt::format("rim{}", k), contact::Box{{0.01, 0.02, 0.02}}, 0, q * Vec3(hole + 0.01, 0, bottom + 0.02), q);
   }
-  const Quat q(Eigen::AngleAxisd(tilt, Vec3::UnitX()));
+  const Quat q = quatFromRotationVector(tilt * Vec3::UnitX());
   maker.add("peg", contact::Cylinder{kRadius, kHalfLength}, 0.1, Vec3(0, 0, bottom + 0.04 + kHalfLength + 0.001), q);
   return maker.make();
 }
