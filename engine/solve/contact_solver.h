@@ -31,7 +31,7 @@ namespace pincer::engine {
 // Fewer are always solved to the tolerance: bodies that are pinched must not creep.
 constexpr int kManyContacts = 12;
 
-// What moves slower than this, of kManyContacts and more, is at rest [m/s]: with the default accuracy a millimetre in a day.
+// What moves slower than this, of more than kFewContacts, is at rest [m/s]: with the default accuracy a millimetre in a day.
 inline double restErrorOf(const SolverOptions& options) { return 0.01 * options.accuracy; }
 
 // Solves `problem`. `r` holds the warm start on entry (zeros are fine) and the impulses on return: in the cones to 1e-12 relative, whatever

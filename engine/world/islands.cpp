@@ -6,6 +6,7 @@
 #include <span>
 
 #include "pincer/contact/functions/invariants.h"
+#include "pincer/engine/solve/few_contacts.h"
 #include "pincer/engine/world/contact_rows.h"
 #include "pincer/engine/world/contact_sides.h"
 #include "pincer/engine/world/island_threads.h"
@@ -143,7 +144,7 @@ void fillSides(const WorldModel& model, const WorldScratch& scratch, Island& isl
     fillSide(model, scratch, c, rows, false, ends.b, numberOf(model, scratch, c.b, ends.b, island, s), s.root_inertia, sides[1]);
     if (ends.a >= 0 && ends.a == ends.b) joinSides(rows, sides);
     island.settling = std::max(island.settling, c.settling);
-    island.calm = island.calm && island.contacts >= kManyContacts && isCalm(model, c);
+    island.calm = island.calm && island.contacts > kFewContacts && isCalm(model, c);
   }
 }
 
@@ -207,7 +208,7 @@ int nextSettling(const Island& island, double tolerance) {
 }
 
 double restSpeed(const Island& island, const SolverOptions& options) {
-  return island.contacts < kManyContacts ? kRestSpeed : std::max(kRestSpeed, 2 * restErrorOf(options));
+  return island.contacts <= kFewContacts ? kRestSpeed : std::max(kRestSpeed, 2 * restErrorOf(options));
 }
 
 void scatter(const IslandScratch& s, const Island& island, const SolverOptions& options, WorldScratch& scratch) {
