@@ -321,7 +321,8 @@ void solveContacts(const ContactProblem& problem, const SolverOptions& options, 
   if (is_solved) return;
   const bool is_few = problem.contactCount() <= kFewContacts;
   if (is_few) solveFew(problem, options, scratch, r, u, result);
-  if (!is_few || (!result.converged && !result.yields && problem.contactCount() >= kManyContacts && options.thorough && scratch.operations_left >= 0))
+  if (!is_few ||
+      (!result.converged && !result.yields && problem.contactCount() >= kManyContacts && options.thorough && scratch.operations_left >= 0))
     result = Search(problem, options, scratch).run(r, u);
   if (result.converged || result.yields || !removeAddedEnergy(problem, r, u)) return;
   const ContactError error = errorOf(problem, r, scratch, u);
