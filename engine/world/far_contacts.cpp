@@ -45,6 +45,8 @@ Motion endMotion(const WorldModel& model, const WorldScratch& scratch, const Sid
 void markFarContacts(const WorldModel& model, WorldScratch& scratch) {
   scratch.far_contacts = 0;
   if (!(scratch.h > 0)) return;
+  const auto is_open = [](const Contact& c) { return c.bias_C[kNormalRow] > 0; };
+  if (std::none_of(scratch.contacts.begin(), scratch.contacts.end(), is_open)) return;
   const double limit = kFarTimes * fastestFree(model, scratch);
   for (std::size_t i = 0; i < scratch.contacts.size(); ++i) {
     Contact& c = scratch.contacts[i];
