@@ -297,7 +297,7 @@ bool solvePointProblem(const ContactProblem& problem, double enough, SolverScrat
   std::copy(r, r + m, before);
   if (PointSearch(problem, enough, scratch, r, u).run(residual)) return true;
   std::copy(before, before + m, r);
-  errorOf(problem, r, scratch, u).residual;
+  errorOf(problem, r, scratch, u);
   return false;
 }
 
