@@ -71,9 +71,23 @@ void sortContacts(WorldScratch& scratch) {
 
 namespace {
 
-bool isOfPair(std::uint64_t id, std::uint64_t pair) { return id >> 32 == pair; }
+std::uint64_t pairOf(std::uint64_t id) { return id >> 32; }
 
-// The memory of where the contact lies, of those of its pair that no contact has by identity.
+// Contacts and memories come sorted by id: each finds its own on the way. Returns how many contacts between bodies found none.
+int recallByIdentity(std::span<const ContactMemory> memories, WorldScratch& scratch) {
+  int missing = 0;
+  const ContactMemory *m = memories.data(), *const end = m + memories.size();
+  for (Contact& c : scratch.contacts) {
+    place(scratch, c);
+    while (m != end && m->id < c.id) ++m;
+    const bool found = m != end && m->id == c.id;
+    c.memory = found ? m : nullptr;
+    missing += !found && c.a.kind == SideKind::kBody;
+  }
+  return missing;
+}
+
+// The nearest of a pair's memories that no contact has taken, where they push from the same place.
 const ContactMemory* findByPlace(std::span<const ContactMemory> pair, std::uint64_t taken, const Contact& c) {
   constexpr double kSamePlace = 5e-3, kSameNormal = 0.99;  // of the arm; the cosine
   const ContactMemory* nearest = nullptr;
@@ -88,41 +102,46 @@ const ContactMemory* findByPlace(std::span<const ContactMemory> pair, std::uint6
   return nearest;
 }
 
-// Of contacts and memories of one pair of bodies.
-void recallPair(std::span<const ContactMemory> memories, std::span<Contact> contacts) {
+void recallPairByPlace(std::span<const ContactMemory> memories, std::span<Contact> contacts) {
   std::uint64_t taken = 0;
-  std::size_t next = 0;
-  int missing = 0;
-  for (Contact& c : contacts) {
-    while (next < memories.size() && memories[next].id < c.id) ++next;
-    const bool found = next < memories.size() && memories[next].id == c.id;
-    c.memory = found ? &memories[next] : nullptr;
-    missing += !found;
-    if (found && next < 64) taken |= std::uint64_t{1} << next;
-  }
-  if (missing == 0 || memories.empty() || contacts.front().a.kind == SideKind::kPoint) return;
+  const auto take = [&](const ContactMemory* memory) {
+    if (memory && memory < memories.data() + 64) taken |= std::uint64_t{1} << (memory - memories.data());
+  };
+  for (const Contact& c : contacts) take(c.memory);
   for (Contact& c : contacts) {
     if (c.memory) continue;
     c.memory = findByPlace(memories, taken, c);
-    if (c.memory) taken |= std::uint64_t{1} << (c.memory - memories.data());
+    take(c.memory);
+  }
+}
+
+// The run of items of one pair that `items` begin with.
+template <class Item>
+std::span<Item> firstPair(std::span<Item> items) {
+  std::size_t n = 1;
+  while (n < items.size() && pairOf(items[n].id) == pairOf(items[0].id)) ++n;
+  return items.first(n);
+}
+
+// Of two bodies, what lost its identity may be where something was.
+void recallByPlace(std::span<const ContactMemory> memories, std::span<Contact> contacts) {
+  while (!contacts.empty() && !memories.empty()) {
+    const std::span<Contact> pair = firstPair(contacts);
+    const std::span<const ContactMemory> known = firstPair(memories);
+    if (pairOf(known[0].id) < pairOf(pair[0].id)) {
+      memories = memories.subspan(known.size());
+      continue;
+    }
+    if (pairOf(known[0].id) == pairOf(pair[0].id) && pair[0].a.kind == SideKind::kBody) recallPairByPlace(known, pair);
+    contacts = contacts.subspan(pair.size());
   }
 }
 
 }  // namespace
 
 void recallContacts(std::span<const ContactMemory> memories, WorldScratch& scratch) {
-  const std::span<Contact> contacts = scratch.contacts;
-  for (std::size_t first = 0; first < contacts.size();) {
-    const std::uint64_t pair = contacts[first].id >> 32;
-    std::size_t end = first;
-    for (; end < contacts.size() && isOfPair(contacts[end].id, pair); ++end) place(scratch, contacts[end]);
-    while (!memories.empty() && memories.front().id >> 32 < pair) memories = memories.subspan(1);
-    std::size_t known = 0;
-    while (known < memories.size() && isOfPair(memories[known].id, pair)) ++known;
-    recallPair(memories.first(known), contacts.subspan(first, end - first));
-    memories = memories.subspan(known);
-    for (; first < end; ++first) recall(contacts[first]);
-  }
+  if (recallByIdentity(memories, scratch) > 0) recallByPlace(memories, scratch.contacts);
+  for (Contact& c : scratch.contacts) recall(c);
 }
 
 }  // namespace pincer::engine
