@@ -76,7 +76,7 @@ class Search {
   // What is enough [m/s].
   double limit() const {
     if (problem_.contactCount() <= kFewContacts) return restErrorOf(options_);
-    return std::clamp(kShareOfSlip * slip_, options_.accuracy, kMostAccuracies * options_.accuracy);
+    return std::max(kShareOfSlip * slip_, options_.accuracy);
   }
   bool isEnough() const { return isWithinTolerance() || error_.speed <= limit(); }
   bool isQuiet() const { return slip_ <= kQuiet * referenceSpeed(problem_); }
@@ -99,7 +99,8 @@ class Search {
     if (!problem_.round.empty() || scratch_.operations_left < 0) return sweep();
     MoverMatrix matrix(problem_, scratch_);
     if (!matrix.fits()) return sweep();
-    last_operation_ = scratch_.operations_left - std::max(kFewestOperations, kMostFactorisations * matrix.costOfFactorisation());
+    const std::int64_t operations = std::max(kFewestOperations, kMostFactorisations * matrix.costOfFactorisation());
+    last_operation_ = scratch_.operations_left - operations / scratch_.haste;
     ProximalRound round(problem_, matrix, scratch_);
     if (isEnough()) return polish(round);
     Alternation alternation(problem_, matrix, scratch_);
@@ -266,7 +267,7 @@ class Search {
     result_.converged = result_.method != SolveMethod::kNotConverged;
   }
 
-  static constexpr double kMostAccuracies = 100;  // of what slips, and of what is too entangled for anything but sweeps
+  static constexpr double kMostAccuracies = 100;  // of what is too entangled for anything but sweeps
   static constexpr int kPatience = 3, kMostFailures = 12, kSoftSteps = 12;
   static constexpr double kSoftEpsilons[] = {1e-3, 1e-2, 0.1};
 

@@ -31,6 +31,7 @@ struct SolverScratch {
   SolverScratch(int max_contacts, int max_movers);
 
   std::int64_t operations_left = kNoLimit;  // of the budget; less than 0: spent
+  int haste = 1;                            // a search takes so many times fewer operations
   std::vector<double> weight;               // w_i, mean of W_ii's diagonal, per contact [1/kg]
   // Per row: impulses and velocities of the iterate, the rounds' centre r_c, the best iterate, what contacts gave way by, and what methods need.
   std::vector<double> r, u, centre, best_r, best_u, give, multiplier, change, work;

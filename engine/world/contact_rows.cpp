@@ -12,6 +12,8 @@
 namespace pincer::engine {
 namespace {
 
+constexpr double kMostLonger = 10;  // beyond, the last part's impulses were those of a hit rather than of weights
+
 // What is the same for all contacts of this part of a tick.
 struct Rates {
   double tangent, normal;  // share of what is missing that is made good, over the tick [1/s]
@@ -22,7 +24,7 @@ struct Rates {
       : tangent(h > 0 ? kTangentCorrection / model.options.h : 0),
         normal(kNormalCorrection / model.options.h),
         turn(h == state.h_last ? 0.5 : h / (h + state.h_last)),
-        longer(h == state.h_last ? 1 : h / state.h_last) {}
+        longer(h == state.h_last ? 1 : std::min(h / state.h_last, kMostLonger)) {}
 };
 
 // The turn of the normal and of the arms from now to the end, from their motion since the middle of the last part of a tick: n_end . v_end - n_mid . v_mid.

@@ -116,6 +116,7 @@ struct WorldScratch {
   explicit WorldScratch(const WorldModel& model);
 
   std::int64_t operations_left = kNoLimit;  // of the solver's budget for this tick (solve/solver_scratch.h)
+  int solves = 0;                           // in this tick
   double h;                                 // length of this part of the tick [s]; 0 in an impact, which takes no time
   std::vector<BodyScratch> bodies;
   std::vector<PointScratch> points;

@@ -55,6 +55,7 @@ void prepareContacts(const WorldModel& model, const WorldState& state, WorldScra
 void solveContacts(const WorldModel& model, WorldScratch& scratch) {
   scratch.solve = {};
   if (scratch.contacts.empty()) return;
+  ++scratch.solves;
   solveIslands(model, scratch);
   for (std::size_t i = 0; i < scratch.contacts.size(); ++i) readSolution(model, scratch, static_cast<int>(i), scratch.contacts[i]);
 }

@@ -37,12 +37,13 @@ class IslandSolve {
         is_limited ? std::max<std::int64_t>(scratch_.operations_left, 0) * island_.rows / scratch_.islands.rows : kNoLimit;
     const std::int64_t reserve = is_limited ? reserveForStops() : 0;
     memory_.operations_left = share - reserve;
+    memory_.haste = hasteAfter(scratch_.solves);
     if (island_.contacts > kFewContacts) findRoundContacts(memory_.round, problem_);
     if (restsAsItIs(problem_, options_, memory_, island_.r, island_.u, island_.result)) {
       island_.operations = 0;
       return;
     }
-    is_loop_&& scratch_.h > 0 ? solveLoop() : solve(options_);
+    is_loop_&& scratch_.h > 0 ? solveLoop() : solveOne();
     if (scratch_.h > 0 && memory_.operations_left >= 0 && isWedged(problem_, island_.r, island_.result)) {
       fit(PushingBy::kWedged);
       std::fill(island_.r, island_.r + island_.rows, 0.0);  // or the squeeze would stay
@@ -55,6 +56,11 @@ class IslandSolve {
   }
 
  private:
+  // Heaps that are hit are solved hit by hit: the first few times as exactly as any.
+  static int hasteAfter(int solves) {
+    constexpr int kUnhurried = 3, kMostHaste = 4;
+    return 1 << std::clamp(solves - kUnhurried, 0, kMostHaste);
+  }
   static ContactProblem problemOf(Island& island, IslandScratch& s) {
     const auto n = static_cast<std::size_t>(island.contacts);
     const std::span<const ContactSide> sides(s.sides[static_cast<std::size_t>(island.place)].data(), 2 * n);
@@ -76,6 +82,17 @@ class IslandSolve {
     fit(PushingBy::kImpulses);
     solveAgain(is_small ? options_ : giving);
     if (is_small && !island_.result.converged) solveAgain(giving);
+  }
+
+  // A body jammed between supports, whose friction holds it whatever pushes it out of them, may have no answer: then what contacts ask for is
+  // fitted to the impulses found, and they give way.
+  void solveOne() {
+    solve(options_);
+    if (island_.result.converged || island_.result.yields || !(scratch_.h > 0) || memory_.operations_left < 0) return;
+    fit(PushingBy::kImpulses);
+    SolverOptions giving = options_;
+    giving.largest_give = kLargestGive;
+    solveAgain(giving);
   }
 
   void fit(PushingBy pushing) {

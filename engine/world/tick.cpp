@@ -1,6 +1,7 @@
 // One tick from its parts: whole, unless bodies hit each other in it, or a tolerance asks for more.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "pincer/contact/functions/invariants.h"
 #include "pincer/engine/motion/driven_motion.h"
@@ -59,6 +60,7 @@ class Tick {
   StepReport run() {
     if (model_.options.sleep && repeatsItself(state_, scratch_, inputs_) && (!source_ || source_->repeatsItself())) return sleep();
     scratch_.contacts_dropped = false;
+    scratch_.solves = 0;
     const double budget = model_.options.solver.budget;
     scratch_.operations_left = budget > 0 ? static_cast<std::int64_t>(budget * kOperationsPerSecond) : kNoLimit;
     if (isSomethingAsleep(scratch_)) wakeChanged(model_, state_, inputs_, scratch_);
@@ -134,6 +136,7 @@ class Tick {
     const double h = model_.options.h;
     left_ = part_ = h;
     impacts_ = landings_ = 0;
+    last_hit_ = {-1, -1};
     scratch_.pushed_pairs.clear();
     report_ = {};
     report_.parts = 0;
@@ -175,7 +178,23 @@ class Tick {
     chargeSurroundings();
     if (isSpent()) limitEnergy(model_, scratch_, energy, state_);
     note();
-    ++impacts_;
+    impacts_ = isRepeated(t) || isHeapHit() ? kMostImpacts : impacts_ + 1;
+  }
+
+  // Hits run through a heap by the hundred, sooner than a tick can follow: what hits after the first few lands.
+  bool isHeapHit() const {
+    constexpr std::size_t kHeap = 100;  // contacts
+    constexpr int kHeapImpacts = 5;
+    return impacts_ >= kHeapImpacts - 1 && scratch_.contacts.size() > kHeap;
+  }
+
+  // The hits before were those of the same pair, and no time went by: it lands.
+  bool isRepeated(double t) {
+    constexpr int kMostRepeats = 3;
+    const ImpactPair pair = scratch_.impact_pairs.front(), last = std::exchange(last_hit_, pair);
+    const bool is_same = !(t > kShortestPart * model_.options.h) && pair.a == last.a && pair.b == last.b;
+    repeats_ = is_same ? repeats_ + 1 : 0;
+    return repeats_ >= kMostRepeats;
   }
 
   // Attempts the part up to the hit. What fingers push goes another way there than over the whole part: a hit that comes sooner on that way
@@ -335,6 +354,8 @@ class Tick {
   bool turns_far_ = false;  // something does in this part, and it can't be cut any more
   int impacts_ = 0;         // in this tick
   int landings_ = 0;        // of them that don't bounce
+  ImpactPair last_hit_{-1, -1};
+  int repeats_ = 0;  // of it, at once
   StepReport report_;
 };
 
