@@ -21,6 +21,9 @@ constexpr double kFarTurn = 0.5;                                            // o
 constexpr int kMostTurningParts = 64;                                       // that a tick is cut into for that
 constexpr std::int64_t kPerBody = 300, kPerPair = 100, kPerContact = 1000;  // multiplications besides the solver's
 constexpr double kShortestPart = 1e-9;                                      // of a tick: a hit sooner than that is a hit at once
+// Hits run through a heap by the hundred, sooner than a tick can follow: where so many touch, what hits after the first few lands.
+constexpr std::size_t kHeap = 100;  // contacts
+constexpr int kMostHeapImpacts = 5;
 
 bool isFinite(const MotionInput& in) {
   return in.X_WB.p.allFinite() && in.X_WB.q.coeffs().allFinite() && in.motion.v_W.allFinite() && in.motion.w_W.allFinite();
@@ -173,19 +176,14 @@ class Tick {
     }
     landings_ += somethingLands();
     const double energy = isLimited(scratch_) ? energyOf(model_, state_) : 0;
+    const bool is_heap = scratch_.contacts.size() > kHeap;
     wakeAll(scratch_);
     applyImpacts(model_, state_, scratch_, source_);
     chargeSurroundings();
     if (isSpent()) limitEnergy(model_, scratch_, energy, state_);
     note();
-    impacts_ = isRepeated(t) || isHeapHit() ? kMostImpacts : impacts_ + 1;
-  }
-
-  // Hits run through a heap by the hundred, sooner than a tick can follow: what hits after the first few lands.
-  bool isHeapHit() const {
-    constexpr std::size_t kHeap = 100;  // contacts
-    constexpr int kHeapImpacts = 5;
-    return impacts_ >= kHeapImpacts - 1 && scratch_.contacts.size() > kHeap;
+    const bool are_enough = ++impacts_ >= (is_heap ? kMostHeapImpacts : kMostImpacts);
+    if (isRepeated(t) || are_enough) impacts_ = kMostImpacts;
   }
 
   // The hits before were those of the same pair, and no time went by: it lands.
