@@ -1,6 +1,7 @@
 #include "pincer/engine/world/contact_rows.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "pincer/contact/functions/invariants.h"
 #include "pincer/engine/world/hollow_inertia.h"
@@ -43,7 +44,7 @@ double turnOfNormal(const Rates& rates, const Contact& c, const ContactMemory& m
 // Newton's law of impact; what touches without hitting is only kept from closing.
 double impactBias(const WorldModel& model, const WorldScratch& scratch, const Contact& c) {
   const double u_n = c.v_start_C[kNormalRow];
-  return scratch.bounce * bounceRestitution(c.material.restitution, u_n, gapAcceleration(model, c), model.options.h) * u_n;
+  return scratch.bounce * bounceRestitution(c.material.restitution, u_n, gapAcceleration(model, scratch, c), model.options.h) * u_n;
 }
 
 // Whether a contact that landed in the last tick now only rolls on, round a rim or along an edge: all its normal velocity comes from the turn of
@@ -66,8 +67,23 @@ double normalBias(const WorldModel& model, const Rates& rates, const WorldScratc
   }
   const double phi_start = c.phi - 0.5 * scratch.h * u_n;
   c.closing = std::abs(u_n) > kClosingSpeed;  // also what hops and comes down within the tick
-  if (phi_start > 0) return phi_start / scratch.h;
-  return std::max(rates.normal * phi_start, -largestCorrection(model, c));
+  const double lands = phi_start > 0 ? phi_start / scratch.h : std::max(rates.normal * phi_start, -largestCorrection(model, c));
+  // What has just left turns away as it did while it touched.
+  if (memory && !memory->active)
+    return std::max(lands, std::max(rates.normal * c.phi, -largestCorrection(model, c)) + turnOfNormal(rates, c, *memory));
+  return lands;
+}
+
+// How much of the slip at the start counts besides that at the end: all of it, and friction points against their mean, second order; none where friction
+// may end or turn the slip within some ticks, or what crawls in a heap would chatter.
+double slidingShare(const WorldModel& model, const WorldScratch& scratch, const Contact& c) {
+  constexpr double kFastSlip = 48;  // times what the contact's friction takes from the slip of a point mass in a tick
+  const ContactMemory* const memory = c.memory;
+  if (!memory || !memory->active || !memory->sliding || scratch.h == 0 || c.a.kind != SideKind::kBody) return 0;
+  const double inverse_mass = model.bodies[c.a.index].inverse_mass + model.bodies[c.b.index].inverse_mass;
+  const double taken = kFastSlip * inverse_mass * c.mu * memory->r[kNormalRow];
+  const double slip = std::sqrt(c.v_start_C[0] * c.v_start_C[0] + c.v_start_C[1] * c.v_start_C[1]);
+  return slip < 2 * taken ? std::max(slip / taken - 1, 0.0) : 1;
 }
 
 void fillContact(const WorldModel& model, const Rates& rates, WorldScratch& scratch, int i) {
@@ -78,11 +94,12 @@ void fillContact(const WorldModel& model, const Rates& rates, WorldScratch& scra
   const double normal_bias = normalBias(model, rates, scratch, c);
   double *const q_i = scratch.q.data() + first, *const r_i = scratch.r.data() + first;
   c.bias_C.setZero();
+  const double slide = slidingShare(model, scratch, c);
   withRows(count, [&](auto rows) {
     double v_free_C[kMaxContactRows];
     relativeVelocity(c, c.mover_a->free, c.mover_b->free, rows, v_free_C);
     for (int k = 0; k < rows; ++k) {
-      const double tangent_bias = c.stuck ? rates.tangent * (c.offset_C[k] + 0.5 * scratch.h * c.v_start_C[k]) : 0;
+      const double tangent_bias = c.stuck ? rates.tangent * (c.offset_C[k] + 0.5 * scratch.h * c.v_start_C[k]) : slide * c.v_start_C[k];
       const double bias = c.bias_C[k] = k == kNormalRow ? normal_bias : tangent_bias;
       q_i[k] = (k >= kTorsionRow ? radiusOf(c, k) : 1) * (v_free_C[k] + bias);
       r_i[k] = memory ? rates.longer * memory->r[k] : 0;
