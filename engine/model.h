@@ -111,12 +111,15 @@ struct JointGroup {
 constexpr int kMostGroupFreedoms = 48;  // of the bodies of a group that something can touch, without their joints
 constexpr int kMostJointRows = 7;       // of one joint: a weld's six, a pivot's five and its damper
 
+constexpr int kMostContacts = 65536;
+
 struct WorldOptions {
   double h = 1e-3;                     // tick [s], 1e-5 .. 1e-2
   Vec3 gravity_W = Vec3(0, 0, -9.81);  // [m/s^2]
   double contact_margin = 1e-3;        // pairs closer than this make contacts [m], > 0
-  int max_contacts = 0;  // 4 .. 65536; more are dropped, deepest kept, and StepStatus says so; 0: as many as the bodies may well have
-  int threads = 1;       // that solve islands, 1 .. 16; the results are the same to the bit
+  int max_contacts =
+      0;            // 4 .. kMostContacts; more are dropped, deepest kept, and StepStatus says so; 0: as many as the bodies may well have
+  int threads = 1;  // that solve islands, 1 .. 16; the results are the same to the bit
   // Position error per tick that is allowed [m], 0 or 1e-12 .. 1; 0: every tick is one part. Costs three times a plain tick, or more.
   double position_tolerance = 0;
   int max_parts = 16;  // that a tick may be cut into for that, 2 .. 1024; rounded down to a power of two

@@ -68,10 +68,16 @@ struct BodyStart {
 // sizes differ or a value isn't finite.
 WorldState makeState(const WorldModel& model, const std::vector<BodyStart>& starts, const std::vector<Vec3>& points);
 
-Pose bodyPose(const WorldModel& model, const WorldState& state, int body);             // X_WB
-Vec3 bodyAngularVelocity(const WorldModel& model, const WorldState& state, int body);  // w_WB [rad/s]
-double kineticEnergy(const WorldModel& model, const WorldState& state);                // of all bodies [J]
-double potentialEnergy(const WorldModel& model, const WorldState& state);              // in gravity, zero at W's origin [J]
+// Between two ticks: room for `contacts`, after a tick whose status was kContactsDropped. What the state remembers stays as it is; the model's other
+// states are to be grown too, and its scratch is to be made anew. `contacts`: not fewer than there is room for, at most kMostContacts; or throws
+// InputError.
+void growContacts(int contacts, WorldModel& model, WorldState& state);
+
+Pose bodyPose(const WorldModel& model, const WorldState& state, int body);                        // X_WB
+Vec3 bodyAngularVelocity(const WorldModel& model, const WorldState& state, int body);             // w_WB [rad/s]
+double kineticEnergy(const WorldModel& model, const WorldState& state);                           // of all bodies [J]
+double potentialEnergy(const WorldModel& model, const WorldState& state);                         // in gravity, zero at W's origin [J]
+double potentialEnergy(const WorldModel& model, const WorldState& state, const Vec3& gravity_W);  // in another [J]
 
 // FNV-1a hash over every bit of the state: equal states, equal hashes, on every machine.
 std::uint64_t hashOf(const WorldState& state);

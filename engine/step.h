@@ -8,6 +8,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "pincer/engine/model.h"
@@ -31,10 +32,23 @@ struct PointInput {
   Vec3 n_W = Vec3::UnitZ();
 };
 
+// A push on a body over the tick: a force through its centre of mass, and a torque.
+struct BodyForce {
+  Vec3 f_W = Vec3::Zero();    // [N]
+  Vec3 tau_W = Vec3::Zero();  // [N m]
+};
+
+// What pushes bodies besides contacts and joints, the same all through the tick.
+struct AppliedForces {
+  std::span<const BodyForce> forces{};  // one per body, or none; those of static and driven bodies do nothing
+  std::optional<Vec3> gravity_W{};      // in place of WorldOptions::gravity_W [m/s^2]
+};
+
 // What the caller asks for at the end of the tick.
 struct StepInputs {
   std::span<const PointInput> points{};    // one per point
   std::span<const MotionInput> motions{};  // one per driven body, in the order of the bodies; missing ones rest where they are
+  AppliedForces applied{};
 };
 
 // What happened that a caller may have to know; each bit says what was dropped and what to change.
@@ -42,9 +56,10 @@ enum StepStatus : std::uint32_t {
   kStepOk = 0,
   // impulses are the best iterate, energy-safe. Loosen solver.tolerance, or look for contacts that contradict each other
   kSolverNotConverged = 1u << 0,
-  kContactsDropped = 1u << 1,  // more contacts than options.max_contacts: the shallowest were dropped. Raise max_contacts
+  kContactsDropped = 1u << 1,  // more contacts than options.max_contacts: the shallowest were dropped. Raise max_contacts, or growContacts
   kStateNotFinite = 1u << 2,   // a NaN or infinity came out of the tick; the state isn't to be used any more. Restore a snapshot
-  kInputNotFinite = 1u << 3,   // a target, motion or force wasn't finite; the point kept its last target, the body its place
+  kInputNotFinite =
+      1u << 3,  // a target, motion or force wasn't finite; the point kept its last target, the body its place, no force on bodies acts
   kImpactsCut = 1u << 4,       // more impacts than kMostImpacts in one tick: the rest landed. Shorten the tick
   kToleranceNotMet = 1u << 5,  // max_parts were too few for position_tolerance. Raise it, or the tolerance
   // solver.budget ran out: the tick isn't cut any more, impulses are the best iterate. Raise it, or simplify the scene

@@ -27,7 +27,7 @@ constexpr std::array<double, kMostTerms + 1> kInverse = [] {
 // The course of one series. x_n, C_n, S_n: coefficients of th, cos th, sin th in t/h;  C' = -S th',  S' = C th'.
 OneFreedomCourse sumSeries(const OneFreedomLaw& law, double rate, double h) {
   double nx[kMostTerms + 1], C[kMostTerms], S[kMostTerms];  // nx[n] = n x_n
-  const double a = h * h * law.a, b = h * h * law.b, c = h * law.c;
+  const double a = h * h * law.a, b = h * h * law.b, c = h * law.c, d = h * h * law.d;
   nx[0] = 0;
   nx[1] = rate * h;
   C[0] = 1;
@@ -44,7 +44,8 @@ OneFreedomCourse sumSeries(const OneFreedomLaw& law, double rate, double h) {
       C[n] = dC * kInverse[n];
       S[n] = dS * kInverse[n];
     }
-    const double term = (a * C[n] + b * S[n] - c * nx[n + 1]) * kInverse[n + 1];
+    const double push = a * C[n] + b * S[n] + (n == 0 ? d : 0);
+    const double term = (push - c * nx[n + 1]) * kInverse[n + 1];
     nx[n + 2] = term;
     speed += term;
     way += term * kInverse[n + 2];
@@ -64,7 +65,7 @@ OneFreedomCourse decayTurning(const OneFreedomLaw& law, double rate, double h) {
   if (!law.turns) return decay(law.a, law.c, rate, h);
   const double middle = decay(law.a, law.c, rate, 0.5 * h).way;
   const auto [sin, cos] = math::sinCos(middle);
-  return decay(law.a * cos + law.b * sin, law.c, rate, h);
+  return decay(law.a * cos + law.b * sin + law.d, law.c, rate, h);
 }
 
 }  // namespace
@@ -72,10 +73,11 @@ OneFreedomCourse decayTurning(const OneFreedomLaw& law, double rate, double h) {
 OneFreedomCourse followFreedom(const OneFreedomLaw& law, double rate, double h) {
   PINCER_ASSERT(law.c >= 0);
   if (!(h > 0)) return {0, rate};
-  const double turning = law.turns ? h * (std::abs(rate) + std::sqrt(math::hypot(law.a, law.b))) / kLongestTurn : 0;
+  const double turning = law.turns ? h * (std::abs(rate) + std::sqrt(math::hypot(law.a, law.b) + std::abs(law.d))) / kLongestTurn : 0;
   const double steps = std::ceil(std::max({1.0, turning, h * law.c / kLargestDecay}));
   if (!(h * law.c <= kMostDecay)) return decayTurning(law, rate, h);
-  if (!(steps <= kMostSteps)) return {h * (rate + h * law.a), rate + h * law.a};  // several turns in a tick: only finite
+  if (!(steps <= kMostSteps))
+    return {h * (rate + h * (law.a + law.d)), rate + h * (law.a + law.d)};  // several turns in a tick: only finite
   OneFreedomCourse end{0, rate};
   OneFreedomLaw here = law;
   for (int n = 0; n < static_cast<int>(steps); ++n) {

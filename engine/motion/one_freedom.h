@@ -1,8 +1,9 @@
 // one_freedom: motion along one coordinate, of a body that a pivot or a slider holds, under its weight and a damper.
 //
-//   th'' = a cos th + b sin th - c th'   (pivot),     th'' = a - c th'   (slider),     th(0) = 0,   th'(0) = w
+//   th'' = a cos th + b sin th - c th' + d   (pivot),     th'' = a - c th'   (slider),     th(0) = 0,   th'(0) = w
 //
 //   th  turned or gone since the start [rad, m];  a, b  gravity's [1/s^2 or m/s^2, 1/s^2];  c  damping over inertia [1/s], >= 0
+//   d  of a torque that stays [1/s^2]
 //
 // The Taylor series of the solution, coefficient by coefficient (of sin th and cos th alike), up to round-off: no truncation error is left, so that
 // it needn't be symplectic. Where its terms don't fall fast it is restarted in equal steps; a damper too stiff for that is taken by its exponential,
@@ -13,7 +14,7 @@
 namespace pincer::engine {
 
 struct OneFreedomLaw {
-  double a = 0, b = 0, c = 0;
+  double a = 0, b = 0, c = 0, d = 0;
   bool turns = false;  // a pivot
 };
 

@@ -79,7 +79,8 @@ void gatherImpulses(const WorldModel& model, WorldScratch& scratch) {
     if (something_sleeps && model.bodies[i].dynamic && scratch.sleep.idle[i]) continue;
     BodyScratch& body = scratch.bodies[i];
     rest(body);
-    body.angular_impulse_W.setZero();
+    // What joints and contacts give to bodies in joints is gathered first.
+    body.angular_impulse_W = model.bodies[i].joint_group < 0 ? body.free_angular_impulse_W : Vec3(Vec3::Zero());
   }
   for (PointScratch& point : scratch.points) {
     rest(point);

@@ -10,7 +10,8 @@ bool isDriven(const WorldModel& model, const WorldScratch& scratch) {
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
     if (model.bodies[i].driven && scratch.bodies[i].touched) return true;
   }
-  return std::any_of(scratch.points.begin(), scratch.points.end(), [](const PointScratch& point) { return point.touched; });
+  return !scratch.forces.empty() ||
+         std::any_of(scratch.points.begin(), scratch.points.end(), [](const PointScratch& point) { return point.touched; });
 }
 
 bool isPushed(const WorldModel& model, const WorldScratch& scratch, std::size_t body) {
@@ -34,10 +35,12 @@ void chargeQuery(const BodyModel& a, const BodyModel& b, WorldScratch& scratch) 
   charge(has_sphere ? kOfSphere : kOfSolids, scratch);
 }
 
-double energyOf(const WorldModel& model, const WorldState& state) { return kineticEnergy(model, state) + potentialEnergy(model, state); }
+double energyOf(const WorldModel& model, const WorldState& state, const Vec3& gravity_W) {
+  return kineticEnergy(model, state) + potentialEnergy(model, state, gravity_W);
+}
 
 void limitEnergy(const WorldModel& model, const WorldScratch& scratch, double most, WorldState& state) {
-  const double gained = energyOf(model, state) - most;
+  const double gained = energyOf(model, state, scratch.gravity_W) - most;
   if (!(gained > 0) || isDriven(model, scratch)) return;
   double kinetic = 0;
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {

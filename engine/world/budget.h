@@ -16,11 +16,11 @@ inline void charge(std::int64_t operations, WorldScratch& scratch) {
 // For a query of where two bodies touch: solids' facets are laid over each other, spheres need little.
 void chargeQuery(const BodyModel& a, const BodyModel& b, WorldScratch& scratch);
 
-// Kinetic and potential energy of all bodies [J].
-double energyOf(const WorldModel& model, const WorldState& state);
+// Kinetic and potential energy of all bodies in this gravity [J].
+double energyOf(const WorldModel& model, const WorldState& state, const Vec3& gravity_W);
 
 // Slows the bodies on which contacts push, and those joined to them, all by one factor, until the energy is `most` [J] at most, or they stand. Not where
-// a finger or a driven body pushes: those may do work.
+// a finger, a driven body or an applied force pushes: those may do work.
 void limitEnergy(const WorldModel& model, const WorldScratch& scratch, double most, WorldState& state);
 
 }  // namespace pincer::engine

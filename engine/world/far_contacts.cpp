@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pincer/engine/motion/free_motion.h"
+#include "pincer/engine/world/impact.h"
 
 namespace pincer::engine {
 namespace {
@@ -37,7 +37,7 @@ Motion endMotion(const WorldModel& model, const WorldScratch& scratch, const Sid
   const BodyModel& body = model.bodies[side.index];
   const BodyScratch& s = scratch.bodies[side.index];
   if (!body.dynamic) return s.free;
-  return {s.free.v_W + body.inverse_mass * s.impulse_W, s.free.w_W + angularVelocity(body.rotation, s.X_WI_mid.q, s.angular_impulse_W)};
+  return {s.free.v_W + body.inverse_mass * s.impulse_W, endAngularVelocity(model, scratch, side.index)};
 }
 
 }  // namespace

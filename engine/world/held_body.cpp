@@ -25,13 +25,18 @@ double rateOf(const WorldModel& model, const JointGroup& g, const HeldScratch& h
   return held.axis_W.dot(s.L_W + model.bodies[g.bodies.front()].mass * arm_W.cross(s.v_W)) / g.inertia;
 }
 
-OneFreedomLaw lawOf(const WorldModel& model, const JointGroup& g, const HeldScratch& held, const BodyState& s) {
-  const Vec3 &g_W = model.options.gravity_W, arm_W = s.X_WI.p - held.p_WJ;
+// A force that is the same all through the tick bends a pivot's course as a further gravity does.
+OneFreedomLaw lawOf(const WorldModel& model, const JointGroup& g, const WorldScratch& scratch, const HeldScratch& held,
+                    const BodyState& s) {
+  const int body = g.bodies.front();
+  const BodyForce* const force = forceOn(scratch, static_cast<std::size_t>(body));
+  const Vec3 g_W = force ? Vec3(scratch.gravity_W + model.bodies[body].inverse_mass * force->f_W) : scratch.gravity_W,
+             arm_W = s.X_WI.p - held.p_WJ;
   const double c = model.joints[g.first].damping / g.inertia;
-  if (!isPivot(model, g)) return {held.axis_W.dot(g_W), 0, c, false};
-  const double k = model.bodies[g.bodies.front()].mass / g.inertia;
+  if (!isPivot(model, g)) return {held.axis_W.dot(g_W), 0, c, 0, false};
+  const double k = model.bodies[body].mass / g.inertia;
   const double across = arm_W.dot(g_W) - arm_W.dot(held.axis_W) * g_W.dot(held.axis_W);
-  return {k * held.axis_W.dot(arm_W.cross(g_W)), -k * across, c, true};
+  return {k * held.axis_W.dot(arm_W.cross(g_W)), -k * across, c, force ? held.axis_W.dot(force->tau_W) / g.inertia : 0, true};
 }
 
 // The inertial frame once the coordinate has grown by `way`; an axis that has left the joint's by round-off is put back.
@@ -79,7 +84,7 @@ void predictHeldBody(const WorldModel& model, const WorldState& state, const Joi
   findAxis(model, state, g, held);
   held.gained_rate = 0;
   held.start_rate = rateOf(model, g, held, s);
-  const OneFreedomLaw law = lawOf(model, g, held, s);
+  const OneFreedomLaw law = lawOf(model, g, scratch, held, s);
   const OneFreedomCourse end = followFreedom(law, held.start_rate, scratch.h);
   held.free_way = end.way;
   held.free_rate = end.rate;

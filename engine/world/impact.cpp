@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "pincer/contact/functions/invariants.h"
+#include "pincer/engine/motion/free_motion.h"
 #include "pincer/engine/solve/local_contact.h"
 #include "pincer/engine/world/contact_rows.h"
 
@@ -67,7 +68,7 @@ bool hasLanded(const WorldScratch& scratch, const ImpactPair& pair) {
 // A contact that closes in this tick, if nothing holds it up, and then bounces.
 bool mayBounce(const WorldModel& model, const WorldState& state, const WorldScratch& scratch, const Contact& c) {
   if (!(c.material.restitution > 0)) return false;
-  const double u = normalVelocity(scratch, c), a = gapAcceleration(model, c);
+  const double u = normalVelocity(scratch, c), a = gapAcceleration(model, scratch, c);
   if (u >= 0 && a >= 0) return false;
   const double phi = std::max(c.phi - 0.5 * scratch.h * u, 0.0);
   const double u_hit = -std::sqrt(std::max(u * u - 2 * a * phi, 0.0));
@@ -104,7 +105,7 @@ bool closesFaster(const WorldModel& model, const WorldState& state, const WorldS
   if (c.a.kind != SideKind::kBody || c.b.kind != SideKind::kBody) return false;
   if (c.material.restitution > 0 || pushedBefore(state, c.id)) return false;
   if (turnsFar(scratch, c.a.index) || turnsFar(scratch, c.b.index)) return false;
-  const double u = normalVelocity(scratch, c), a = std::min(gapAcceleration(model, c), 0.0);
+  const double u = normalVelocity(scratch, c), a = std::min(gapAcceleration(model, scratch, c), 0.0);
   const double phi = c.phi - 0.5 * scratch.h * u, u_end = u + a * scratch.h;
   return phi > kTouching && u_end < -speed && phi + kLate * scratch.h * u_end < 0;
 }
@@ -113,7 +114,7 @@ bool closesFaster(const WorldModel& model, const WorldState& state, const WorldS
 void holdBackLandings(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
   const auto is_of_bodies = [](const Contact& c) { return c.a.kind == SideKind::kBody; };
   if (std::none_of(scratch.contacts.begin(), scratch.contacts.end(), is_of_bodies)) return;
-  const double hard = hardLanding(model);
+  const double hard = hardLanding(model, scratch);
   const std::size_t before = scratch.impact_pairs.size();
   for (const Contact& c : scratch.contacts) {
     if (!closesFaster(model, state, scratch, c, hard) || isNoted(scratch.impact_pairs, c.a.index, c.b.index)) continue;
@@ -218,16 +219,27 @@ bool pushedBefore(const WorldState& state, std::uint64_t id) {
   return m != all.end() && m->id == id && m->active;
 }
 
-double hardLanding(const WorldModel& model) { return kHardLanding * model.options.h * model.options.gravity_W.norm(); }
+double hardLanding(const WorldModel& model, const WorldScratch& scratch) {
+  return kHardLanding * model.options.h * scratch.gravity_W.norm();
+}
 
 Vec3 endVelocity(const WorldModel& model, const WorldScratch& scratch, int i) {
   const BodyScratch& now = scratch.bodies[i];
   return model.bodies[i].dynamic ? Vec3(now.free.v_W + model.bodies[i].inverse_mass * now.impulse_W) : now.free.v_W;
 }
 
-double gapAcceleration(const WorldModel& model, const Contact& c) {
-  const int falling = static_cast<int>(isDynamic(model, c.a)) - static_cast<int>(isDynamic(model, c.b));
-  return falling * c.n_W().dot(model.options.gravity_W);
+Vec3 endAngularVelocity(const WorldModel& model, const WorldScratch& scratch, int i) {
+  const BodyScratch& now = scratch.bodies[i];
+  return now.free.w_W + angularVelocity(model.bodies[i].rotation, now.X_WI_mid.q, now.angular_impulse_W - now.free_angular_impulse_W);
+}
+
+double gapAcceleration(const WorldModel& model, const WorldScratch& scratch, const Contact& c) {
+  const auto acceleration = [&](const Side& side) {
+    if (!isDynamic(model, side)) return Vec3(Vec3::Zero());
+    const BodyForce* const force = forceOn(scratch, static_cast<std::size_t>(side.index));
+    return force ? Vec3(scratch.gravity_W + model.bodies[side.index].inverse_mass * force->f_W) : scratch.gravity_W;
+  };
+  return c.n_W().dot(acceleration(c.a) - acceleration(c.b));
 }
 
 double bounceRestitution(double restitution, double u, double acceleration, double h) {

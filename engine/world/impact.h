@@ -33,8 +33,8 @@ constexpr int kMostImpacts = 16;
 //   acceleration  with which gravity opens the gap (negative: closes it) [m/s^2];  h  tick [s]
 double bounceRestitution(double restitution, double u, double acceleration, double h);
 
-// Acceleration of the gap along the unit normal n_W by gravity [m/s^2].
-double gapAcceleration(const WorldModel& model, const Contact& c);
+// Acceleration of the gap along the normal by gravity and the forces applied to bodies [m/s^2].
+double gapAcceleration(const WorldModel& model, const WorldScratch& scratch, const Contact& c);
 
 // Notes the pair in scratch.fast_pairs if it needs to be swept.
 void noteFastPair(const WorldModel& model, int a, int b, WorldScratch& scratch);
@@ -57,10 +57,12 @@ double timeOfImpact(const WorldModel& model, const WorldState& state, WorldScrat
 bool pushedBefore(const WorldState& state, std::uint64_t id);
 
 // The speed from which a landing cuts the tick [m/s].
-double hardLanding(const WorldModel& model);
+double hardLanding(const WorldModel& model, const WorldScratch& scratch);
 
 // Of the body's centre of mass at the end of this part of the tick, contacts included. Call gatherImpulses before.
 Vec3 endVelocity(const WorldModel& model, const WorldScratch& scratch, int body);
+// And how fast a dynamic body turns, by the inertia of the tick's middle [rad/s].
+Vec3 endAngularVelocity(const WorldModel& model, const WorldScratch& scratch, int body);
 
 // Makes the velocities of `state` those just after the hits at its present poses.
 void applyImpacts(const WorldModel& model, WorldState& state, WorldScratch& scratch, ContactSource* source);

@@ -31,6 +31,7 @@ void putToSleep(const WorldModel& model, const WorldState& state, const Island& 
       sleep.idle[body] = true;
       sleep.group[body] = sleep.last_group;
       sleep.states[body] = state.bodies[body];
+      sleep.forces[body] = scratch.forces.empty() ? BodyForce{} : scratch.forces[body];
       ++sleep.bodies;
     });
   }
@@ -63,6 +64,7 @@ void putContactsAside(const WorldState& state, WorldScratch& scratch) {
 
 // What doesn't move by contacts is idle while it stands.
 void noteStanding(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
+  scratch.sleep.gravity_W = scratch.gravity_W;
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
     if (model.bodies[i].dynamic) continue;
     scratch.sleep.idle[i] = scratch.bodies[i].still;
@@ -125,15 +127,23 @@ bool isBesideMotion(const WorldModel& model, const WorldScratch& scratch, const 
   return false;
 }
 
+bool isPushedAsBefore(const WorldScratch& scratch, std::size_t body) {
+  const BodyForce& before = scratch.sleep.forces[body];
+  const BodyForce* const force = forceOn(scratch, body);
+  if (!force) return before.f_W.isZero(0) && before.tau_W.isZero(0);
+  return force->f_W == before.f_W && force->tau_W == before.tau_W;
+}
+
 }  // namespace
 
 void wakeChanged(const WorldModel& model, const WorldState& state, const StepInputs& inputs, WorldScratch& scratch) {
   WorldSleep& sleep = scratch.sleep;
-  if (state.h_last != model.options.h || !sameMemories(state, sleep)) return wakeAll(scratch);
+  if (state.h_last != model.options.h || sleep.gravity_W != scratch.gravity_W || !sameMemories(state, sleep)) return wakeAll(scratch);
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
     const BodyModel& body = model.bodies[i];
     const bool is_idle = body.dynamic ? sleep.idle[i] : !body.driven || stands(model, i, state, inputs);
     if (sleep.idle[i] && is_idle && !same(state.bodies[i], sleep.states[i])) return wakeAll(scratch);
+    if (body.dynamic && is_idle && !isPushedAsBefore(scratch, i)) return wakeAll(scratch);
     if (body.dynamic) continue;
     sleep.idle[i] = is_idle;
     sleep.states[i] = state.bodies[i];

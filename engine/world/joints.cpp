@@ -212,12 +212,11 @@ void predictJoints(const WorldModel& model, WorldScratch& scratch) {
       group.lambda[k] = rate(row, freeOf(scratch, row.a), freeOf(scratch, row.b)) + row.bias;
     }
     solve(group);
-    for (const int body : model.joint_groups[n].bodies) scratch.bodies[body].joint_angular_impulse_W.setZero();
     forEachImpulse(model, group, [&](int body, const Vec3& linear_W, const Vec3& angular_W) {
       BodyScratch& out = scratch.bodies[body];
       out.free.v_W += model.bodies[body].inverse_mass * linear_W;
       out.free.w_W += out.inverse_inertia_W * angular_W;
-      out.joint_angular_impulse_W += angular_W;
+      out.free_angular_impulse_W += angular_W;
     });
   }
 }
@@ -242,7 +241,7 @@ void gatherJointImpulses(const WorldModel& model, WorldScratch& scratch) {
       scratch.bodies[body].angular_impulse_W += angular_W;
     });
     for (const int body : model.joint_groups[n].bodies) {
-      scratch.bodies[body].angular_impulse_W += scratch.bodies[body].joint_angular_impulse_W;
+      scratch.bodies[body].angular_impulse_W += scratch.bodies[body].free_angular_impulse_W;
       scratch.bodies[body].touched = true;
     }
   }

@@ -233,8 +233,6 @@ void listPairs(WorldModel& model, const std::vector<IndexPair>& excluded) {
   }
 }
 
-constexpr int kMostContacts = 65536;
-
 // What a body's own contacts may come to: those of a brick in a wall, of a ball in a heap, and near misses.
 int contactsOf(const contact::Shape& shape) {
   if (std::holds_alternative<contact::Sphere>(shape)) return 8;

@@ -29,13 +29,19 @@ void place(const BodyModel& body, BodyScratch& out) {
   out.R_WB_mid = out.X_WB_mid.q.toRotationMatrix();
 }
 
-void predictBody(const BodyModel& body, const BodyState& s, const Vec3& dv_gravity_W, double h, BodyScratch& out) {
+void predictBody(const BodyModel& body, const BodyState& s, const Vec3& dv_gravity_W, const BodyForce* force, double h, BodyScratch& out) {
   PINCER_ASSERT(isUnitIfFinite(s.X_WI.q));
   out.start.v_W = s.v_W;
   out.free.v_W = s.v_W + dv_gravity_W;
+  out.free_angular_impulse_W.setZero();
+  if (force) {
+    out.free.v_W += h * body.inverse_mass * force->f_W;
+    out.free_angular_impulse_W = h * force->tau_W;
+  }
   if (!body.may_touch) return;  // moves alone: advance needs nothing more
   out.X_WI_mid.p = s.X_WI.p + (0.5 * h) * s.v_W;
   predictRotation(body.rotation, s, h, out);
+  if (force) out.free.w_W += angularVelocity(body.rotation, out.X_WI_mid.q, out.free_angular_impulse_W);
   place(body, out);
   if (body.joint_group >= 0) out.inverse_inertia_W = inverseInertia(body.rotation, out.X_WI_mid.q);
 }
@@ -166,12 +172,13 @@ void predictAxes(const DrivenPointModel& point, const std::array<AxisForm, 3>& f
 
 void predictBodies(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
   const double h = scratch.h;
-  const Vec3 dv_gravity_W = h * model.options.gravity_W;
+  const Vec3 dv_gravity_W = h * scratch.gravity_W;
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
     if (isHeldBody(model, model.bodies[i])) {
       predictHeld(model, state, static_cast<int>(i), scratch);
     } else if (model.bodies[i].dynamic) {
-      if (!isIdle(scratch, static_cast<int>(i))) predictBody(model.bodies[i], state.bodies[i], dv_gravity_W, h, scratch.bodies[i]);
+      if (!isIdle(scratch, static_cast<int>(i)))
+        predictBody(model.bodies[i], state.bodies[i], dv_gravity_W, forceOn(scratch, i), h, scratch.bodies[i]);
     } else {
       BodyScratch& body = scratch.bodies[i];
       body.X_WI_mid = state.bodies[i].X_WI;
@@ -202,6 +209,7 @@ void predictImpact(const WorldModel& model, const WorldState& state, WorldScratc
     out.X_WI_mid = s.X_WI;
     out.start = {s.v_W, bodyAngularVelocity(model, state, static_cast<int>(i))};
     out.free = out.end = out.start;
+    out.free_angular_impulse_W.setZero();
     if (model.bodies[i].dynamic) out.inverse_inertia_W = inverseInertia(model.bodies[i].rotation, s.X_WI.q);
     place(model.bodies[i], out);
     if (isHeldBody(model, model.bodies[i])) predictHeld(model, state, static_cast<int>(i), scratch);

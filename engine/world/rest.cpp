@@ -34,6 +34,8 @@ bool same(const PointInput& a, const PointInput& b) {
          a.n_W == b.n_W;
 }
 
+bool same(const BodyForce& a, const BodyForce& b) { return a.f_W == b.f_W && a.tau_W == b.tau_W; }
+
 template <class Range>
 bool sameRange(const Range& a, const Range& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& x, const auto& y) { return same(x, y); });
@@ -71,7 +73,8 @@ bool isStill(const WorldState& state) {
 bool repeatsItself(const WorldState& state, const WorldScratch& scratch, const StepInputs& inputs) {
   const RestMemory& rest = scratch.sleep.rest;
   return rest.holds && sameRange(inputs.points, std::span<const PointInput>(rest.points)) &&
-         sameRange(inputs.motions, std::span<const MotionInput>(rest.motions)) && sameState(state, rest.state);
+         sameRange(inputs.motions, std::span<const MotionInput>(rest.motions)) && inputs.applied.gravity_W == rest.gravity_W &&
+         sameRange(inputs.applied.forces, std::span<const BodyForce>(rest.forces)) && sameState(state, rest.state);
 }
 
 void noteRest(const WorldState& state, const StepInputs& inputs, bool calm, WorldScratch& scratch) {
@@ -85,6 +88,8 @@ void noteRest(const WorldState& state, const StepInputs& inputs, bool calm, Worl
     rest.holds = true;
     std::copy(inputs.points.begin(), inputs.points.end(), rest.points.begin());
     std::copy(inputs.motions.begin(), inputs.motions.end(), rest.motions.begin());
+    rest.forces.assign(inputs.applied.forces.begin(), inputs.applied.forces.end());
+    rest.gravity_W = inputs.applied.gravity_W;
     return;
   }
   rest.candidate = true;

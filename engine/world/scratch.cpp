@@ -32,10 +32,12 @@ WorldSleep::WorldSleep(const WorldModel& model)
     : room(static_cast<std::size_t>(model.options.max_contacts)),
       idle(model.bodies.size()),
       group(model.bodies.size()),
-      states(model.bodies.size()) {
+      states(model.bodies.size()),
+      forces(model.bodies.size()) {
   sizeState(model, rest.state);
   rest.points.resize(model.points.size());
   rest.motions.resize(static_cast<std::size_t>(model.driven_count));
+  rest.forces.reserve(model.bodies.size());
   if (mayIslandsSleep(model)) contacts.reserve(room);
 }
 

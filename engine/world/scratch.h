@@ -29,13 +29,13 @@ struct MoverScratch {
 };
 struct BodyScratch : MoverScratch {
   Pose X_WI_mid, X_WB_mid;
-  Pose X_WB_end;                                // of driven bodies
-  Mat3 R_WB_mid = Mat3::Identity();             // X_WB_mid.q: a matrix turns many vectors in half the time
-  Mat3 inverse_inertia_W = Mat3::Zero();        // at the middle; of bodies in joints, and in impacts
-  Vec3 angular_impulse_W = Vec3::Zero();        // about the centre of mass [N m s]
-  double flung = 0;                             // how far contacts turn a corner of it in this part of the tick, if that is far [m]
-  Motion push;                                  // out of overlap, in this part of the tick, see push_out.h: a way [m] and a turn [rad]
-  Vec3 joint_angular_impulse_W = Vec3::Zero();  // the part of it that joints would give without contact; its linear part is in `free`
+  Pose X_WB_end;                               // of driven bodies
+  Mat3 R_WB_mid = Mat3::Identity();            // X_WB_mid.q: a matrix turns many vectors in half the time
+  Mat3 inverse_inertia_W = Mat3::Zero();       // at the middle; of bodies in joints, and in impacts
+  Vec3 angular_impulse_W = Vec3::Zero();       // about the centre of mass [N m s]
+  double flung = 0;                            // how far contacts turn a corner of it in this part of the tick, if that is far [m]
+  Motion push;                                 // out of overlap, in this part of the tick, see push_out.h: a way [m] and a turn [rad]
+  Vec3 free_angular_impulse_W = Vec3::Zero();  // the part of it without contact, of joints and torques applied; `free` has what it does
 };
 struct PointScratch : MoverScratch {
   Vec3 p_mid_W = Vec3::Zero();
@@ -118,6 +118,8 @@ struct WorldScratch {
   std::int64_t operations_left = kNoLimit;  // of the solver's budget for this tick (solve/solver_scratch.h)
   int solves = 0;                           // in this tick
   double h;                                 // length of this part of the tick [s]; 0 in an impact, which takes no time
+  Vec3 gravity_W;                           // of this tick [m/s^2]
+  std::span<const BodyForce> forces;        // of this tick, one per body, or none; the caller's: not to be read after it
   std::vector<BodyScratch> bodies;
   std::vector<PointScratch> points;
   std::vector<Contact> contacts;  // of what is awake, see forEachContact; capacity options.max_contacts
@@ -157,6 +159,11 @@ void forEachContact(const WorldScratch& scratch, F f) {
 inline const MoverScratch& mover(const WorldScratch& scratch, const Side& side) {
   if (side.kind == SideKind::kPoint) return scratch.points[side.index];
   return scratch.bodies[side.index];
+}
+
+// The force applied to a body, null if there is none.
+inline const BodyForce* forceOn(const WorldScratch& scratch, std::size_t body) {
+  return scratch.forces.empty() ? nullptr : &scratch.forces[body];
 }
 
 inline void mark(WorldScratch& scratch, Stage stage) {

@@ -86,6 +86,16 @@ WorldState makeState(const WorldModel& model, const std::vector<BodyStart>& star
   return state;
 }
 
+void growContacts(int contacts, WorldModel& model, WorldState& state) {
+  if (contacts < model.options.max_contacts || contacts > kMostContacts) {
+    throw InputError(
+        fmt::format("growContacts: {} contacts; there is room for {}, and {} at most can be had. Ask for a number between them.", contacts,
+                    model.options.max_contacts, kMostContacts));
+  }
+  model.options.max_contacts = contacts;
+  state.contacts.resize(static_cast<std::size_t>(contacts));
+}
+
 Pose bodyPose(const WorldModel& model, const WorldState& state, int body) {
   PINCER_ASSERT(isIndex(body, state.bodies.size()));
   return state.bodies[body].X_WI * model.bodies[body].X_IB;
@@ -108,11 +118,13 @@ double kineticEnergy(const WorldModel& model, const WorldState& state) {
   return energy;
 }
 
-double potentialEnergy(const WorldModel& model, const WorldState& state) {
+double potentialEnergy(const WorldModel& model, const WorldState& state) { return potentialEnergy(model, state, model.options.gravity_W); }
+
+double potentialEnergy(const WorldModel& model, const WorldState& state, const Vec3& gravity_W) {
   PINCER_DEMAND(state.bodies.size() == model.bodies.size(), "the state is one of this model");
   double energy = 0;
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
-    energy -= model.bodies[i].mass * model.options.gravity_W.dot(state.bodies[i].X_WI.p);
+    energy -= model.bodies[i].mass * gravity_W.dot(state.bodies[i].X_WI.p);
   }
   return energy;
 }

@@ -62,6 +62,7 @@ class Tick {
 
   StepReport run() {
     if (model_.options.sleep && repeatsItself(state_, scratch_, inputs_) && (!source_ || source_->repeatsItself())) return sleep();
+    applyForces();
     scratch_.contacts_dropped = false;
     scratch_.solves = 0;
     const double budget = model_.options.solver.budget;
@@ -85,6 +86,15 @@ class Tick {
   }
 
  private:
+  void applyForces() {
+    const AppliedForces& applied = inputs_.applied;
+    const auto is_finite = [](const BodyForce& force) { return force.f_W.allFinite() && force.tau_W.allFinite(); };
+    forces_ok_ =
+        (!applied.gravity_W || applied.gravity_W->allFinite()) && std::all_of(applied.forces.begin(), applied.forces.end(), is_finite);
+    scratch_.gravity_W = forces_ok_ ? applied.gravity_W.value_or(model_.options.gravity_W) : model_.options.gravity_W;
+    scratch_.forces = forces_ok_ ? applied.forces : std::span<const BodyForce>{};
+  }
+
   // All of the world, as soon as all of it rests; before that what does.
   void noteSleep() {
     noteRest(state_, inputs_, report_.status == kStepOk && impacts_ == 0, scratch_);
@@ -143,6 +153,7 @@ class Tick {
     scratch_.pushed_pairs.clear();
     report_ = {};
     report_.parts = 0;
+    if (!forces_ok_) report_.status |= kInputNotFinite;
     for (PointScratch& point : scratch_.points) point.tick_impulse_W.setZero();
     for (int k = parts - 1; k >= 0; --k) {
       stop_ = h * k / parts;
@@ -175,7 +186,7 @@ class Tick {
       left_ -= t;
     }
     landings_ += somethingLands();
-    const double energy = isLimited(scratch_) ? energyOf(model_, state_) : 0;
+    const double energy = isLimited(scratch_) ? energyOf(model_, state_, scratch_.gravity_W) : 0;
     const bool is_heap = scratch_.contacts.size() > kHeap;
     wakeAll(scratch_);
     applyImpacts(model_, state_, scratch_, source_);
@@ -229,7 +240,7 @@ class Tick {
     for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
       const BodyScratch& body = scratch_.bodies[i];
       if (!body.touched || !model_.bodies[i].dynamic || model_.bodies[i].rotation.kind == FreeRotation::Kind::kSpherical) continue;
-      const Vec3 w_end_W = body.free.w_W + angularVelocity(model_.bodies[i].rotation, body.X_WI_mid.q, body.angular_impulse_W);
+      const Vec3 w_end_W = endAngularVelocity(model_, scratch_, static_cast<int>(i));
       if (h * h * std::max(body.start.w_W.squaredNorm(), w_end_W.squaredNorm()) > kFarTurn * kFarTurn) return true;
     }
     return false;
@@ -261,7 +272,7 @@ class Tick {
   void conclude() {
     note();
     const bool is_rough = isSpent() || turns_far_ || impacts_ == kMostImpacts;
-    const double energy = is_rough ? energyOf(model_, state_) : 0;
+    const double energy = is_rough ? energyOf(model_, state_, scratch_.gravity_W) : 0;
     advance(model_, state_, scratch_);
     pushOut(model_, state_, scratch_);
     if (is_rough) limitEnergy(model_, scratch_, energy, state_);
@@ -349,6 +360,7 @@ class Tick {
   double left_;             // of the tick [s]
   double part_ = 0;         // length of the last part, before a hit cut it [s]
   double stop_ = 0;         // what is left of the tick at the end of this part [s]
+  bool forces_ok_ = true;   // those applied are finite
   bool turns_far_ = false;  // something does in this part, and it can't be cut any more
   int impacts_ = 0;         // in this tick
   int landings_ = 0;        // of them that don't bounce
@@ -365,6 +377,7 @@ StepReport step(const WorldModel& model, WorldState& state, WorldScratch& scratc
 
 StepReport step(const WorldModel& model, WorldState& state, WorldScratch& scratch, const StepInputs& inputs, ContactSource* source) {
   PINCER_DEMAND(inputs.points.size() == model.points.size(), "step: one input per driven point");
+  PINCER_DEMAND(inputs.applied.forces.empty() || inputs.applied.forces.size() == model.bodies.size(), "step: one force per body, or none");
   PINCER_DEMAND(inputs.motions.size() <= static_cast<std::size_t>(model.driven_count), "step: no more motions than driven bodies");
   PINCER_DEMAND(state.bodies.size() == model.bodies.size() && state.points.size() == model.points.size() &&
                     state.contacts.size() == static_cast<std::size_t>(model.options.max_contacts) &&

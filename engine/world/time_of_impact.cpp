@@ -117,7 +117,7 @@ class ClosingPair {
 
   // Of a pair that touches already: what touches, and what closes slowly.
   bool isBystander(const contact::PairPoint& point, const Approach& approach) const {
-    return approach.u > -kAlongWith * hardLanding(model_) || pushedBefore(state_, contactId(0, pair_.a, pair_.b, point.feature));
+    return approach.u > -kAlongWith * hardLanding(model_, scratch_) || pushedBefore(state_, contactId(0, pair_.a, pair_.b, point.feature));
   }
 
   Next limitTurn(const Moment& a, const Moment& b, double nearest, Next next) const {

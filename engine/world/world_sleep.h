@@ -16,6 +16,8 @@ struct RestMemory {
   WorldState state;  // where
   std::vector<PointInput> points;
   std::vector<MotionInput> motions;
+  std::vector<BodyForce> forces;  // one per body, or none
+  std::optional<Vec3> gravity_W;
   bool candidate = false;  // `state` is how the last tick ended
   bool holds = false;      // and how it started, with these inputs
 };
@@ -32,12 +34,14 @@ struct WorldSleep {
 
   RestMemory rest;  // all of the world
   // Islands, see island_sleep.h.
-  int bodies = 0;                         // that sleep
-  int last_group = 0;                     // number of the island that fell asleep last
-  std::size_t room;                       // for contacts of what is awake
-  std::vector<char> idle;                 // per body: it sleeps, or is static or driven and stands; only where `bodies` isn't 0
-  std::vector<int> group;                 // per body: which island it sleeps with, 0: none
-  std::vector<BodyState> states;          // of those that are idle
+  int bodies = 0;                 // that sleep
+  int last_group = 0;             // number of the island that fell asleep last
+  std::size_t room;               // for contacts of what is awake
+  std::vector<char> idle;         // per body: it sleeps, or is static or driven and stands; only where `bodies` isn't 0
+  std::vector<int> group;         // per body: which island it sleeps with, 0: none
+  std::vector<BodyState> states;  // of those that are idle
+  std::vector<BodyForce> forces;  // on those that sleep
+  Vec3 gravity_W = Vec3::Zero();
   std::vector<SleepingContact> contacts;  // sorted by id
 };
 

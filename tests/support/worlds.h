@@ -16,7 +16,7 @@ struct EngineWorld {
   engine::WorldModel model;
   engine::WorldState state;
 
-  double energy() const { return engine::energyOf(model, state); }
+  double energy() const { return engine::energyOf(model, state, model.options.gravity_W); }
 };
 
 // Two needles of 20 g, 0.2 m long, one over the other, that spin by about `rate` [rad/s] and come down on a floor: the n-th of many such pairs.

@@ -13,9 +13,9 @@ struct Wall {
   WorldModel model;
   WorldState state;
 
-  Wall(int columns, int rows, double jitter) {
+  Wall(int columns, int rows, double jitter, const WorldOptions& options = {}) {
     constexpr double kLength = 0.04, kHeight = 0.02, kApart = 1e-3;
-    WorldBuilder builder{WorldOptions{}};
+    WorldBuilder builder{options};
     std::vector<BodyStart> starts(1);
     builder.addBody({"floor", contact::HalfSpace{}, false, 0, {}});
     for (int n = 0; n < columns * rows; ++n) {
@@ -86,6 +86,25 @@ TEST(Wall, HasRoomForItsContactsWithoutBeingAsked) {
   const StepReport report = step(wall.model, wall.state, *scratch);
   EXPECT_EQ(report.status & kContactsDropped, 0u);
   EXPECT_GT(report.contacts, 150);
+}
+
+// Room grown between ticks: from the moment of the growth on as with that room from the start.
+TEST(Wall, WhoseContactsWereDroppedGoesOnWithMoreRoom) {
+  WorldOptions narrow;
+  narrow.max_contacts = 8;
+  Wall small(2, 2, 0, narrow), large(2, 2, 0);
+  ScratchHandle scratch = makeScratch(small.model);
+  WorldState start = small.state;
+  EXPECT_TRUE(step(small.model, small.state, *scratch).status & kContactsDropped);
+  EXPECT_THROW(growContacts(4, small.model, start), InputError);
+  growContacts(large.model.options.max_contacts, small.model, start);
+  scratch = makeScratch(small.model);
+  const ScratchHandle other = makeScratch(large.model);
+  for (int n = 0; n < 20; ++n) {
+    EXPECT_EQ(step(small.model, start, *scratch).status, kStepOk);
+    step(large.model, large.state, *other);
+  }
+  EXPECT_EQ(hashOf(start), hashOf(large.state));
 }
 
 }  // namespace
