@@ -6,6 +6,7 @@
 #include "pincer/engine/world/colliders.h"
 #include "pincer/engine/world/impact.h"
 #include "pincer/engine/world/island_sleep.h"
+#include "pincer/engine/world/thin_contacts.h"
 
 namespace pincer::engine {
 namespace {
@@ -73,7 +74,9 @@ void collidePair(const WorldModel& model, const WorldState& state, const BodyPai
     contact::collideShapes(ca.shape, X_WA, cb.shape, X_WB, margin, scratch.patches, found, lastNormal(model, state, ca, cb));
     if (found.count > 0) addPoints(model, ca, cb, material ? *material : materialOf(model, ca, cb), found, scratch);
   };
+  const std::size_t first = scratch.contacts.size();
   forEachNearShapes(model, a, sa.X_WB_mid, b, sb.X_WB_mid, margin, collide);
+  if (a.collider_count + b.collider_count > 2) thinContacts(first, scratch);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include "pincer/contact/functions/invariants.h"
 #include "pincer/engine/world/colliders.h"
+#include "pincer/engine/world/thin_contacts.h"
 
 namespace pincer::grasp {
 namespace {
@@ -31,10 +32,12 @@ class FingerLook {
     const engine::BodyScratch& mid = scratch_.world.bodies[body];
     if (const engine::ColliderModel* const lone = engine::loneCollider(model_.world, b))
       return at({*lone, mid, mid.X_WB_mid.p, mid.R_WB_mid}, mid.X_WI_mid.p, b.bounding_radius);
+    const std::size_t first = scratch_.world.contacts.size();
     for (const engine::ColliderModel& c : engine::collidersOf(model_.world, b)) {
       const Vec3 p_WS = mid.X_WB_mid.p + mid.R_WB_mid * c.X_BS.p;
       at({c, mid, p_WS, mid.R_WB_mid * c.X_BS.q.toRotationMatrix()}, p_WS, c.bounding_radius);
     }
+    engine::thinContacts(first, scratch_.world);
   }
 
   // Distance of the finger's centre from a body's box, which holds the body's own way in the tick, beyond which it needn't be looked at [m].
