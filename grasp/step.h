@@ -30,7 +30,7 @@ struct FingerState {
 
 struct GraspState {
   engine::WorldState world;
-  std::vector<contact::SurfaceTracker> trackers;  // finger-major: fingers x bodies
+  std::vector<contact::SurfaceTracker> trackers;  // finger-major: fingers x shapes
   std::vector<contact::FingerTracker> tips;       // likewise, of fingers that aren't spheres; empty if there are none
   std::vector<FingerState> fingers;
 };

@@ -44,7 +44,8 @@ namespace {
 std::span<const engine::Contact> contactsOf(const GraspScratch& scratch, int finger) {
   const std::vector<engine::Contact>& all = scratch.world.contacts;
   const auto less = [](const engine::Contact& c, std::uint64_t id) { return c.id < id; };
-  const auto first = std::lower_bound(all.begin(), all.end(), engine::contactId(1, finger, 0, 0), less);
+  const std::uint64_t first_id = engine::contactId(0, {engine::SideKind::kPoint, 0, finger}, {}, 0);  // whatever it touches
+  const auto first = std::lower_bound(all.begin(), all.end(), first_id, less);
   const auto is_other = [&](const engine::Contact& c) { return c.a.kind != engine::SideKind::kPoint || c.a.index != finger; };
   return {first, std::find_if(first, all.end(), is_other)};
 }
@@ -194,7 +195,7 @@ const engine::WorldScratch& worldOf(const GraspScratch& scratch) { return scratc
 
 GraspState makeState(const GraspModel& model, const std::vector<engine::BodyStart>& starts, const std::vector<Vec3>& fingers) {
   GraspState state{engine::makeState(model.world, starts, fingers), {}, {}, {}};
-  state.trackers.resize(model.fingers.size() * model.world.bodies.size());
+  state.trackers.resize(model.fingers.size() * model.world.colliders.size());
   const auto has_shape = [](const FingerModel& f) { return f.shape.has_value(); };
   if (std::any_of(model.fingers.begin(), model.fingers.end(), has_shape)) state.tips.resize(state.trackers.size());
   state.fingers.resize(model.fingers.size());
@@ -204,8 +205,9 @@ GraspState makeState(const GraspModel& model, const std::vector<engine::BodyStar
 GraspReport step(const GraspModel& model, GraspState& state, GraspScratch& scratch, std::span<const FingerInput> inputs,
                  std::span<const engine::MotionInput> motions, const engine::AppliedForces& applied) {
   PINCER_DEMAND(inputs.size() == model.fingers.size(), "step: one input per finger");
-  PINCER_DEMAND(state.fingers.size() == model.fingers.size() && state.trackers.size() == model.fingers.size() * model.world.bodies.size(),
-                "step: the state is one of this model (makeState)");
+  PINCER_DEMAND(
+      state.fingers.size() == model.fingers.size() && state.trackers.size() == model.fingers.size() * model.world.colliders.size(),
+      "step: the state is one of this model (makeState)");
   PINCER_DEMAND(scratch.fingers.size() == model.fingers.size(), "step: the scratch is one of this model");
   setInputs(model, state, inputs, scratch);
   FingerContacts contacts(model, state, scratch, inputs);
