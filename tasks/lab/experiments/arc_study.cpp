@@ -102,6 +102,7 @@ ArcStudy smoothnessStudy() {
 ArcStudy backlashStudy() {
   ArcStudy study;
   study.task = "backlash-discrimination";
+  study.participants = 20;
   study.quantity = ArcQuantity::kBacklash;
   study.finger_radius = 0.013;
   study.arc_radius = 0.095;
@@ -222,7 +223,8 @@ ArcInterval ArcExperiment::intervalOf(const ArcCondition& condition, double leve
     return turned ? sharedCurve(contact::arcPolygon(study_.arc_radius, level, sweep()), variant) : reference;
   };
   interval.shown.force = shown(condition.force);
-  if (condition.tactile) interval.shown.tactile = *condition.tactile == condition.force ? interval.shown.force : shown(*condition.tactile);
+  if (condition.tactile && !study_.frozen_tactor)
+    interval.shown.tactile = *condition.tactile == condition.force ? interval.shown.force : shown(*condition.tactile);
   interval.shown.largest_place = condition.travel_share * study_.tactor_reach;
   if (study_.quantity == ArcQuantity::kBacklash) interval.transmission.backlash = level;
   if (study_.quantity == ArcQuantity::kDelay) interval.transmission.delay = static_cast<int>(std::lround(1000 * level));

@@ -54,6 +54,7 @@ struct ArcStudy {
   double reference_turn = 0.00436332;  // from segment to segment of the exact arc's polygon [rad]
   double stiffness = 1000;             // of the surface [N/m]
   int strokes = 4;                     // per interval
+  bool frozen_tactor = false;          // a control: the tactor is parked in every condition
   std::vector<ArcCondition> conditions;
 };
 

@@ -73,6 +73,7 @@ void visitParameters(Study& s, Visit&& visit) {
   visit("reference_turn", s.reference_turn, Parameter{"from segment to segment of the reference [rad]", {1e-4, 0.1, false, kAsPublished}});
   visit("stiffness", s.stiffness, Parameter{"of the surface [N/m]", {0, 3500, true, kAsPublished}});
   visit("strokes", s.strokes, Parameter{"per interval, an even number", {2, 100, false, kAsPublished}});
+  visit("frozen_tactor", s.frozen_tactor, Parameter{"true: the tactor is parked in every condition (a control)"});
   visit("conditions", s.conditions, Parameter{"a list replaces all of them"});
 }
 
