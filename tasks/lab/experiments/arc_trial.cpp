@@ -15,7 +15,7 @@ constexpr std::int64_t kTactorTicks = 20;  // over which its speed is taken: one
 devices::SimArmSettings arcArm(const ArcTrialSetup& setup) {
   devices::SimArmSettings settings;
   settings.serial = "index";
-  const Vec3 start_W = (setup.path_radius + 0.01) * Vec3(math::sin(setup.start_angle), 0, math::cos(setup.start_angle));
+  const Vec3 start_W = (setup.path_radius + 0.01) * Vec3(0, math::sin(setup.start_angle), math::cos(setup.start_angle));
   settings.start_D = arcArmBase(setup.path_radius).inverse() * start_W;
   return settings;
 }
@@ -127,8 +127,8 @@ void ArcTrial::record(const devices::TactileSample& tactile, double now, double 
   sample.tick_us = 1e6 * took;
   sample.q_WB = {1, 0, 0, 0};
   FingerRecord& finger = sample.fingers[0];
-  const Vec3 n_W(out_.contact.n_B.x(), 0, out_.contact.n_B.y());
-  const Vec3 p_WP(out_.contact.p_BS.x(), 0, out_.contact.p_BS.y());
+  const Vec3 n_W(0, out_.contact.n_B.x(), out_.contact.n_B.y());
+  const Vec3 p_WP(0, out_.contact.p_BS.x(), out_.contact.p_BS.y());
   finger.p_WF = {state_.p_WF.x(), state_.p_WF.y(), state_.p_WF.z()};
   const Vec3 proxy_W = p_WP + setup_.finger_radius * n_W;
   finger.p_WP = {proxy_W.x(), proxy_W.y(), proxy_W.z()};

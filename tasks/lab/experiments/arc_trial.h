@@ -5,8 +5,8 @@
 //   interval  tone, strokes, reading; then the next
 //   answer
 //
-// The set-up: an arm whose base frame D has x right, y up and z towards the operator (W: x right, y away, z up), the fingertip's pad down, a
-// 1-DOF contact location display on it whose roller moves to the right for contacts on the right of the pad.
+// The set-up: an arm whose base frame D has x right, y up and z towards the operator (W: x right, y away, z up), the finger pointing away with its
+// pad down, strokes along it (fore-aft), a 1-DOF contact location display whose roller moves distally for contacts on the distal side.
 #pragma once
 #include <optional>
 #include <vector>
@@ -28,7 +28,7 @@ struct ArcInterval {
 struct ArcTrialSetup {
   double finger_radius = 0.02;         // [m]
   double path_radius = 0.12;           // of the circle about B's origin on which the fingertip's centre goes [m]
-  double start_angle = -0.4;           // where on it the finger waits, from +z [rad]
+  double start_angle = -0.4;           // where on it the finger waits, from +z towards +y [rad]
   double stiffness = 1000;             // of the surface [N/m]
   double timeout = 120;                // of a trial [s]
   std::vector<ArcInterval> intervals;  // one or two

@@ -66,7 +66,7 @@ std::optional<ResponseRecord> LocalisationExperiment::present(const StudyTrial& 
   const Pose X_WD = arcArmBase(cues.radius);
   cues.q_WD = X_WD.q;
   cues.p_WD = X_WD.p;
-  cues.from = -start / study_.finger_radius;  // to the right of the top the contact is on the left of the pad
+  cues.from = -start / study_.finger_radius;  // beyond the top the contact is on the proximal side of the pad
   cues.to = -target / study_.finger_radius;
   ArcTrialSetup setup;
   setup.finger_radius = study_.finger_radius;

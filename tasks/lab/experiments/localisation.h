@@ -11,7 +11,7 @@
 namespace pincer::tasks {
 
 struct LocalisationStudy {
-  int participants = 12;
+  int participants = 20;
   std::uint64_t seed = 1;
   int places = 5;
   double spacing = 2.8e-3;                      // [m]

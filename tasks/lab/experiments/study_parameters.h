@@ -55,7 +55,10 @@ void visitParameters(Condition& c, Visit&& visit) {
   visit("edge", c.edge, Parameter{"true: the edge in place of the arc"});
   visit("travel_share", c.travel_share, Parameter{"of the tactor's travel that is shown", {0, 1, true}});
   visit("staircase", c.staircase, Parameter{"that chooses the levels"});
-  visit("published", c.published, Parameter{"threshold, beside which the measured one is shown; null: none", kLevel, {}, true});
+  visit("published", c.published,
+        Parameter{
+            "threshold, beside which the measured one is shown [segments, m or s]; null: none", {0, 1e6, false, kAsPublished}, {}, true});
+  visit("pilot", c.pilot, Parameter{"true: done after the other conditions"});
 }
 
 template <FieldsOf<ArcStudy> Study, class Visit>
@@ -70,6 +73,7 @@ void visitParameters(Study& s, Visit&& visit) {
   visit("reference_turn", s.reference_turn, Parameter{"from segment to segment of the reference [rad]", {1e-4, 0.1, false, kAsPublished}});
   visit("stiffness", s.stiffness, Parameter{"of the surface [N/m]", {0, 3500, true, kAsPublished}});
   visit("strokes", s.strokes, Parameter{"per interval, an even number", {2, 100, false, kAsPublished}});
+  visit("frozen_tactor", s.frozen_tactor, Parameter{"true: the tactor is parked in every condition (a control)"});
   visit("conditions", s.conditions, Parameter{"a list replaces all of them"});
 }
 

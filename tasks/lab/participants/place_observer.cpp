@@ -62,7 +62,7 @@ void PlaceObserver::enter(Phase phase) {
 }
 
 devices::HandPull PlaceObserver::pullAt(double angle, double height) const {
-  const Vec3 p_W = (cues_.radius + height) * Vec3(math::sin(angle), 0, math::cos(angle));
+  const Vec3 p_W = (cues_.radius + height) * Vec3(0, math::sin(angle), math::cos(angle));
   devices::HandPull pull = body_.hands[0];
   pull.p_D = cues_.q_WD.conjugate() * (p_W - cues_.p_WD);
   return pull;

@@ -15,7 +15,7 @@ struct PlaceCues {
   Quat q_WD = Quat::Identity();
   Vec3 p_WD = Vec3::Zero();  // arm base [m]
   double radius = 0.12;      // of the circle about W's origin on which the fingertip's centre goes [m]
-  double from = 0, to = 0;   // angles on it, from +z [rad]
+  double from = 0, to = 0;   // angles on it, from +z towards +y [rad]
 };
 
 struct PlaceLimits {

@@ -1,33 +1,31 @@
 #include "pincer/tasks/lab/participants/stroke_observer.h"
 
 #include <cmath>
-#include <limits>
 
 #include "pincer/tasks/lab/participants/reach.h"
 
 namespace pincer::tasks {
 namespace {
 
-constexpr double kSlowLow = 5, kSlowHigh = 50, kQuickHigh = 300;  // bands [Hz]
-constexpr double kObserverTick = 1e-3;                            // [s]
-constexpr double kMiddle = 0.1;                                   // a stroke's first and last tenth are the turn's, not the surface's
+constexpr double kObserverTick = 1e-3;  // [s]
+constexpr double kMiddle = 0.1;         // a stroke's first and last tenth are the turn's, not the surface's
+
+StrokeLimits strokeLimitsOf(StrokeLimits limits, double noise) {
+  limits.skin.slow_threshold *= noise;
+  limits.skin.quick_threshold *= noise;
+  limits.skin.difference *= noise;
+  limits.lag_sigma *= noise;
+  limits.lag_difference *= noise;
+  return limits;
+}
 
 }  // namespace
 
 StrokeObserver::StrokeObserver(std::uint64_t seed, const StrokeLimits& limits, const HandRanges& ranges)
-    : limits_(limits),
+    : limits_(strokeLimitsOf(limits, math::exp(limits.sensitivity_spread * Random(seedFor(seed, 1)).normal()))),
       body_(drawBody(ranges, seed)),
-      noise_(math::exp(limits.sensitivity_spread * Random(seedFor(seed, 1)).normal())),
       random_(seed),
-      skin_(limits.skin),
-      bands_{BandPower(kSlowLow, kSlowHigh), BandPower(kSlowHigh, kQuickHigh), BandPower(kSlowLow, kSlowHigh),
-             BandPower(kSlowHigh, kQuickHigh)} {
-  limits_.skin.slow_threshold *= noise_;
-  limits_.skin.quick_threshold *= noise_;
-  limits_.skin.difference *= noise_;
-  limits_.lag_sigma *= noise_;
-  limits_.lag_difference *= noise_;
-}
+      roughness_(limits_.skin, limits_.tactor_weight) {}
 
 void StrokeObserver::begin(const StrokeCues& cues) {
   cues_ = cues;
@@ -50,7 +48,7 @@ void StrokeObserver::enter(Phase phase) {
   entered_ = now_;
   turning_ = phase == Phase::kStroke;
   if (phase != Phase::kLower) return;
-  for (BandPower& band : bands_) band.clear();
+  roughness_.clear();
   stroke_ = turns_ = way_ = 0;
   lags_ = 0;
   returned_ = true;
@@ -100,12 +98,9 @@ void StrokeObserver::feel(const FingerPercept& finger) {
   const bool counts = phase_ == Phase::kStroke && share > kMiddle && share < 1 - kMiddle;
   const Vec3 f_W = cues_.q_WD * finger.f_D;
   push_ = f_W.norm();
-  const Vec2 u = skin_.pushed({f_W.x(), f_W.z()});
-  bands_[0].add(u, counts);
-  bands_[1].add(u, counts);
+  if (cues_.question == StrokeQuestion::kRougher) roughness_.feelPush({f_W.y(), f_W.z()}, counts);
   if (!finger.tactile.valid || !finger.tactile.place_L) return;
-  bands_[2].add(*finger.tactile.place_L, counts);
-  bands_[3].add(*finger.tactile.place_L, counts);
+  if (cues_.question == StrokeQuestion::kRougher) roughness_.feelTactor(finger.tactile.place_L->x(), counts);
   if (phase_ == Phase::kStroke) feelTurn(finger.tactile.place_L->x());
 }
 
@@ -126,29 +121,19 @@ void StrokeObserver::feelTurn(double place) {
 }
 
 void StrokeObserver::readInterval() {
-  Reading& reading = readings_[static_cast<std::size_t>(interval_++)];
-  for (std::size_t i = 0; i < bands_.size(); ++i) {
-    const double threshold = i % 2 ? limits_.skin.quick_threshold : limits_.skin.slow_threshold;
-    reading.motions[i] = feltMotion(bands_[i].rms(), threshold, limits_.skin.difference, random_);
-    if (bands_[i].rms() == 0) reading.motions[i].sigma = std::numeric_limits<double>::infinity();  // a parked tactor tells nothing
-  }
+  const auto interval = static_cast<std::size_t>(interval_++);
+  if (cues_.question == StrokeQuestion::kRougher) return roughness_.read(interval, random_);
   const double lag = turns_ > 0 ? lags_ / turns_ : 0;
-  reading.lag = lag + math::hypot(limits_.lag_sigma, limits_.lag_difference * lag) * random_.normal();
+  felt_lags_[interval] = lag + math::hypot(limits_.lag_sigma, limits_.lag_difference * lag) * random_.normal();
 }
 
 int StrokeObserver::compared() const {
-  if (cues_.question == StrokeQuestion::kLater) return readings_[1].lag > readings_[0].lag ? 2 : 1;
-  double most = 0;
-  for (std::size_t i = 0; i < bands_.size(); ++i) {
-    const FeltMotion &a = readings_[0].motions[i], &b = readings_[1].motions[i];
-    const double difference = (b.felt - a.felt) / math::hypot(a.sigma, b.sigma);
-    if (std::abs(difference) > std::abs(most)) most = difference;
-  }
-  return most > 0 ? 2 : 1;
+  if (cues_.question == StrokeQuestion::kRougher) return roughness_.rougher();
+  return felt_lags_[1] > felt_lags_[0] ? 2 : 1;
 }
 
 devices::HandPull StrokeObserver::pullAt(double angle, double height) const {
-  const Vec3 p_W = cues_.centre_W + (cues_.radius + height) * Vec3(math::sin(angle), 0, math::cos(angle));
+  const Vec3 p_W = cues_.centre_W + (cues_.radius + height) * Vec3(0, math::sin(angle), math::cos(angle));
   devices::HandPull pull = body_.hands[0];
   pull.p_D = cues_.q_WD.conjugate() * (p_W - cues_.p_WD);
   return pull;

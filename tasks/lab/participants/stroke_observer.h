@@ -7,8 +7,7 @@
 // the height of its aim over the circle follows the felt push slowly, h' = (push - press) / (k tau), k the hand's stiffness.
 // What it feels of an interval is one reading, drawn once, when the finger is up again:
 //
-//   rougher  four motions of the skin (skin.h): of the push and of the tactor, each in a slow and a quick band, while a stroke is in its
-//            middle. The answer is the interval in which the motion that differs most, beside its noise, was larger (choice).
+//   rougher  one percept of push and tactor (roughness.h), while a stroke is in its middle
 //   later    time from the hand's turn to the tactor's: until the tactor has gone back from its farthest place by what is felt of it; the
 //            mean over the turns.   felt = lag + sigma n,   sigma = sqrt(sigma_t^2 + (c lag)^2)
 //
@@ -21,13 +20,14 @@
 
 #include "pincer/tasks/lab/participants/body.h"
 #include "pincer/tasks/lab/participants/one_finger.h"
-#include "pincer/tasks/lab/participants/skin.h"
+#include "pincer/tasks/lab/participants/roughness.h"
 
 namespace pincer::tasks {
 
 struct StrokeLimits {
   SkinLimits skin;
   SensingLimits common;
+  double tactor_weight = 0.75;                // w, of touch beside force (roughness.h) [-] (choice)
   double lag_sigma = 0.0629;                  // sigma_t [s]: 60 ms / 0.954 (Okamoto et al. 2009)
   double lag_difference = 0.15;               // c, of a short time [-] (choice)
   double sensitivity_spread = 0.2;            // people differ: all noise times exp(spread n), n drawn once per participant (choice)
@@ -44,7 +44,7 @@ struct StrokeCues {
   std::uint64_t seed = 0;  // of everything that varies from trial to trial within the participant
   Quat q_WD = Quat::Identity();
   Vec3 p_WD = Vec3::Zero();      // arm base [m]
-  Vec3 centre_W = Vec3::Zero();  // of the circle on which the fingertip's centre goes, in the plane y = centre_W.y [m]
+  Vec3 centre_W = Vec3::Zero();  // of the circle on which the fingertip's centre goes, in the plane x = centre_W.x [m]
   double radius = 0.12;          // of that circle [m]
   double half_angle = 0.4;       // strokes run between -half_angle and +half_angle from +z [rad]
   int strokes = 4;               // per interval
@@ -62,11 +62,6 @@ class StrokeObserver final : public OneFingerObserver {
 
  private:
   enum class Phase : std::uint8_t { kWait, kLower, kStroke, kRaise, kRead, kAnswer };
-  struct Reading {
-    std::array<FeltMotion, 4> motions;
-    double lag = 0;
-  };
-
   void enter(Phase phase);
   void follow(OneFingerAction& action);
   void feel(const FingerPercept& finger);
@@ -76,14 +71,12 @@ class StrokeObserver final : public OneFingerObserver {
   double strokeTime() const { return 2 * cues_.half_angle * cues_.radius / body_.speed; }
   devices::HandPull pullAt(double angle, double height) const;
 
-  StrokeLimits limits_;
+  StrokeLimits limits_;  // this participant's
   Body body_;
-  double noise_;  // of this participant over the limits' [-]
   StrokeCues cues_;
   Random random_;
-  PushedSkin skin_;
-  std::array<BandPower, 4> bands_;  // push slow, push quick, tactor slow, tactor quick
-  std::array<Reading, 2> readings_;
+  RoughnessSense roughness_;
+  std::array<double, 2> felt_lags_{};  // [s]
 
   Phase phase_ = Phase::kWait;
   double now_ = 0, entered_ = 0;  // [s]

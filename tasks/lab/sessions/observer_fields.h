@@ -50,6 +50,7 @@ template <class Visit>
 void visitFields(const StrokeLimits& l, Visit&& visit) {
   visit("skin", l.skin);
   visit("common", l.common);
+  visit("tactor_weight", l.tactor_weight);
   visit("lag_sigma", l.lag_sigma);
   visit("lag_difference", l.lag_difference);
   visit("sensitivity_spread", l.sensitivity_spread);
