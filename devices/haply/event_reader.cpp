@@ -103,7 +103,26 @@ class NumberSink final : public JsonSink {
   std::optional<double> found;
 };
 
+class IdSink final : public JsonSink {
+ public:
+  bool begin(std::string_view, bool) override { return true; }
+  bool end(std::string_view, bool) override { return true; }
+  bool value(std::string_view path, const JsonScalar& value) override {
+    const auto* text = std::get_if<std::string_view>(&value);
+    const bool named = path == "device_id" || (path.size() > 10 && path.substr(path.size() - 10) == ".device_id");
+    const auto id = text != nullptr && named ? Label::of(*text) : std::nullopt;
+    if (id && found.count < found.ids.size()) found.ids[found.count++] = *id;
+    return true;
+  }
+  DeviceIds found;
+};
+
 }  // namespace
+
+DeviceIds readDeviceIds(std::string_view body) noexcept {
+  IdSink sink;
+  return walkJson(body, sink) ? sink.found : DeviceIds{};
+}
 
 ReadError readEvent(std::string_view text, ServiceEvent& event) noexcept {
   event = ServiceEvent{};

@@ -104,6 +104,13 @@ std::optional<ServiceVersion> readVersion(std::string_view body) noexcept;
 // The one number in an answer of HTTP, bare or in "data".
 std::optional<double> readNumber(std::string_view body) noexcept;
 
+// Ids in the answer to GET /devices: every "device_id" in it that is one, 16 at the most.
+struct DeviceIds {
+  std::size_t count = 0;
+  std::array<Label, kMostDevices> ids;
+};
+DeviceIds readDeviceIds(std::string_view body) noexcept;
+
 // How a force's components are spelled: 3.5's pages say "vector", known clients of 3.1 to 3.4 "values". The service ignores the other one.
 enum class ForceSpelling : std::uint8_t { kVector, kValues };
 

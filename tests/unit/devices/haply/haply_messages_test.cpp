@@ -167,6 +167,14 @@ TEST(HaplyHttp, AnswersAreTakenBareAndInData) {
   EXPECT_FALSE(readNumber(R"({"ok":false,"error":"no"})"));
 }
 
+TEST(HaplyHttp, TellsTheDevicesThatAreThere) {
+  const DeviceIds ids =
+      readDeviceIds(R"({"ok":true,"data":[{"device_id":"049D","type":"inverse3"},{"device_id":5},{"device_id":"1605"}]})");
+  ASSERT_EQ(ids.count, 2u);
+  EXPECT_EQ(ids.ids[1].view(), "1605");
+  EXPECT_EQ(readDeviceIds("[").count, 0u);
+}
+
 // The tree of the same library is the oracle: whatever is accepted is JSON, and its numbers are finite.
 RC_GTEST_PROP(HaplyMessages, OfMutatedBytesAreRefusedOrSound, ()) {
   std::string text = kHaplyInventory;
