@@ -48,7 +48,7 @@ const std::map<std::string, std::vector<std::string>> kRooms = {
     {"contact", {"functions", "io", "mesh", "surface", "curve", "shape"}},
     {"engine", {"motion", "solve", "world"}},
     {"grasp", {"coupling", "tick", "baseline", "passivity", "quality"}},
-    {"devices", {"arm", "cld", "usb", "falcon", "gate", "window"}},
+    {"devices", {"arm", "cld", "usb", "falcon", "haply", "gate", "window", "emulate"}},
     {"tasks", {"run", "lab", "judge", "view", "app"}},
     {"tasks/run", {"process", "measure", "files", "session", "scene", "tick", "servo"}},
     {"tasks/lab", {"participants", "study", "report", "experiments", "findings", "sessions", "sweep"}},
@@ -230,7 +230,7 @@ TEST(House, LibrariesStayInTheirFiles) {
   const std::map<std::string, std::string> home = {{"OpenMesh/", "_openmesh"}, {"LinearMath/", "_bullet"}, {"BulletCollision/", "_bullet"},
                                                    {"sqlite3.h", "_sqlite"},   {"libusb.h", "_libusb"},    {"nlohmann/", ""},
                                                    {"GLFW/", "_glfw"},         {"EGL/", "_egl"},           {"glad/", "_gl"},
-                                                   {"imgui", "_imgui"},        {"png.h", "_png"}};
+                                                   {"imgui", "_imgui"},        {"png.h", "_png"},          {"boost/", "_beast"}};
   for (const auto& [folder, seen] : kMaySee) {
     for (const fs::path& file : sourcesUnder(fs::path(PINCER_SOURCE_DIR) / folder)) {
       for (const std::string& line : linesOf(file)) {

@@ -1,0 +1,199 @@
+// The driver against the emulated service over real sockets: forces come when asked for, and end whatever happens on the wire.
+#include "pincer/devices/haply/haply_host.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <stdexcept>
+#include <thread>
+
+#include "pincer/devices/emulate/haply_server.h"
+#include "pincer/devices/usb/usb_bus.h"
+
+namespace pincer::devices::haply {
+namespace {
+
+using emulate::HaplyFault;
+using emulate::HaplyServer;
+using emulate::HaplyServiceSettings;
+
+// Until it is true, a time that no busy machine needs.
+bool comesTrue(const std::function<bool()>& condition) {
+  for (int i = 0; i < 10000 && !condition(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  return condition();
+}
+
+HaplyHostOptions bothArmsAt(const HaplyServer& server) {
+  HaplyHostOptions options;
+  options.service = *servicePlaceOf(server.place());
+  options.arms = {{.id = "049D", .grip = "1605", .frame = {}}, {.id = "04BA", .grip = "1606", .frame = {}}};
+  return options;
+}
+
+std::string refusalOf(const HaplyServer& server, const HaplyHostOptions& options) {
+  (void)server;
+  try {
+    HaplyHost host(options);
+    host.waitReady(10);
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+// Pushes with both arms as a servo does, until `condition`.
+bool pushUntil(HaplyHost& host, const Vec3& f_D, const std::function<bool()>& condition) {
+  return comesTrue([&] {
+    for (std::size_t i = 0; i < host.arms(); ++i) host.arm(i).commandForce(f_D);
+    return condition();
+  });
+}
+
+void armBoth(HaplyHost& host) {
+  for (std::size_t i = 0; i < host.arms(); ++i) host.arm(i).arm();
+}
+
+TEST(HaplyPort, TakesPlacesOnThisComputerOnly) {
+  EXPECT_EQ(servicePlaceOf("127.0.0.1:10001")->port, 10001);
+  EXPECT_EQ(servicePlaceOf("localhost:5:7")->events_port, 7);
+  for (const char* text :
+       {"", "10001", "192.168.0.3:10001", "localhost:", "localhost:0", "localhost:70000", "localhost:1:", "localhost:1x"})
+    EXPECT_FALSE(servicePlaceOf(text)) << text;
+}
+
+TEST(HaplyHost, MovesAndPushesTwoArms) {
+  HaplyServer server;
+  HaplyHost host(bothArmsAt(server));
+  host.waitReady(10);
+  const ArmSample sample = host.arm(0).sample();
+  ASSERT_TRUE(sample.valid && sample.q_DF && sample.v_DF);
+  EXPECT_LT(sample.p_DF.norm(), 2e-3) << "at its reset place";
+  const double age = 1e-9 * static_cast<double>(usb::monotonicNs()) - sample.time;
+  EXPECT_GT(age, 0);
+  armBoth(host);
+  EXPECT_TRUE(pushUntil(host, Vec3(0, 0, 1), [&] { return server.force(0) > 0.99 && server.force(1) > 0.99; })) << host.complaint();
+  server.with([](emulate::HaplyService& service) {
+    EXPECT_LT((service.plant(0).force_D() - Vec3(0, 0, 1)).norm(), 1e-5) << "in the arm's own frame";
+  });
+  host.arm(0).stop();
+  EXPECT_TRUE(pushUntil(host, Vec3(0, 0, 1), [&] { return server.force(0) == 0; }));
+  EXPECT_TRUE(comesTrue([&] { return server.force(1) == 0; })) << "a force older than 4 ms ends by itself";
+}
+
+TEST(HaplyHost, LeavesAfterAnsweredZerosEvenWhereTheServiceKeepsForcesForEver) {
+  HaplyServiceSettings settings;
+  for (auto& arm : settings.arms) arm.dead_man = emulate::DeadMan::kKeepsForEver;
+  HaplyServer server(settings);
+  {
+    HaplyHost host(bothArmsAt(server));
+    host.waitReady(10);
+    armBoth(host);
+    ASSERT_TRUE(pushUntil(host, Vec3(0, 0, 1), [&] { return server.force(0) > 0.99 && server.force(1) > 0.99; }));
+  }
+  EXPECT_EQ(server.force(0), 0);
+  EXPECT_EQ(server.force(1), 0);
+  EXPECT_TRUE(comesTrue([&] { return server.connections() == 0; }));
+}
+
+// On the wire, while both arms push.
+TEST(HaplyHost, EveryFaultOfTheWireEndsInZeroOrIsHarmless) {
+  for (const HaplyFault fault : {HaplyFault::kPieces, HaplyFault::kFragments, HaplyFault::kPings}) {
+    HaplyServer server;
+    HaplyHost host(bothArmsAt(server));
+    host.waitReady(10);
+    server.setFault(fault);
+    armBoth(host);
+    EXPECT_TRUE(pushUntil(host, Vec3(0, 0, 1), [&] { return server.force(0) > 0.99; })) << nameOf(fault) << host.complaint();
+  }
+  for (const HaplyFault fault :
+       {HaplyFault::kNoUtf8, HaplyFault::kTooLong, HaplyFault::kHugeHeader, HaplyFault::kReset, HaplyFault::kHalfOpen, HaplyFault::kLate,
+        HaplyFault::kNever, HaplyFault::kEventsClosed, HaplyFault::kStall}) {
+    HaplyServer server;
+    server.setDelay(std::chrono::milliseconds(500));
+    HaplyHost host(bothArmsAt(server));
+    host.waitReady(10);
+    armBoth(host);
+    ASSERT_TRUE(pushUntil(host, Vec3(0, 0, 1), [&] { return server.force(0) > 0.99; })) << nameOf(fault) << host.complaint();
+    server.setFault(fault);
+    EXPECT_TRUE(pushUntil(host, Vec3(0, 0, 1), [&] { return !host.arm(0).sample().valid && server.force(0) == 0; })) << nameOf(fault);
+    EXPECT_GT(host.complaint().size(), 40u) << nameOf(fault);
+  }
+}
+
+TEST(HaplyHost, StreamsAgainAfterALossOnlyOnceUnarmed) {
+  HaplyServer server;
+  HaplyHost host(bothArmsAt(server));
+  host.waitReady(10);
+  armBoth(host);
+  server.setFault(HaplyFault::kReset);
+  ASSERT_TRUE(comesTrue([&] { return host.arm(0).state() == DeviceState::kFaulted; }));
+  server.setFault(HaplyFault::kNone);
+  std::this_thread::sleep_for(std::chrono::milliseconds(600));
+  EXPECT_EQ(host.arm(0).state(), DeviceState::kFaulted) << "armed: somebody may be in it";
+  for (std::size_t i = 0; i < 2; ++i) host.arm(i).stop();
+  ASSERT_TRUE(comesTrue([&] { return host.arm(0).state() == DeviceState::kReady && host.arm(1).state() == DeviceState::kReady; }));
+  EXPECT_TRUE(host.arm(0).sample().valid);
+  armBoth(host);
+  EXPECT_TRUE(pushUntil(host, Vec3(0, 0, 1), [&] { return server.force(0) > 0.99; })) << host.complaint();
+}
+
+TEST(HaplyHost, NamesWhyAServiceIsRefused) {
+  HaplyHostOptions nobody;
+  std::string scaled, old, other;
+  {
+    HaplyServer server({.force_scale = 0.5});
+    nobody = bothArmsAt(server);
+    scaled = refusalOf(server, nobody);
+    HaplyServer before({.minor = 0});
+    old = refusalOf(before, bothArmsAt(before));
+    HaplyServer one;
+    HaplyHostOptions third = bothArmsAt(one);
+    third.arms[0].id = "04XX";
+    other = refusalOf(one, third);
+    EXPECT_NE(refusalOf(server, nobody).find("0.5"), std::string::npos);
+    EXPECT_NE(refusalOf(one, nobody), "") << "no service of that scale";
+  }
+  EXPECT_NE(scaled.find("force_scale"), std::string::npos) << scaled;
+  EXPECT_NE(old.find("3.0"), std::string::npos) << old;
+  EXPECT_NE(other.find("04XX"), std::string::npos) << other;
+  try {
+    HaplyHost host(nobody);
+    ADD_FAILURE() << "nobody is there";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("systemctl start"), std::string::npos) << error.what();
+  }
+}
+
+// Descriptors and threads: each connection gives back what it took.
+TEST(HaplyHost, LeavesNothingBehindWhenItEnds) {
+  HaplyServer server;
+  const auto descriptors = [] {
+    return std::distance(std::filesystem::directory_iterator("/proc/self/fd"), std::filesystem::directory_iterator{});
+  };
+  std::ptrdiff_t before = 0;
+  for (int i = 0; i < 5; ++i) {
+    { HaplyHost host(bothArmsAt(server)); }
+    ASSERT_TRUE(comesTrue([&] { return server.connections() == 0; }));
+    if (i == 0) before = descriptors();
+  }
+  EXPECT_EQ(descriptors(), before);
+}
+
+TEST(HaplyMap, IsTheEmulatorsOwnMapping) {
+  for (const double turn : {0.0, 0.4, -1.5707963267948966, 3.0}) {
+    emulate::HaplyPlant plant({.centre_H = Vec3(0.01, -0.2, 0.1), .turn = turn});
+    const HaplyMap map({.centre_H = Vec3(0.01, -0.2, 0.1), .mount_turn = turn, .q_align = Quat::Identity()});
+    EXPECT_LT((map.place(plant.place_H()) - plant.arm().sample().p_DF).norm(), 1e-7);
+    plant.command(map.force(Vec3(0.3, -0.5, 0.7)));
+    EXPECT_LT((plant.force_D() - Vec3(0.3, -0.5, 0.7)).norm(), 1e-9);
+    const Quat grip(0.5, 0.5, -0.5, 0.5);
+    plant.arm().setGimbal(grip);
+    plant.advance(1e-3);
+    EXPECT_LT(map.turn(plant.grip_H()).angularDistance(grip), 1e-7);
+  }
+}
+
+}  // namespace
+}  // namespace pincer::devices::haply
