@@ -40,6 +40,15 @@ contact::MeshFinding crossingFinding(const contact::TriangleMesh& mesh, const co
               found.is_all ? "" : "at least ", found.pairs, found.first + 1, p.x(), p.y(), p.z(), found.other + 1)};
 }
 
+constexpr int kManyTriangles = 20'000;  // beyond these the patches that a finger needs leave the processor's cache
+
+contact::MeshFinding manyTrianglesFinding(int triangles) {
+  return {"many-triangles", false, triangles,
+          fmt::format("{} triangles are more than a finger feels: ticks take longer, now and then more than 1 ms. `pincer mesh simplify` "
+                      "makes them fewer and keeps the surface.",
+                      triangles)};
+}
+
 contact::MeshFinding badFaceFinding(const FaultyMesh& read) {
   return {"bad-faces", true, read.left_out,
           fmt::format("{} can't be used, the first: {} `pincer mesh convert --repair` leaves them out; check the result for the holes that "
@@ -62,6 +71,7 @@ MeshCheck checkMesh(const FaultyMesh& read, double metres_per_unit, double finge
   if (crossings.pairs > 0) check.report.findings.push_back(crossingFinding(mesh, crossings));
   check.has_surface = hasSmoothSurface(check.report);
   if (!check.has_surface) return check;
+  if (check.report.triangles > kManyTriangles) check.report.findings.push_back(manyTrianglesFinding(check.report.triangles));
   const auto surface = contact::SmoothMesh::build(mesh);
   check.folded_triangles = static_cast<int>(surface->foldedTriangles().size());
   check.concave_radius = surface->tightestConcaveRadius();

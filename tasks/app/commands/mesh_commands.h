@@ -19,6 +19,8 @@ void addMeshInfo(CLI::App& mesh, int& exit_code);
 void addMeshCheck(CLI::App& mesh, int& exit_code);
 void addMeshConvert(CLI::App& mesh, int& exit_code);
 void addMeshRoundEdges(CLI::App& mesh, int& exit_code);
+void addMeshSimplify(CLI::App& mesh, int& exit_code);
+void addMeshSubdivide(CLI::App& mesh, int& exit_code);
 
 constexpr double kMetresPerMillimetre = 1e-3;
 constexpr double kTypicalFinger = 8;  // radius of a fingertip [mm]

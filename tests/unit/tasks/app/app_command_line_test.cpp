@@ -46,6 +46,8 @@ TEST(CommandLine, HelpsEverywhereWithAnExample) {
                                                                                        {"mesh", "check"},
                                                                                        {"mesh", "convert"},
                                                                                        {"mesh", "round-edges"},
+                                                                                       {"mesh", "simplify"},
+                                                                                       {"mesh", "subdivide"},
                                                                                        {"sweep"}}) {
     std::vector<std::string> arguments = command;
     arguments.push_back("--help");
