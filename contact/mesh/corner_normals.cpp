@@ -45,9 +45,7 @@ class CornerNormalFinder {
   const Vec3& corner(std::size_t t, std::size_t i) const { return mesh_.vertices[static_cast<std::size_t>(mesh_.triangles[t][i % 3])]; }
 
   const Vec3* fileNormal(std::size_t t, std::size_t i) const {
-    if (!use_file_normals_) return nullptr;
-    const std::int32_t n = mesh_.triangle_normals[t][i % 3];
-    return n < 0 ? nullptr : &mesh_.normals[static_cast<std::size_t>(n)];
+    return use_file_normals_ ? usableFileNormal(mesh_, t, i, facet_normals_[t]) : nullptr;
   }
 
   bool isSharp(std::size_t t, std::size_t i, double crease_angle) const {
@@ -205,6 +203,13 @@ class CornerNormalFinder {
 };
 
 }  // namespace
+
+const Vec3* usableFileNormal(const TriangleMesh& mesh, std::size_t t, std::size_t i, const Vec3& facet) {
+  const std::int32_t n = mesh.triangle_normals[t][i % 3];
+  if (n < 0) return nullptr;
+  const Vec3& normal = mesh.normals[static_cast<std::size_t>(n)];
+  return normal.dot(facet) < 0 ? nullptr : &normal;
+}
 
 CornerNormals findCornerNormals(const TriangleMesh& mesh, const Neighbours& neighbours, double crease_angle, bool use_file_normals) {
   PINCER_ASSERT(neighbours.size() == mesh.triangles.size());

@@ -16,11 +16,10 @@ using Triangle = std::array<std::int32_t, 3>;
 
 const Vec3& vertex(const TriangleMesh& mesh, std::int32_t i) { return mesh.vertices[static_cast<std::size_t>(i)]; }
 
-// The file's normal at corner i of a triangle; null where it has none.
-const Vec3* fileNormal(const TriangleMesh& mesh, std::int32_t t, int i) {
+const Vec3* fileNormal(const TriangleMesh& mesh, std::int32_t triangle, int i) {
   if (mesh.triangle_normals.empty()) return nullptr;
-  const std::int32_t n = mesh.triangle_normals[static_cast<std::size_t>(t)][static_cast<std::size_t>(i % 3)];
-  return n < 0 ? nullptr : &mesh.normals[static_cast<std::size_t>(n)];
+  const auto t = static_cast<std::size_t>(triangle);
+  return usableFileNormal(mesh, t, static_cast<std::size_t>(i), areaVector(mesh, mesh.triangles[t]));
 }
 
 bool inOneGroup(const TriangleMesh& mesh, const HalfEdge& h, const HalfEdge& k) {
@@ -161,9 +160,10 @@ MeshReport inspect(const TriangleMesh& mesh, const InspectOptions& options) {
   const double size = (report.box_max - report.box_min).maxCoeff();
   for (const MaybeFinding& finding :
        {boundaryFinding(mesh, topology), branchingFinding(mesh, topology), reversedFinding(mesh, topology), touchingFinding(mesh, topology),
-        flippedPieceFinding(mesh, pieces), zeroAreaFinding(mesh, quality.zero_area), duplicateTriangleFinding(mesh, quality.duplicate),
-        sizeFinding(size, options.metres_per_unit), needleFinding(mesh, quality.needle), duplicateVertexFinding(mesh, first),
-        unusedVertexFinding(mesh, used), severalPiecesFinding(mesh, pieces), nestedPieceFinding(mesh, pieces)}) {
+        flippedPieceFinding(mesh, pieces), flatPieceFinding(mesh, pieces), zeroAreaFinding(mesh, quality.zero_area),
+        duplicateTriangleFinding(mesh, quality.duplicate), sizeFinding(size, options.metres_per_unit), needleFinding(mesh, quality.needle),
+        opposingNormalFinding(mesh, findOpposingNormals(mesh)), duplicateVertexFinding(mesh, first), unusedVertexFinding(mesh, used),
+        severalPiecesFinding(mesh, pieces), nestedPieceFinding(mesh, pieces)}) {
     if (finding) report.findings.push_back(*finding);
   }
   return report;
