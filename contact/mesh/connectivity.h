@@ -41,9 +41,12 @@ struct CornerNormals {
 // Requires a manifold mesh (requireManifold); throws std::logic_error if it isn't.
 Neighbours findNeighbours(const TriangleMesh& mesh);
 
-// The file's normal at corner i (mod 3) of triangle t; null where it has none, or where it points to the back of the triangle: between two
-// normals that oppose each other no shading exists. `facet` is along the triangle's own normal, of any length.
-const Vec3* usableFileNormal(const TriangleMesh& mesh, std::size_t t, std::size_t i, const Vec3& facet);
+// Corners 3 t + i whose normal of the file points to the back of their triangle, and also to that of all triangles at the vertex with this
+// normal: a sliver alone may lie askew. Between normals that oppose each other no shading exists. Empty where there is none.
+std::vector<bool> findOpposingCorners(const TriangleMesh& mesh);
+
+// The file's normal at corner i (mod 3) of triangle t; null where it has none or where it opposes the triangle, as `opposing` says.
+const Vec3* usableFileNormal(const TriangleMesh& mesh, std::size_t t, std::size_t i, const std::vector<bool>& opposing);
 
 // Requires 0 < crease_angle <= pi [rad].
 CornerNormals findCornerNormals(const TriangleMesh& mesh, const Neighbours& neighbours, double crease_angle, bool use_file_normals);

@@ -187,7 +187,7 @@ MaybeFinding duplicateTriangleFinding(const TriangleMesh& mesh, const Occurrence
 MaybeFinding opposingNormalFinding(const TriangleMesh& mesh, const Occurrences<std::int32_t>& triangles) {
   if (triangles.count == 0) return {};
   return MeshFinding{"opposing-normals", false, triangles.count,
-                     fmt::format("the file's normals point to the back of {}, the first is {}. Such normals don't count; the facets decide "
+                     fmt::format("the file's normals point to the back of {}, the first is {}. Such normals don't count, the facets decide "
                                  "there. `pincer mesh convert --repair` drops them; or have your program compute the normals again.",
                                  counted(triangles.count, "triangle"), trianglePlace(mesh, triangles.first))};
 }

@@ -16,10 +16,9 @@ using Triangle = std::array<std::int32_t, 3>;
 
 const Vec3& vertex(const TriangleMesh& mesh, std::int32_t i) { return mesh.vertices[static_cast<std::size_t>(i)]; }
 
-const Vec3* fileNormal(const TriangleMesh& mesh, std::int32_t triangle, int i) {
+const Vec3* fileNormal(const TriangleMesh& mesh, const std::vector<bool>& opposing, std::int32_t triangle, int i) {
   if (mesh.triangle_normals.empty()) return nullptr;
-  const auto t = static_cast<std::size_t>(triangle);
-  return usableFileNormal(mesh, t, static_cast<std::size_t>(i), areaVector(mesh, mesh.triangles[t]));
+  return usableFileNormal(mesh, static_cast<std::size_t>(triangle), static_cast<std::size_t>(i), opposing);
 }
 
 bool inOneGroup(const TriangleMesh& mesh, const HalfEdge& h, const HalfEdge& k) {
@@ -28,10 +27,11 @@ bool inOneGroup(const TriangleMesh& mesh, const HalfEdge& h, const HalfEdge& k) 
 }
 
 // As findCornerNormals (connectivity.h) decides it, for meshes that may branch elsewhere.
-bool isCrease(const TriangleMesh& mesh, std::span<const HalfEdge> edge, double crease_angle) {
+bool isCrease(const TriangleMesh& mesh, const std::vector<bool>& opposing, std::span<const HalfEdge> edge, double crease_angle) {
   const HalfEdge &h = edge[0], &k = edge[1];
-  const Vec3 *a0 = fileNormal(mesh, h.triangle, h.side), *a1 = fileNormal(mesh, h.triangle, h.side + 1);
-  const Vec3 *b0 = fileNormal(mesh, k.triangle, k.side + 1), *b1 = fileNormal(mesh, k.triangle, k.side);
+  const auto normalAt = [&](std::int32_t triangle, int i) { return fileNormal(mesh, opposing, triangle, i); };
+  const Vec3 *a0 = normalAt(h.triangle, h.side), *a1 = normalAt(h.triangle, h.side + 1);
+  const Vec3 *b0 = normalAt(k.triangle, k.side + 1), *b1 = normalAt(k.triangle, k.side);
   if (a0 && a1 && b0 && b1) return angleBetween(*a0, *b0) > kSameNormal || angleBetween(*a1, *b1) > kSameNormal;
   const auto area = [&](const HalfEdge& e) { return areaVector(mesh, mesh.triangles[static_cast<std::size_t>(e.triangle)]); };
   const double angle = angleBetween(area(h), area(k));
@@ -40,8 +40,9 @@ bool isCrease(const TriangleMesh& mesh, std::span<const HalfEdge> edge, double c
 
 void countCreases(const TriangleMesh& mesh, const std::vector<HalfEdge>& half_edges, double crease_angle, MeshReport& report) {
   std::vector<bool> creased(mesh.vertices.size());
+  const std::vector<bool> opposing = findOpposingCorners(mesh);
   forEachEdge(half_edges, [&](auto edge) {
-    if (!isRegular(edge) || !isCrease(mesh, edge, crease_angle)) return;
+    if (!isRegular(edge) || !isCrease(mesh, opposing, edge, crease_angle)) return;
     ++report.crease_edges;
     creased[static_cast<std::size_t>(edge[0].low)] = creased[static_cast<std::size_t>(edge[0].high)] = true;
   });

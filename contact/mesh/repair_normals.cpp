@@ -1,8 +1,7 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "pincer/contact/io/counted.h"
+#include "pincer/contact/mesh/connectivity.h"
 #include "pincer/contact/mesh/mesh_findings.h"
 #include "pincer/contact/mesh/mesh_topology.h"
 #include "pincer/contact/mesh/repair_steps.h"
@@ -11,19 +10,15 @@ namespace pincer::contact {
 
 namespace {
 
-bool hasOpposingNormal(const TriangleMesh& mesh, std::size_t t) {
-  const Vec3 facet = areaVector(mesh, mesh.triangles[t]);
-  const auto opposes = [&](std::int32_t n) { return n >= 0 && mesh.normals[static_cast<std::size_t>(n)].dot(facet) < 0; };
-  const auto& normals = mesh.triangle_normals[t];
-  return std::any_of(normals.begin(), normals.end(), opposes);
-}
+bool opposes(const std::vector<bool>& corners, std::size_t t) { return corners[3 * t] || corners[3 * t + 1] || corners[3 * t + 2]; }
 
 }  // namespace
 
 Occurrences<std::int32_t> findOpposingNormals(const TriangleMesh& mesh) {
   Occurrences<std::int32_t> opposing;
-  for (std::size_t t = 0; t < mesh.triangle_normals.size(); ++t) {
-    if (hasOpposingNormal(mesh, t)) opposing.add(static_cast<std::int32_t>(t));
+  const std::vector<bool> corners = findOpposingCorners(mesh);
+  for (std::size_t t = 0; t < corners.size() / 3; ++t) {
+    if (opposes(corners, t)) opposing.add(static_cast<std::int32_t>(t));
   }
   return opposing;
 }
@@ -31,10 +26,11 @@ Occurrences<std::int32_t> findOpposingNormals(const TriangleMesh& mesh) {
 MaybeChange dropOpposingNormals(TriangleMesh& mesh) {
   const Occurrences<std::int32_t> opposing = findOpposingNormals(mesh);
   if (opposing.count == 0) return {};
+  const std::vector<bool> corners = findOpposingCorners(mesh);
   bool any_left = false;
   for (std::size_t t = 0; t < mesh.triangle_normals.size(); ++t) {
     auto& normals = mesh.triangle_normals[t];
-    if (hasOpposingNormal(mesh, t)) normals = {-1, -1, -1};  // OBJ knows no triangle with normals at some of its corners
+    if (opposes(corners, t)) normals = {-1, -1, -1};  // OBJ knows no triangle with normals at some of its corners
     any_left = any_left || normals[0] >= 0 || normals[1] >= 0 || normals[2] >= 0;
   }
   if (!any_left) {

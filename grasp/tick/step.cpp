@@ -38,9 +38,7 @@ void setInputs(const GraspModel& model, const GraspState& state, std::span<const
   }
 }
 
-namespace {
-
-// The contacts of one finger: they follow each other, sorted by id. Of thousands of fingers each would else look at all contacts.
+// Of thousands of fingers each would else look at all contacts.
 std::span<const engine::Contact> contactsOf(const GraspScratch& scratch, int finger) {
   const std::vector<engine::Contact>& all = scratch.world.contacts;
   const auto less = [](const engine::Contact& c, std::uint64_t id) { return c.id < id; };
@@ -49,6 +47,8 @@ std::span<const engine::Contact> contactsOf(const GraspScratch& scratch, int fin
   const auto is_other = [&](const engine::Contact& c) { return c.a.kind != engine::SideKind::kPoint || c.a.index != finger; };
   return {first, std::find_if(first, all.end(), is_other)};
 }
+
+namespace {
 
 // Angular impulse about the normal at the mean place that the contacts' forces make by being apart.
 double momentOfPoints(const GraspScratch& scratch, int finger, const FingerReport& report) {
@@ -134,6 +134,7 @@ void reportFinger(const GraspModel& model, const GraspState& state, int finger, 
   report.f_user_W = report.f_contact_W + scratch.inputs[finger].f_W;
   const double mass = model.fingers[finger].coupling.mass;
   if (mass > 0) report.f_user_W -= mass / tick * (state.world.points[finger].v_W - point.v_tick_W);
+  mapPressure(model, finger, scratch);
 }
 
 void rememberFinger(const GraspModel& model, const FingerInput& input, int finger, GraspState& state, GraspScratch& scratch) {
@@ -184,7 +185,13 @@ GraspScratch::GraspScratch(const GraspModel& model)
       nearest_n_W(model.fingers.size()),
       nearest_d_W(model.fingers.size()),
       fingers(model.fingers.size()),
-      orientations(model.fingers.size()) {}
+      orientations(model.fingers.size()),
+      taxels(model.fingers.size()) {
+  for (std::size_t i = 0; i < taxels.size(); ++i) {
+    const PressureGrid& grid = model.fingers[i].taxels;
+    taxels[i].resize(static_cast<std::size_t>(grid.rows * grid.columns));
+  }
+}
 
 void DeleteScratch::operator()(GraspScratch* scratch) const { delete scratch; }
 ScratchHandle makeScratch(const GraspModel& model) { return ScratchHandle(new GraspScratch(model)); }
