@@ -26,6 +26,20 @@ struct KernelTraits : OpenMesh::DefaultTraits {
 };
 using Kernel = OpenMesh::TriMesh_ArrayKernelT<KernelTraits>;
 
+}  // namespace
+}  // namespace pincer::contact
+
+// Virtual, so it is there although nobody asks for it, and it calls the C library's cosine, which other processors round otherwise.
+template <>
+inline bool OpenMesh::PolyMeshT<OpenMesh::AttribKernelT<OpenMesh::FinalMeshItemsT<pincer::contact::KernelTraits, true>,
+                                                        OpenMesh::TriConnectivity>>::is_estimated_feature_edge(HalfedgeHandle,
+                                                                                                               Scalar) const {
+  return false;
+}
+
+namespace pincer::contact {
+namespace {
+
 std::size_t indexOf(const OpenMesh::BaseHandle& handle) { return static_cast<std::size_t>(handle.idx()); }
 
 // Cross product of two sides: twice the area, along the normal.
