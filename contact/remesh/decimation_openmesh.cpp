@@ -29,7 +29,7 @@ using Kernel = OpenMesh::TriMesh_ArrayKernelT<KernelTraits>;
 }  // namespace
 }  // namespace pincer::contact
 
-// Virtual, so it is there although nobody asks for it, and it calls the C library's cosine, which other processors round otherwise.
+// Compiled with the mesh although nobody asks for it; OpenMesh's own calls the C library's cosine, which other processors round otherwise.
 template <>
 inline bool OpenMesh::PolyMeshT<OpenMesh::AttribKernelT<OpenMesh::FinalMeshItemsT<pincer::contact::KernelTraits, true>,
                                                         OpenMesh::TriConnectivity>>::is_estimated_feature_edge(HalfedgeHandle,
