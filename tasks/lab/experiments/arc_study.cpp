@@ -64,6 +64,12 @@ std::shared_ptr<const contact::Curve> sharedCurve(const contact::Polyline& polyl
   return std::make_shared<const contact::Curve>(polyline, variant);
 }
 
+StrokeQuestion questionOf(ArcQuantity quantity, const ArcCondition& condition) {
+  if (quantity == ArcQuantity::kTurn) return StrokeQuestion::kRougher;
+  if (quantity == ArcQuantity::kBacklash) return StrokeQuestion::kLooser;
+  return condition.travel_share < 1 ? StrokeQuestion::kOnset : StrokeQuestion::kLater;
+}
+
 // What a condition's levels may be.
 void validate(const ArcStudy& study, std::size_t index) {
   const ArcCondition& c = study.conditions[index];
@@ -118,7 +124,7 @@ ArcStudy delayStudy() {
   study.quantity = ArcQuantity::kDelay;
   const auto smooth = SurfaceVariant::smooth;
   study.conditions = {{"whole", "whole travel", smooth, smooth, false, 1, delayRule(), 0.061},
-                      {"front-end", "tactor held at two thirds of its travel", smooth, smooth, false, 2. / 3, delayRule(), 0.132}};
+                      {"front-end", "tactor frozen after two thirds of a sweep", smooth, smooth, false, 2. / 3, delayRule(), 0.132}};
   return study;
 }
 
@@ -162,7 +168,7 @@ std::optional<ResponseRecord> ArcExperiment::present(const StudyTrial& trial, St
   const int comparison = 1 + static_cast<int>(Random(seedFor(trial.seed, kWhichInterval)).below(2));
   StrokeObserver observer(trial.person_seed);
   observer.begin(cuesOf(trial));
-  ArcTrial cycle(setupOf(trial, comparison), observer, sink);
+  ArcTrial cycle(setupOf(trial, comparison, observer.roll()), observer, sink);
   const ServoReport report = runServo(servo_, cycle, interrupted);
   served.add(report);
   if (report.interrupted) return std::nullopt;
@@ -197,16 +203,19 @@ StrokeCues ArcExperiment::cuesOf(const StudyTrial& trial) const {
   cues.p_WD = X_WD.p;
   cues.half_angle = study_.tactor_reach / study_.finger_radius;
   cues.strokes = study_.strokes;
-  cues.question = study_.quantity == ArcQuantity::kTurn ? StrokeQuestion::kRougher : StrokeQuestion::kLater;
+  cues.tactor_gain = study_.finger_radius / cues.radius;
+  cues.rolls = study_.quantity != ArcQuantity::kTurn && !conditionOf(trial).edge;
+  cues.question = questionOf(study_.quantity, conditionOf(trial));
   return cues;
 }
 
-ArcTrialSetup ArcExperiment::setupOf(const StudyTrial& trial, int comparison) const {
+ArcTrialSetup ArcExperiment::setupOf(const StudyTrial& trial, int comparison, double roll) const {
   const ArcCondition& condition = conditionOf(trial);
   ArcTrialSetup setup;
   setup.finger_radius = study_.finger_radius;
   setup.path_radius = pathRadius(condition);
-  setup.start_angle = -study_.tactor_reach / study_.finger_radius;
+  setup.start_angle = -study_.tactor_reach / study_.finger_radius / (1 + roll);
+  setup.freeze_share = condition.travel_share;
   setup.stiffness = study_.stiffness;
   for (int i = 1; i <= 2; ++i) setup.intervals.push_back(intervalOf(condition, i == comparison ? trial.stimulus.level : 0));
   setup.trial = trial.trial;
@@ -225,7 +234,7 @@ ArcInterval ArcExperiment::intervalOf(const ArcCondition& condition, double leve
   interval.shown.force = shown(condition.force);
   if (condition.tactile && !study_.frozen_tactor)
     interval.shown.tactile = *condition.tactile == condition.force ? interval.shown.force : shown(*condition.tactile);
-  interval.shown.largest_place = condition.travel_share * study_.tactor_reach;
+  interval.shown.largest_place = study_.tactor_reach;
   if (study_.quantity == ArcQuantity::kBacklash) interval.transmission.backlash = level;
   if (study_.quantity == ArcQuantity::kDelay) interval.transmission.delay = static_cast<int>(std::lround(1000 * level));
   return interval;

@@ -18,7 +18,9 @@
 //   - the exact arc is the 2D algorithm on a polygon of a quarter of a degree: smooth, 0.24 um off the circle; polygons' vertices lie on it;
 //   - the 2-degree edge is a blade of 2 degrees, its tip rounded with a radius of 0.5 mm: the finger goes round it, so that the tactor moves as
 //     fast as the finger;
-//   - "front end": the place shown is held at two thirds of the tactor's travel, so that its end, where finger and tactor stop, isn't felt;
+//   - "front end": a sweep begins from rest on one side; where the tactor has come two thirds of its travel from there it freezes until the finger is
+//     10 mm up, so that the onset is felt and the end never;
+//   - in the two on the base cylinder the finger may roll, as people do; on the edge and in smoothness it doesn't;
 //   - staircases start well above the published thresholds; smoothness takes steps by ratios of the angle.
 #pragma once
 #include <memory>
@@ -35,7 +37,7 @@ struct ArcCondition {
   contact::SurfaceVariant force = contact::SurfaceVariant::smooth;
   std::optional<contact::SurfaceVariant> tactile = contact::SurfaceVariant::smooth;  // absent: the tactor is parked
   bool edge = false;                                                                 // the blade in place of the arc
-  double travel_share = 1;                                                           // of the tactor's travel that is shown [-]
+  double travel_share = 1;  // of a sweep's travel after which the tactor freezes [-]
   StaircaseRule staircase;
   double published = 0;  // threshold, beside which ours is shown [segments, m or s]; NaN if there is none
   bool pilot = false;    // done by everybody, after the others
@@ -79,7 +81,7 @@ class ArcExperiment final : public Experiment {
   const ArcCondition& conditionOf(const StudyTrial& trial) const;
   double pathRadius(const ArcCondition& condition) const;
   StrokeCues cuesOf(const StudyTrial& trial) const;
-  ArcTrialSetup setupOf(const StudyTrial& trial, int comparison) const;
+  ArcTrialSetup setupOf(const StudyTrial& trial, int comparison, double roll) const;
   ArcInterval intervalOf(const ArcCondition& condition, double level) const;
   contact::Polyline blade() const;
   double sweep() const { return 2 * (study_.tactor_reach / study_.finger_radius + kBeyond); }

@@ -1,5 +1,6 @@
 #include "pincer/tasks/lab/findings/claim_measures.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace pincer::tasks {
@@ -32,6 +33,37 @@ void addSpeeds(const StudyCondition& condition, const std::vector<ResponseRecord
   }
 }
 
+struct MeanOf {
+  double sum = 0;
+  int n = 0;
+  void add(double x) { sum += x, ++n; }
+  double mean() const { return n > 0 ? kMillimetresPerMetre * sum / n : std::nan(""); }
+};
+
+void addMatches(const std::vector<ResponseRecord>& responses, StudyMeasures& measures) {
+  struct Person {
+    MeanOf all, inner, outer, inward;
+  };
+  std::map<std::int64_t, Person> people;
+  double outermost = 0;
+  for (const ResponseRecord& r : responses) outermost = std::max(outermost, std::abs(r.level));
+  for (const ResponseRecord& r : responses) {
+    const double error = r.answer_value - r.level;
+    if (r.outcome != "answered" || !std::isfinite(error)) continue;
+    Person& person = people[r.participant];
+    const bool outer = std::abs(r.level) > outermost - 1e-9;
+    person.all.add(std::abs(error));
+    (outer ? person.outer : person.inner).add(std::abs(error));
+    if (outer) person.inward.add(r.level > 0 ? -error : error);
+  }
+  for (const auto& [number, person] : people) {
+    measures.people["error"].push_back(person.all.mean());
+    measures.people["error:inner"].push_back(person.inner.mean());
+    measures.people["error:outer"].push_back(person.outer.mean());
+    measures.people["inward:outer"].push_back(person.inward.mean());
+  }
+}
+
 }  // namespace
 
 const std::vector<double>& StudyMeasures::of(const std::string& measure) const {
@@ -47,6 +79,7 @@ StudyMeasures measuresOf(const StudySummary& summary, const std::vector<Response
     measures.unsettled[c.name] = isUnsettled(c);
     addSpeeds(c, responses, measures);
   }
+  if (summary.info.task == "repeated-localisation") addMatches(responses, measures);
   const std::vector<double>&delays = measures.of("whole"), &speeds = measures.of("tactor:whole");
   std::vector<double> errors;
   for (std::size_t i = 0; i < delays.size(); ++i) errors.push_back(1e-3 * delays[i] * speeds[i]);

@@ -3,6 +3,8 @@
 //   NAME                 threshold of the condition NAME [segments, mm, ms]
 //   finger:NAME          mean speed of the finger in it [mm/s];   tactor:NAME  of the tactor;   finger/tactor:NAME  their ratio
 //   place-error          of delays: tactor speed times threshold, over the whole travel [mm]
+//   error                of matched places, mean absolute [mm];   error:inner, error:outer  at the inner and the two outermost places
+//   inward:outer         signed error towards the pad's middle at the two outermost places [mm]
 //
 // Who has no value has NaN; people stand in the same order everywhere.
 #pragma once

@@ -9,6 +9,9 @@
 namespace pincer::tasks {
 namespace {
 
+// Of a rotation about the x axis.
+double pitchOf(const Quat& q_WF) { return 2 * math::atan2(q_WF.x(), q_WF.w()); }
+
 // A sample that can't be used leaves the finger where it was; the gate trips on it.
 void locatePlanarFinger(const PlanarTickModel& model, PlanarTickState& state, const devices::ArmSample& sample) {
   if (!sample.valid || !devices::isFinite(sample)) return;
@@ -19,6 +22,7 @@ void locatePlanarFinger(const PlanarTickModel& model, PlanarTickState& state, co
     state.v_WF += share * ((p_WF - state.p_WF) / dt - state.v_WF);
   }
   state.p_WF = p_WF;
+  state.pitch = sample.q_DF ? pitchOf(model.X_WD.q * *sample.q_DF) : 0;
   state.sample_time = sample.time;
   state.seen = true;
 }
@@ -28,7 +32,7 @@ devices::TactileCommand tactorPlace(const PlanarTickModel& model, const PlanarSt
   if (!stimulus.tactile) return {true, Vec2::Zero()};
   const bool same = stimulus.tactile == stimulus.force;
   const double angle = same ? felt_angle : stimulus.tactile->queryCircle(p_BC, model.finger_radius, state.tactile_tracker).finger_angle;
-  return {false, {std::clamp(model.finger_radius * angle, -stimulus.largest_place, stimulus.largest_place), 0}};
+  return {false, {std::clamp(model.finger_radius * (angle - state.pitch), -stimulus.largest_place, stimulus.largest_place), 0}};
 }
 
 Vec3 gatedPlanarForce(const PlanarTickModel& model, PlanarTickState& state, const devices::ArmSample& sample, const PlanarTickOutput& out,

@@ -1,7 +1,7 @@
 // planar_tick: the tick of the experiments in the plane: one round fingertip on a curve. A pure function, as tasks/run/tick/tick.h.
 //
 //   arm's sample -> p_BC -> contact with the force curve -> f_W = k max(0, -phi) n -> last gate -> force for the arm
-//                        -> contact with the tactile curve -> place s = r a, |s| <= largest place -> tactor
+//                        -> contact with the tactile curve -> place s = r (a - pitch), |s| <= largest place -> tactor
 //
 //   B    the plane x = 0 of W along the finger, (y, z), its origin the curve's;  C  the fingertip's centre;  r  its radius [m];  k  stiffness [N/m]
 //   phi  gap [m];  n  outward normal;  a  angle of the contact on the fingertip [rad];  s  place on the pad [m of arc, distal positive]
@@ -36,6 +36,7 @@ struct PlanarTickModel {
 struct PlanarTickState {
   bool seen = false;  // a valid sample has come
   Vec3 p_WF = Vec3::Zero(), v_WF = Vec3::Zero();
+  double pitch = 0;  // of the finger about W's x axis, tip up, by the gimbal [rad]; 0 where the arm tells none
   double sample_time = 0;
   contact::CurveTracker force_tracker, tactile_tracker;
   devices::GateState gate;

@@ -107,7 +107,7 @@ TEST(Study, ABladeIsAsSharpAsItsAngleSays) {
   EXPECT_GT(answers[0].contact_share, 0.2);  // strokes of 16 mm take less time than lowering and reading
 }
 
-TEST(Study, PlacesAreShownWhereTheyAreNamed) {
+TEST(Study, PlacesAreFoundAgain) {
   LocalisationStudy study;
   study.participants = 1;
   study.repetitions = 2;
