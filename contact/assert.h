@@ -4,7 +4,7 @@
 //   PINCER_DEMAND(condition, message)  what the calling program must guarantee, at the API: sizes of spans, indices, order of calls
 //
 // Either ends the program with one sentence on stderr and abort(): an error in the program can't be handled by it, and a force worked out from
-// wrong memory must not reach a hand. An arm to which no more commands come lets go by itself (docs/devices.md).
+// wrong memory must not reach a hand. An arm to which no more commands come lets go by itself (docs/devices/setup.md).
 #pragma once
 
 namespace pincer {

@@ -66,6 +66,21 @@ std::string replaced(std::string text, std::string_view old, std::string_view wi
 
 std::string_view nameOf(HaplyFault fault) { return kNames[static_cast<std::size_t>(fault)]; }
 
+bool isHarmless(HaplyFault fault) {
+  switch (fault) {
+    case HaplyFault::kNone:
+    case HaplyFault::kUnknownKey:
+    case HaplyFault::kGripAsleep:
+    case HaplyFault::kGripZero:
+    case HaplyFault::kPieces:
+    case HaplyFault::kFragments:
+    case HaplyFault::kPings:
+      return true;
+    default:
+      return false;
+  }
+}
+
 std::string spoilt(HaplyFault fault, std::string text) {
   switch (fault) {
     case HaplyFault::kNoJson:

@@ -60,6 +60,8 @@ enum class HaplyFault : std::uint8_t {
 
 inline constexpr auto kHaplyFaults = static_cast<std::size_t>(HaplyFault::kCount);
 std::string_view nameOf(HaplyFault fault);  // "not a number"
+// True where a sound driver goes on: nothing is wrong with what is told.
+bool isHarmless(HaplyFault fault);
 
 // The answer's text with the fault in it; unchanged for those that aren't in the text.
 std::string spoilt(HaplyFault fault, std::string text);

@@ -29,7 +29,7 @@ using Error = beast::error_code;
 using Socket = websocket::stream<tcp::socket>;
 
 constexpr auto kTurn = std::chrono::microseconds(500);
-constexpr auto kLook = std::chrono::milliseconds(1);
+constexpr auto kLook = std::chrono::microseconds(200);
 constexpr double kLongestTurn = 0.02;  // the devices stand still while this computer is away for longer [s]
 
 // One text as a server's frame by hand, for what Beast won't do.

@@ -2,7 +2,7 @@
 //
 // A thread of its own writes torques and reads encoders, over and over, about once a millisecond. A force that is older than `kForceLife`
 // becomes zero there: the Falcon itself has no deadline. So a program that is stopped as a whole leaves the last torque on: keep a hand at
-// the power switch (docs/devices.md).
+// the power switch (docs/devices/setup.md).
 #pragma once
 #include <atomic>
 #include <cstdint>

@@ -62,7 +62,7 @@ std::string serialOf(libusb_device* device) {
 [[noreturn]] void refuseFalcon(const std::string& port, int error) {
   if (error == LIBUSB_ERROR_ACCESS) {
     throw std::runtime_error("No permission to open the Falcon at USB port " + port +
-                             ". Install the udev rule and join its group (docs/devices.md), then replug it.");
+                             ". Install the udev rule and join its group (docs/devices/setup.md), then replug it.");
   }
   if (error == LIBUSB_ERROR_BUSY) throw std::runtime_error("Another program uses the Falcon at USB port " + port + ". Close that program.");
   throw std::runtime_error("The Falcon at USB port " + port + " can't be opened (" + libusb_error_name(error) + "). Replug it.");

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "pincer/devices/haply/last_zero.h"
 #include "pincer/devices/usb/usb_bus.h"
 
 namespace pincer::devices::haply {
@@ -75,12 +76,29 @@ ServiceCheck checkService(const ServicePlace& place, double timeout) {
 // What comes in during one connection goes to its session, with the time.
 class HaplyHost::Life final : public PortSink {
  public:
-  explicit Life(HaplySession& session) : session_(session) {}
+  Life(HaplyPort& port, HaplySession& session) : port_(port), session_(session) {}
   void received(std::string_view text) override { session_.received(text, usb::monotonicNs()); }
   void heard(std::string_view event) override { session_.heard(event, usb::monotonicNs()); }
+  // Sends what is due.
+  void speak(std::int64_t now) {
+    for (auto text = session_.next(now); !text.empty(); text = session_.next(now)) {
+      last_.writing(true);
+      port_.send(text);
+      last_.writing(false);
+    }
+    const bool commands = session_.phase() == SessionPhase::kReady;
+    if (commands == ready_ && session_.spelling() == spelling_) return;
+    ready_ = commands;
+    spelling_ = session_.spelling();
+    last_.set(commands ? port_.descriptor() : -1, session_.zeros());
+  }
 
  private:
+  HaplyPort& port_;
   HaplySession& session_;
+  LastZero last_;
+  bool ready_ = false;
+  ForceSpelling spelling_ = ForceSpelling::kVector;
 };
 
 HaplyHost::HaplyHost(HaplyHostOptions options, const OpenHaplyPort& open) : options_(std::move(options)), open_(open), wake_fd_(-1) {
@@ -174,16 +192,16 @@ void HaplyHost::run(std::unique_ptr<HaplyPort> port) {
 
 void HaplyHost::live(HaplyPort& port) {
   HaplySession session(sessionOptions(), usb::monotonicNs());
-  Life life(session);
+  Life life(port, session);
   std::string told;
-  note("");
   while (!end_ && port.open() && session.phase() != SessionPhase::kRefused) {
     std::int64_t now = usb::monotonicNs();
     if (version_.minor >= 4) session.eventsAre(port.eventsOpen(), now);
     for (std::size_t i = 0; i < arms_.size(); ++i) arms_[i]->bring(session, i, now);
-    for (auto text = session.next(now); !text.empty(); text = session.next(now)) port.send(text);
+    life.speak(now);
     tell(session, true);
-    if (session.complaint() != told) note(told = session.complaint());
+    if (session.complaint() != told && !session.complaint().empty()) note(session.complaint());
+    told = session.complaint();
     sleepUntilWoken(0);
     port.wait(usb::monotonicNs() + kSendPeriod / 2, wake_fd_, life);
     now = usb::monotonicNs();
@@ -201,7 +219,7 @@ void HaplyHost::leave(HaplyPort& port, HaplySession& session, Life& life) {
   for (std::size_t i = 0; i < arms_.size(); ++i) session.disarm(i);
   const std::int64_t until = usb::monotonicNs() + kLeaving;
   for (std::int64_t now = usb::monotonicNs(); port.open() && now < until; now = usb::monotonicNs()) {
-    for (auto text = session.next(now); !text.empty(); text = session.next(now)) port.send(text);
+    life.speak(now);
     sleepUntilWoken(0);
     port.wait(now + kSendPeriod, wake_fd_, life);
   }

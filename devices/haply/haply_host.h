@@ -43,7 +43,7 @@ class HaplyHost {
   HaplyArm& arm(std::size_t index) { return *arms_[index]; }
   std::size_t arms() const { return arms_.size(); }
   void setEpoch(std::int64_t ns);
-  // The last complaint of the service or about it; empty: none.
+  // The last complaint of the service or about it, even if the operator armed since; empty: none.
   std::string complaint();
   const ServiceVersion& version() const { return version_; }
   // Of this connection and those before it.

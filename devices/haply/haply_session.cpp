@@ -17,8 +17,9 @@ constexpr std::int64_t kSilence = 250 * kMillisecond;        // without an answe
 constexpr std::int64_t kFullPeriod = 250 * kMillisecond;     // between two looks at the settings
 constexpr std::int64_t kHomingPeriod = 10 * kMillisecond;    // between two probes
 constexpr std::int64_t kEventsMayBeLost = 1000 * kMillisecond;
-constexpr double kEchoError = 0.02;  // of the echo of kEchoForce [N]
-constexpr int kMostUnsound = 3;      // in a row
+constexpr std::int64_t kEchoComes = 20 * kMillisecond;  // after the force, as the service tells it
+constexpr double kEchoError = 0.02;                     // of the echo of kEchoForce [N]
+constexpr int kMostUnsound = 3;                         // in a row
 
 }  // namespace
 
@@ -90,6 +91,7 @@ Vec3 HaplySession::forceNow(const ArmState& arm) const {
 // Both signs have to come back; the other spelling gets one try of each.
 void HaplySession::testEcho(ArmState& arm, std::int64_t now) {
   if (!arm.armed || arm.test == Echo::kGood || arm.test == Echo::kUntested || now - arm.test_began < kEchoStep) return;
+  if (arm.echo_ns < arm.test_began + kEchoComes && now - arm.test_began < kSilence) return;  // a service that is late isn't deaf
   const Vec3 wanted(0, 0, arm.test == Echo::kPlus ? kEchoForce : -kEchoForce);
   judgeEcho(arm, arm.echo && (*arm.echo - wanted).norm() <= kEchoError, now);
 }
@@ -155,6 +157,11 @@ std::string_view HaplySession::writeNow(std::int64_t now) {
   commanded_ = true;
   remember(now, full);
   return writeForces(buffer_, commands, spelling_, first ? std::string_view(options_.profile) : std::string_view{}, full);
+}
+
+std::string_view HaplySession::zeros() {
+  for (std::size_t i = 0; i < options_.arms.size(); ++i) commands_[i] = {.id = arms_[i].id, .f_H = Vec3::Zero()};
+  return writeForces(buffer_, std::span<const ForceCommand>(commands_.data(), options_.arms.size()), spelling_);
 }
 
 void HaplySession::remember(std::int64_t now, bool full) {

@@ -74,6 +74,9 @@ class HaplySession {
   // The message that is due, empty if none is; call it again until then. Watches the deadlines too.
   std::string_view next(std::int64_t now);
 
+  // Zeros for all arms, in the spelling of now; for who says the last word.
+  std::string_view zeros();
+
   SessionPhase phase() const { return phase_; }
   // Why it was refused, or why its forces are latched at zero; empty: neither. Sentences with a remedy.
   const std::string& complaint() const { return complaint_; }
@@ -95,6 +98,7 @@ class HaplySession {
     Vec3 wish = Vec3::Zero();
     Echo test = Echo::kUntested;
     std::int64_t test_began = 0;
+    std::int64_t echo_ns = 0;         // no older than this is the echo [ns]
     std::int64_t pushing_since = -1;  // of an unbroken run of forces [ns]
     std::int64_t still_since = 0;     // the place is equal to the bit since [ns]
     Vec3 f_when_still = Vec3::Zero();
@@ -116,7 +120,7 @@ class HaplySession {
   void takeArm(std::size_t arm, const DeviceReport& report, const UnderWay& question, std::int64_t now);
   void takeGrip(std::size_t arm, const ServiceMessage& message);
   void checkFlags(const DeviceReport& report);
-  void checkForce(ArmState& arm, const DeviceReport& report, std::int64_t now);
+  void checkForce(ArmState& arm, const DeviceReport& report);
   void checkPlace(ArmState& arm, const DeviceReport& report, std::int64_t now);
   void checkConfig(ArmState& arm, const DeviceReport& report, std::int64_t now);
   std::string oddIn(const DeviceConfig& config, const Label& id) const;

@@ -99,9 +99,10 @@ void HaplySession::takeArm(std::size_t i, const DeviceReport& report, const Unde
     doubt(fmt::format("Inverse3 {} has a transform that isn't the identity: another session, or Haply Hub, set it. Reset it there.",
                       report.id.view()));
   if (question.full) checkConfig(arm, report, now);
-  if (report.f_H) checkForce(arm, report, now);
+  if (report.f_H) checkForce(arm, report);
   if (report.p_H) checkPlace(arm, report, now);
   arm.echo = report.f_H;
+  arm.echo_ns = before_answered_;
   const bool believed = report.p_H && before_answered_ >= 0 && !doubted_ && phase_ != SessionPhase::kRefused;
   arm.reading.valid = believed;
   if (!believed) return;
@@ -122,10 +123,12 @@ void HaplySession::takeGrip(std::size_t i, const ServiceMessage& message) {
   arms_[i].reading.buttons = grip->buttons;
 }
 
-void HaplySession::checkForce(ArmState& arm, const DeviceReport& report, std::int64_t now) {
+// All times are those of the message before the answered one: a service that was away for a while isn't one that pushes on its own.
+void HaplySession::checkForce(ArmState& arm, const DeviceReport& report) {
+  const std::int64_t then = before_answered_;
   double most = 0;
   for (std::size_t k = 0; k < arm.sizes.size(); ++k) {
-    if (now - arm.sent_at[k] <= kEchoMemory) most = std::max(most, arm.sizes[k]);
+    if (then - arm.sent_at[k] <= kEchoMemory) most = std::max(most, arm.sizes[k]);
   }
   const double echo = report.f_H->norm();
   if (echo > most * (1 + kEchoOverShare) + kEchoOver) {
@@ -134,9 +137,9 @@ void HaplySession::checkForce(ArmState& arm, const DeviceReport& report, std::in
                     "was changed. Close other programs.",
                     report.id.view(), echo, most));
   }
-  const bool steady = arm.pushing_since >= 0 && now - arm.pushing_since > kEchoMemory && arm.test == Echo::kGood;
+  const bool steady = arm.pushing_since >= 0 && then - arm.pushing_since > kEchoMemory && arm.test == Echo::kGood;
   if (steady && echo < kAttenuated * most - kEchoOver) ++counts_.attenuated;
-  if (arm.pushing_since >= 0 && now - arm.pushing_since > kIdleMayLast && report.mode.view() == "idle")
+  if (arm.pushing_since >= 0 && then - arm.pushing_since > kIdleMayLast && report.mode.view() == "idle")
     doubt(fmt::format("Inverse3 {} stays idle although forces are sent. Switch it off and on.", report.id.view()));
 }
 

@@ -115,7 +115,7 @@ void UsbHost::meet(Port& port, const Frame& frame, std::int64_t now) {
   if (link == nullptr || link->attached()) {
     port.next_identify = INT64_MAX;  // never asked again
     return problem("Two USB devices call themselves " + nameOf(identity->kind) + " " + identity->serial +
-                   ". Give each its own serial number (docs/devices.md), or unplug one.");
+                   ". Give each its own serial number (docs/devices/setup.md), or unplug one.");
   }
   port.link = link;
   link->attach(now, port.sequence);

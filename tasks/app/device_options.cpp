@@ -36,17 +36,19 @@ bool lineComes() {
 
 void addDeviceOptions(CLI::App& command, DeviceRunOptions& options) {
   command.add_option("--devices", options.devices, "What the fingers wear: simulated devices and participant, or real ones and a person")
-      ->check(CLI::IsMember({"sim", "usb", "falcon", "mouse", "replay"}))
+      ->check(CLI::IsMember({"sim", "usb", "falcon", "haply", "mouse", "replay"}))
       ->capture_default_str();
   command
-      .add_option("--arms", options.which.arms,
-                  "Serial numbers (of Falcons: or USB ports) of the arms of index finger and thumb (default: in their order)")
+      .add_option(
+          "--arms", options.which.arms,
+          "Serial numbers (of Falcons: or USB ports; of Inverse3: ids) of the arms of index finger and thumb (default: in their order)")
       ->delimiter(',');
   command.add_option("--displays", options.which.displays, "Serial numbers of their displays")->delimiter(',');
   command
-      .add_option("--watchdog", options.watchdog_ms,
-                  "Of usb and falcon: so long may the program stall before forces are cut; samples count for 0.6 of it, arms go limp after "
-                  "0.8 [ms]")
+      .add_option(
+          "--watchdog", options.watchdog_ms,
+          "Of usb, falcon and haply: so long may the program stall before forces are cut; samples count for 0.6 of it, arms go limp after "
+          "0.8 [ms]")
       ->check(within({.min = 2, .max = 100, .remedy = "In milliseconds."}))
       ->default_str("5");
   command.add_option("--calibration", options.which.calibrations, "Files of the arms' bases (pincer devices calibrate --save)")
@@ -54,6 +56,11 @@ void addDeviceOptions(CLI::App& command, DeviceRunOptions& options) {
   command.add_option("--recording", options.which.recording,
                      "What replay replays: a session.db, or a CSV of samples as pincer export writes it; the first trial");
   command.add_option("--firmware", options.which.firmware, "The Falcon's image, out of its maker's driver");
+  command.add_option("--grips", options.which.grips, "Ids of the VerseGrips that are the handles of Inverse3, in the order of --arms")
+      ->delimiter(',');
+  command.add_option("--service", options.which.service, "Where Haply's service is: HOST:PORT, or HOST:PORT:EVENTS")->capture_default_str();
+  command.add_option("--force-gate", options.which.force_gate, "Gain of the force gate of Haply's service (default: left as it is)")
+      ->check(within({.min = 0, .max = 10, .remedy = "Its own default is 0.3."}));
   command.add_flag("--yes", options.yes, "Switch forces on without asking; nobody's hand may be in danger");
 }
 
@@ -61,7 +68,7 @@ std::unique_ptr<HandDevices> openDevices(const DeviceRunOptions& options, ServoO
   const DeviceChoice choice = deviceChoiceOf(options.devices);
   if (options.watchdog_ms && !hasMotors(choice)) {
     throw CLI::ValidationError(
-        fmt::format("--watchdog {:g} guards motors, and --devices {} has none. Leave it out, or give --devices usb or --devices falcon",
+        fmt::format("--watchdog {:g} guards motors, and --devices {} has none. Leave it out, or give --devices usb, falcon or haply",
                     *options.watchdog_ms, options.devices));
   }
   if (options.watchdog_ms) servo.watchdog = 1e-3 * *options.watchdog_ms;

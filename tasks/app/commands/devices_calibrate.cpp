@@ -1,3 +1,5 @@
+#include "pincer/tasks/app/commands/devices_calibrate.h"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -22,11 +24,6 @@ using devices::usb::UsbHost;
 
 constexpr double kPatience = 2;  // with a device [s]
 
-struct CalibrateArguments {
-  std::string serial, save, load;
-  std::vector<std::string> set;
-};
-
 DeviceLink& readyDevice(UsbHost& host, const std::string& serial) {
   DeviceLink* found = nullptr;
   waitUntil(
@@ -40,8 +37,6 @@ DeviceLink& readyDevice(UsbHost& host, const std::string& serial) {
   throw DeviceError(fmt::format("No device {} is ready on USB. See what is there: pincer devices list", serial));
 }
 
-using NamedValue = std::pair<std::string, double>;
-
 NamedValue assignment(const std::string& text) {
   const std::size_t equals = text.find('=');
   char* end = nullptr;
@@ -54,7 +49,8 @@ NamedValue assignment(const std::string& text) {
   return {text.substr(0, equals), value};
 }
 
-// What is to be changed, in this order; all of it checked before anything is.
+}  // namespace
+
 std::vector<NamedValue> changesOf(const CalibrateArguments& arguments) {
   std::vector<NamedValue> changes;
   if (!arguments.load.empty()) {
@@ -70,6 +66,8 @@ std::vector<NamedValue> changesOf(const CalibrateArguments& arguments) {
   return changes;
 }
 
+namespace {
+
 void requireNames(const DeviceCalibration& kept, const std::vector<NamedValue>& changes) {
   for (const auto& [name, value] : changes) {
     if (kept.values.contains(name)) continue;
@@ -80,6 +78,9 @@ void requireNames(const DeviceCalibration& kept, const std::vector<NamedValue>& 
 }
 
 int calibrate(const CalibrateArguments& arguments) {
+  if (arguments.devices == "haply") return calibrateHaply(arguments);
+  if (arguments.here || !arguments.align.empty() || !arguments.grip.empty())
+    refuseUsage("--here, --align and --grip are of Inverse3: --devices haply");
   const std::vector<NamedValue> changes = changesOf(arguments);
   const auto usb = startUsb();
   DeviceLink& device = readyDevice(*usb, arguments.serial);
@@ -106,6 +107,14 @@ void addDevicesCalibrate(CLI::App& devices, int& exit_code) {
   command->add_option("--set", arguments->set, "NAME=VALUE [m or rad]; more than once for several");
   command->add_option("--save", arguments->save, "Writes all values to this file");
   command->add_option("--load", arguments->load, "Takes all values from this file first");
+  command->add_option("--devices", arguments->devices, "usb keeps its values itself; those of haply are in the file alone")
+      ->check(CLI::IsMember({"usb", "haply"}))
+      ->capture_default_str();
+  command->add_flag("--here", arguments->here, "Of haply: the middle of the workspace becomes where the arm is now");
+  command->add_option("--align", arguments->align, "Of haply: the grip's turn of now becomes this finger's in the scene")
+      ->check(CLI::IsMember({"index", "thumb"}));
+  command->add_option("--grip", arguments->grip, "Of haply: id of the VerseGrip that is the arm's handle");
+  command->add_option("--service", arguments->service, "Where Haply's service is: HOST:PORT, or HOST:PORT:EVENTS")->capture_default_str();
   command->footer("\nExample:\n  pincer devices calibrate ARM1 --set base_x=0.012 --save ARM1.json");
   command->callback([arguments, &exit_code] { exit_code = calibrate(*arguments); });
 }

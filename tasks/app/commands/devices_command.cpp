@@ -10,12 +10,13 @@
 namespace pincer::tasks {
 
 void addDevicesCommand(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("devices", "Arms and displays on USB: what is there, does it work, how it is calibrated");
+  CLI::App* command = app.add_subcommand("devices", "Arms and displays: what is there, does it work, how it is calibrated");
   command->require_subcommand(1);
   addDevicesList(*command, exit_code);
   addDevicesTest(*command, exit_code);
   addDevicesCalibrate(*command, exit_code);
-  command->footer("\nExample:\n  pincer devices list\n\nBefore a person wears them: docs/devices.md");
+  addDevicesEmulate(*command, exit_code);
+  command->footer("\nExample:\n  pincer devices list\n\nBefore a person wears them: docs/devices/setup.md");
 }
 
 }  // namespace pincer::tasks

@@ -10,5 +10,6 @@ namespace pincer::tasks {
 void addDevicesList(CLI::App& devices, int& exit_code);
 void addDevicesTest(CLI::App& devices, int& exit_code);
 void addDevicesCalibrate(CLI::App& devices, int& exit_code);
+void addDevicesEmulate(CLI::App& devices, int& exit_code);
 
 }  // namespace pincer::tasks

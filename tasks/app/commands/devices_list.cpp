@@ -7,6 +7,7 @@
 
 #include "pincer/contact/io/printable.h"
 #include "pincer/devices/falcon/falcon_arm.h"
+#include "pincer/devices/haply/haply_host.h"
 #include "pincer/devices/usb/usb_host.h"
 #include "pincer/tasks/app/app.h"
 #include "pincer/tasks/app/commands/devices_commands.h"
@@ -26,7 +27,39 @@ using devices::usb::UsbHost;
 struct DevicesListArguments {
   bool json = false;
   double timeout = 1;
+  std::string devices, service = "127.0.0.1:10001";
 };
+
+// Of Haply's service, asked by HTTP without a session: nothing moves, nobody is disturbed.
+struct HaplyFound {
+  bool answers = false;
+  std::string problem;
+  devices::haply::ServiceVersion version;
+  devices::haply::DeviceIds devices;
+};
+
+HaplyFound findHaply(const std::string& service) {
+  constexpr double kPatience = 0.2;  // [s]
+  HaplyFound found;
+  const auto place = devices::haply::servicePlaceOf(service);
+  if (!place) refuseUsage(fmt::format("--service {}: it isn't HOST:PORT or HOST:PORT:EVENTS on this computer", service));
+  const auto answer = devices::haply::httpGet(*place, "/devices", kPatience);
+  found.answers = answer.has_value();
+  if (!answer) return found;
+  const auto check = devices::haply::checkService(*place, kPatience);
+  found.problem = check.problem;
+  found.version = check.version;
+  if (answer->status == 200) found.devices = devices::haply::readDeviceIds(answer->body);
+  return found;
+}
+
+void listHaply(const HaplyFound& haply) {
+  for (std::size_t i = 0; i < haply.devices.count; ++i) {
+    print("haply    {:<12} {:<16} {:<10} pincer devices test {} --devices haply\n", haply.devices.ids[i].view(),
+          fmt::format("service {}.{}", haply.version.major, haply.version.minor), "-", haply.devices.ids[i].view());
+  }
+  if (!haply.problem.empty()) print("{}\n", printableMessage(haply.problem));
+}
 
 // What passivity builds on, of arms that tell.
 std::string tipOf(const devices::ArmCapabilities& can) {
@@ -62,7 +95,7 @@ void writeDevice(const Device& device, const char* kind, JsonWriter& json) {
   json.key("state").value(devices::nameOf(device.linkState())).endObject();
 }
 
-void printJson(UsbHost& host, const std::vector<devices::falcon::FalconPlace>& falcons) {
+void printJson(UsbHost& host, const std::vector<devices::falcon::FalconPlace>& falcons, const HaplyFound& haply) {
   JsonWriter json;
   json.beginObject().key("devices").beginArray();
   for (const auto* arm : host.arms()) writeDevice(*arm, "arm", json);
@@ -70,12 +103,24 @@ void printJson(UsbHost& host, const std::vector<devices::falcon::FalconPlace>& f
   for (const auto& falcon : falcons) {
     json.beginObject().key("kind").value("falcon").key("port").value(falcon.port).key("serial").value(falcon.serial).endObject();
   }
+  for (std::size_t i = 0; i < haply.devices.count; ++i)
+    json.beginObject().key("kind").value("haply").key("serial").value(std::string(haply.devices.ids[i].view())).endObject();
   json.endArray().key("problems").beginArray();
+  if (!haply.problem.empty()) json.value(haply.problem);
   for (const std::string& problem : host.problems()) json.value(problem);
   print("{}\n", json.endArray().endObject().text());
 }
 
+int listHaplyAlone(const DevicesListArguments& arguments) {
+  const HaplyFound haply = findHaply(arguments.service);
+  listHaply(haply);
+  if (!haply.answers)
+    print("Nobody answers as Haply's service at {}. Start it: systemctl start haply-inverse-service.service\n", arguments.service);
+  return haply.answers && haply.problem.empty() ? kExitOk : kExitDevice;
+}
+
 int listDevices(const DevicesListArguments& arguments) {
+  if (arguments.devices == "haply" && !arguments.json) return listHaplyAlone(arguments);
   const auto usb = startUsb();
   UsbHost& host = *usb;
   constexpr double kLook = 0.1;  // for an interrupt [s]
@@ -86,15 +131,17 @@ int listDevices(const DevicesListArguments& arguments) {
   }
   if (answered) std::this_thread::sleep_for(std::chrono::milliseconds(200));  // the others, too
   const auto falcons = devices::falcon::listFalcons();
+  const HaplyFound haply = findHaply(arguments.service);
   if (arguments.json) {
-    printJson(host, falcons);
+    printJson(host, falcons, haply);
   } else {
     for (const auto* arm : host.arms()) listArm(*arm);
     for (const auto* display : host.displays()) listDisplay(*display);
     for (const auto& falcon : falcons) listFalcon(falcon);
+    listHaply(haply);
     for (const std::string& problem : host.problems()) print("{}\n", printableMessage(problem));
-    if (host.arms().empty() && host.displays().empty() && falcons.empty() && host.problems().empty()) {
-      print("No device of pincer's USB protocol is plugged in. Check cable and power; `lsusb` must show 1209:0001 (docs/devices.md).\n");
+    if (host.arms().empty() && host.displays().empty() && falcons.empty() && haply.devices.count == 0 && host.problems().empty()) {
+      print("No device of pincer's USB protocol is plugged in. Check cable and power; `lsusb` must show 1209:0001 (docs/devices/setup.md).\n");
     }
   }
   return host.problems().empty() ? kExitOk : kExitDevice;
@@ -109,6 +156,8 @@ void addDevicesList(CLI::App& devices, int& exit_code) {
   command->add_option("--timeout", arguments->timeout, "For devices to answer [s]")
       ->check(within({.min = 0.1, .max = 60, .remedy = "In seconds."}))
       ->capture_default_str();
+  command->add_option("--devices", arguments->devices, "Only these (default: all)")->check(CLI::IsMember({"haply"}));
+  command->add_option("--service", arguments->service, "Where Haply's service is: HOST:PORT")->capture_default_str();
   command->footer("\nExample:\n  pincer devices list");
   command->callback([arguments, &exit_code] { exit_code = listDevices(*arguments); });
 }

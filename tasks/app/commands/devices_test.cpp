@@ -1,16 +1,22 @@
 #include <fmt/format.h>
-#include <time.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
 #include <memory>
 
 #include "pincer/contact/io/printable.h"
 #include "pincer/devices/gate/force_gate.h"
+#include "pincer/devices/haply/haply_host.h"
+#include "pincer/devices/haply/silence.h"
 #include "pincer/devices/usb/usb_host.h"
 #include "pincer/tasks/app/app.h"
 #include "pincer/tasks/app/commands/devices_commands.h"
+#include "pincer/tasks/app/device_options.h"
 #include "pincer/tasks/app/interrupt.h"
 #include "pincer/tasks/app/print.h"
+#include "pincer/tasks/app/usage.h"
+#include "pincer/tasks/run/servo/arm_check.h"
 #include "pincer/tasks/run/servo/hand_devices_parts.h"
 #include "pincer/tasks/run/servo/servo.h"
 #include "pincer/tasks/run/servo/servo_text.h"
@@ -27,6 +33,8 @@ struct DevicesTestArguments {
   std::string serial;
   double seconds = 3, force = 0;
   double watchdog_ms = 5;
+  DeviceRunOptions arms;  // of falcon and haply
+  bool silence = false;
 };
 
 // Streams and commands for a while: zero force (or a small one along z), tactors on a slow circle.
@@ -114,7 +122,70 @@ std::vector<Device*> withSerial(const std::vector<Device*>& all, const std::stri
   return some;
 }
 
+void sayIdle(const char* what, const devices::haply::SilenceFinding& found) {
+  print("{}: {} {:.0f} ms; it moved {:.0f} mm meanwhile\n", what, found.went_idle ? "idle after" : "NOT idle within", 1e3 * found.seconds,
+        1e3 * found.moved);
+}
+
+// When does an Inverse3 let go by itself? The answer decides how hard a session may push.
+int testSilence(const DevicesTestArguments& arguments) {
+  const auto place = devices::haply::servicePlaceOf(arguments.arms.which.service);
+  if (!place || arguments.arms.devices != "haply" || arguments.serial.empty())
+    refuseUsage("--silence is of one Inverse3: pincer devices test ID --devices haply --silence");
+  if (!operatorArms(arguments.arms, "The arm is going to push by itself, and nobody answers for its end. Nobody may hold it."))
+    return kExitOk;
+  const auto check = devices::haply::checkService(*place, 1);
+  if (!check.problem.empty()) throw DeviceError(check.problem);
+  try {
+    using devices::haply::Ending;
+    const auto silent = measureSilence(*place, arguments.serial, check.version, Ending::kSilence, interruptFlag());
+    sayIdle("after the last command", silent);
+    const auto closed = measureSilence(*place, arguments.serial, check.version, Ending::kClose, interruptFlag());
+    sayIdle("after a closed connection", closed);
+    if (interruptFlag()) return kExitInterrupted;
+    if (!silent.went_idle || !closed.went_idle) {
+      print("A program that is killed leaves its force on for longer than that. Sessions keep to {:g} N.\n", devices::haply::kCarefulPeak);
+      return kExitDevice;
+    }
+    print("For its calibration: pincer devices calibrate {} --devices haply --set idle_after={:.3f}\n", arguments.serial,
+          std::max(silent.seconds, closed.seconds));
+  } catch (const std::runtime_error& error) {
+    throw DeviceError(error.what());
+  }
+  return kExitOk;
+}
+
+// Falcon or Inverse3: one arm, by itself: rest, a small push, ages of samples, verdict.
+int testArm(const DevicesTestArguments& arguments) {
+  DeviceRunOptions options = arguments.arms;
+  options.which.fingers = 1;
+  options.which.needs_displays = false;
+  options.watchdog_ms = arguments.watchdog_ms;
+  if (!arguments.serial.empty()) options.which.arms = {arguments.serial};
+  ServoOptions servo;
+  const auto devices = openDevices(options, servo);
+  constexpr double kHoming = 20;  // by the operator's hand [s]
+  if (!waitUntil([&] { return devices->arm(0).state() == devices::DeviceState::kReady || interruptFlag(); }, kHoming))
+    throw DeviceError(devices->arm(0).identity() +
+                      " didn't become ready. Push a Falcon's grip all the way in and out once; calibrate an Inverse3.");
+  const ArmCheckOptions check{.force = arguments.force == 0 ? 0 : std::min(std::abs(arguments.force), 0.5), .watchdog = servo.watchdog};
+  if (check.force > 0 && !operatorArms(options, "The arm is going to move 15 mm by itself. Nobody may wear or hold it.")) return kExitOk;
+  ArmCheck cycle(*devices, 1, check);
+  const ServoReport report = runServo(servo, cycle, interruptFlag());
+  cycle.cutForces();
+  print("{}\n", servoText(report, 1 / servo.rate));
+  const ArmFindings& found = cycle.findings()[0];
+  print("{}\n", armCheckText(found));
+  const auto odd = oddities(found, check);
+  for (const std::string& sentence : odd) print("  {}\n", printableMessage(sentence));
+  print("Verdict: {}\n", odd.empty() ? "fit for a session" : "not fit for a session yet");
+  if (report.interrupted) return kExitInterrupted;
+  return odd.empty() ? kExitOk : kExitDevice;
+}
+
 int testDevices(const DevicesTestArguments& arguments) {
+  if (arguments.silence) return testSilence(arguments);
+  if (arguments.arms.devices != "usb") return testArm(arguments);
   const std::atomic<bool>& interrupted = interruptFlag();
   const auto usb = startUsb();
   UsbHost& host = *usb;
@@ -140,6 +211,7 @@ int testDevices(const DevicesTestArguments& arguments) {
 
 void addDevicesTest(CLI::App& devices, int& exit_code) {
   auto arguments = std::make_shared<DevicesTestArguments>();
+  arguments->arms.devices = "usb";
   CLI::App* command = devices.add_subcommand("test", "Streams and commands for a few seconds, and counts what goes wrong");
   command->add_option("serial", arguments->serial, "Of the device (default: all)");
   command->add_option("--seconds", arguments->seconds, "How long [s]")->check(CLI::Range(0.1, 3600.0))->capture_default_str();
@@ -149,6 +221,14 @@ void addDevicesTest(CLI::App& devices, int& exit_code) {
   command->add_option("--watchdog", arguments->watchdog_ms, "So long may the program stall before forces are cut [ms]")
       ->check(CLI::Range(2.0, 100.0))
       ->capture_default_str();
+  command->add_option("--devices", arguments->arms.devices, "Which kind; of falcon and haply one arm at a time")
+      ->check(CLI::IsMember({"usb", "falcon", "haply"}))
+      ->capture_default_str();
+  command->add_option("--service", arguments->arms.which.service, "Where Haply's service is: HOST:PORT, or HOST:PORT:EVENTS")
+      ->capture_default_str();
+  command->add_option("--firmware", arguments->arms.which.firmware, "The Falcon's image, out of its maker's driver");
+  command->add_flag("--silence", arguments->silence, "Of haply: when does the arm let go by itself, once commands end?");
+  command->add_flag("--yes", arguments->arms.yes, "Of falcon and haply: push without asking; nobody may hold the arm");
   command->footer("\nThe tactors move; without --force the arms don't.\n\nExample:\n  pincer devices test --seconds 10");
   command->callback([arguments, &exit_code] { exit_code = testDevices(*arguments); });
 }

@@ -33,7 +33,7 @@ Index finger and thumb pick up spheres of different friction that lie in a dish,
 Examples:
   pincer run sphere-pickup --repetitions 2 --seed 7 --out out/first
   pincer run sphere-pickup --devices mouse --view      your own fingers, on the mouse
-  pincer run sphere-pickup --devices usb               on arms and displays (docs/devices.md))";
+  pincer run sphere-pickup --devices usb               on arms and displays (docs/devices/setup.md))";
 
 constexpr const char* kCylinderExample = R"(
 Index finger and thumb find the flat of an upright cylinder and turn it towards the monitor, with and without contact location displays.
@@ -139,9 +139,18 @@ Stage setStage(const ManipulationArguments& arguments, ManipulationSessionOption
     options.host.hands = [devices = stage.devices.get(), oldest = kOldestSample * options.servo.watchdog](HandTrial& trial) {
       return std::make_unique<LiveHands>(trial, *devices, oldest);
     };
-    options.host.arm = [asked = arguments.devices](const std::string& why) { return operatorArms(asked, why); };
+    options.host.arm = [asked = arguments.devices, devices = stage.devices.get()](const std::string& why) {
+      const std::string complaint = devices->complaint();
+      return operatorArms(asked, complaint.empty() ? why : why + "\n" + complaint);
+    };
   }
   return stage;
+}
+
+// Of a trial that ended in a fault, the devices may know why.
+void sayComplaint(const Stage& stage) {
+  const std::string complaint = stage.devices ? stage.devices->complaint() : "";
+  if (!complaint.empty()) print(stderr, "The devices reported: {}\n", complaint);
 }
 
 int runManipulation(const ManipulationArguments& arguments) {
@@ -159,7 +168,9 @@ int runManipulation(const ManipulationArguments& arguments) {
     if (arguments.run.out.empty()) refuseUsage("run: --resume needs --out DIR, the directory of the session to go on with.");
     ManipulationSessionOptions options = optionsOf(arguments);
     const Stage stage = setStage(arguments, options, interrupted);
-    return finish(arguments.run.out, resumeManipulationSession(options, arguments.run.out + "/session.db", interrupted, progress));
+    const auto result = resumeManipulationSession(options, arguments.run.out + "/session.db", interrupted, progress);
+    sayComplaint(stage);
+    return finish(arguments.run.out, result);
   }
   ManipulationSessionOptions options = optionsOf(arguments);
   asUsage([&] { validate(options); });  // a study file was checked by itself
@@ -172,7 +183,9 @@ int runManipulation(const ManipulationArguments& arguments) {
   const Stage stage = setStage(arguments, options, interrupted);
   const std::string directory = outputDirectory(arguments.run, taskName(options.study));
   makeDirectory(directory);
-  return finish(directory, runManipulationSession(options, directory + "/session.db", interrupted, progress));
+  const auto result = runManipulationSession(options, directory + "/session.db", interrupted, progress);
+  sayComplaint(stage);
+  return finish(directory, result);
 }
 
 void addPickupOptions(CLI::App& command, ManipulationArguments& arguments) {

@@ -58,7 +58,7 @@ void requireFacing(const HandScene& scene, std::size_t i, const ArmBase& base) {
   throw InputError(
       fmt::format("calibration: the {} finger's arm doesn't face the other: with base_x, base_y, base_z = {:g}, {:g}, {:g} m and base_turn "
                   "= {:g} rad it "
-                  "looks {:.0f} degrees past it. At most {:.0f}: measure the bases again (docs/devices.md).",
+                  "looks {:.0f} degrees past it. At most {:.0f}: measure the bases again (docs/devices/setup.md).",
                   i == 0 ? "index" : "thumb", base.offset_W.x(), base.offset_W.y(), base.offset_W.z(), base.turn,
                   off * 180 / std::numbers::pi, kFacing * 180 / std::numbers::pi));
 }

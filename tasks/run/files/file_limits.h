@@ -10,7 +10,7 @@ inline constexpr InputKind kSceneFile = {"a scene (a JSON file, docs/scenes.md)"
                                          "Long trajectories go into CSV files, meshes into files of their own."};
 inline constexpr InputKind kStudyFile = {"a study (a JSON file, docs/experiments.md)", kMegabyte, true,
                                          "`pincer run TASK --print-study` prints one."};
-inline constexpr InputKind kCalibrationFile = {"a calibration (a JSON file, docs/devices.md)", kMegabyte / 16, true,
+inline constexpr InputKind kCalibrationFile = {"a calibration (a JSON file, docs/devices/setup.md)", kMegabyte / 16, true,
                                                "`pincer devices calibrate --save` writes one."};
 // Half an hour at 1 kHz, with 35 bytes per row.
 inline constexpr InputKind kTrajectoryFile = {"a trajectory (a CSV file, docs/scenes.md)", 64 * kMegabyte, true,

@@ -10,14 +10,16 @@
 namespace pincer::tasks {
 
 DeviceChoice deviceChoiceOf(const std::string& name) {
-  constexpr std::array kNames{"sim", "usb", "falcon", "mouse", "replay"};
+  constexpr std::array kNames{"sim", "usb", "falcon", "haply", "mouse", "replay"};
   for (std::size_t i = 0; i < kNames.size(); ++i) {
     if (name == kNames[i]) return static_cast<DeviceChoice>(i);
   }
-  throw InputError(fmt::format("devices \"{}\" are unknown. They are one of sim, usb, falcon, mouse, replay.", name));
+  throw InputError(fmt::format("devices \"{}\" are unknown. They are one of sim, usb, falcon, haply, mouse, replay.", name));
 }
 
-bool hasMotors(DeviceChoice choice) { return choice == DeviceChoice::kUsb || choice == DeviceChoice::kFalcon; }
+bool hasMotors(DeviceChoice choice) {
+  return choice == DeviceChoice::kUsb || choice == DeviceChoice::kFalcon || choice == DeviceChoice::kHaply;
+}
 
 std::unique_ptr<HandDevices> openHandDevices(const DeviceOptions& options) {
   switch (options.choice) {
@@ -29,6 +31,8 @@ std::unique_ptr<HandDevices> openHandDevices(const DeviceOptions& options) {
       throw DeviceError("The mouse moves fingers in the viewer only: add --view.");
     case DeviceChoice::kFalcon:
       return openFalconHand(options);
+    case DeviceChoice::kHaply:
+      return openHaplyHand(options);
     case DeviceChoice::kReplay:
       return openReplayHand(options);
   }

@@ -3,6 +3,7 @@
 // All clocks are made the servo's: samples carry times in seconds since begin().
 #pragma once
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -40,11 +41,13 @@ class HandDevices {
   virtual ArmBase base(int) const { return {}; }
   // Where the finger's arm stands in the world; for what was recorded there.
   virtual void setBase(int, const Vec3&, const Quat&) {}
+  // What a device, or its service, reports as wrong: a sentence with the remedy; empty: nothing.
+  virtual std::string complaint() { return {}; }
   // One line per device, for a person.
   virtual std::vector<std::string> describe() = 0;
 };
 
-enum class DeviceChoice { kSim, kUsb, kFalcon, kMouse, kReplay };
+enum class DeviceChoice { kSim, kUsb, kFalcon, kHaply, kMouse, kReplay };
 DeviceChoice deviceChoiceOf(const std::string& name);  // throws InputError for any other name
 // True if somebody may feel forces of these devices: then the session's time is the wall clock's, and a watchdog guards the motors.
 bool hasMotors(DeviceChoice choice);
@@ -56,9 +59,12 @@ struct DeviceOptions {
   bool needs_displays = true;               // false: a finger may go without
   double timeout = 3;                       // for devices that are plugged in to become ready [s]
   double watchdog = 5e-3;                   // so long may the program stall before forces are cut [s]
-  std::vector<std::string> calibrations;    // usb: files of arms (device_calibration.h)
+  std::vector<std::string> calibrations;    // files of arms (device_calibration.h)
   std::string recording;                    // replay: a session's store, or a CSV file of samples (pincer export)
   std::string firmware;                     // falcon: the maker's image
+  std::vector<std::string> grips;           // haply: ids of VerseGrips, per finger; empty: the finger's turn isn't measured
+  std::string service = "127.0.0.1:10001";  // haply: where its service is, HOST:PORT or HOST:PORT:EVENTS
+  std::optional<double> force_gate;         // haply: gain of its force gate; absent: left as it is
 };
 
 // Throws DeviceError. `kSim` and `kMouse` aren't opened here: a simulated participant brings its own devices, the mouse belongs to the viewer.

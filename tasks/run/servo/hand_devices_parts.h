@@ -19,6 +19,7 @@ DeviceCalibration keptCalibration(devices::usb::DeviceLink& device);
 
 std::unique_ptr<HandDevices> openUsbHand(const DeviceOptions& options);
 std::unique_ptr<HandDevices> openFalconHand(const DeviceOptions& options);
+std::unique_ptr<HandDevices> openHaplyHand(const DeviceOptions& options);
 std::unique_ptr<HandDevices> openReplayHand(const DeviceOptions& options);
 
 }  // namespace pincer::tasks

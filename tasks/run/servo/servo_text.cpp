@@ -27,7 +27,7 @@ std::string servoText(const ServoReport& report, double period) {
   if (report.watchdog_tripped)
     text +=
         "\nThe watchdog cut the forces: the loop stalled for longer than it allows. Close other programs, permit real-time priority "
-        "(docs/devices.md), or allow longer stalls with --watchdog.";
+        "(docs/devices/setup.md), or allow longer stalls with --watchdog.";
   if (!report.note.empty()) text += "\n" + report.note;
   return text;
 }

@@ -85,7 +85,7 @@ class UsbHand final : public HandDevices {
     std::string why = fmt::format("A session needs {} arms{} on USB; found: {}.", options.fingers,
                                   options.needs_displays ? " and as many displays" : "", listOf(host_));
     for (const std::string& problem : problems) why += "\n" + problem;
-    if (problems.empty()) why += " Plug them in and switch them on; see what is there: pincer devices list (docs/devices.md)";
+    if (problems.empty()) why += " Plug them in and switch them on; see what is there: pincer devices list (docs/devices/setup.md)";
     throw DeviceError(why);
   }
 

@@ -17,9 +17,10 @@ struct DevicesBenchOptions {
 std::vector<Measurement> deviceMeasurements(const DevicesBenchOptions& options);
 
 // Its parts, one source file each.
-std::vector<Measurement> displayMeasurements();  // the two simulated displays, and what their users notice
-std::vector<Measurement> armMeasurements();      // the simulated arm
-std::vector<Measurement> gateMeasurements();     // the limiter
+std::vector<Measurement> displayMeasurements();                                  // the two simulated displays, and what their users notice
+std::vector<Measurement> armMeasurements();                                      // the simulated arm
+std::vector<Measurement> gateMeasurements();                                     // the limiter
+std::vector<Measurement> haplyMeasurements(const DevicesBenchOptions& options);  // Inverse3 over the emulated service
 std::vector<Measurement> usbMeasurements(const DevicesBenchOptions& options);
 
 }  // namespace pincer::tasks

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "pincer/devices/emulate/haply_server.h"
+#include "pincer/devices/haply/silence.h"
 #include "pincer/devices/usb/usb_bus.h"
 
 namespace pincer::devices::haply {
@@ -179,6 +180,26 @@ TEST(HaplyHost, LeavesNothingBehindWhenItEnds) {
     if (i == 0) before = descriptors();
   }
   EXPECT_EQ(descriptors(), before);
+}
+
+// When the arm lets go isn't documented: all three ways are told apart.
+TEST(HaplySilence, TellsWhenAnArmLetsGo) {
+  const std::atomic<bool> never{false};
+  const auto finding = [&](emulate::DeadMan dead_man, Ending ending) {
+    HaplyServiceSettings settings;
+    for (auto& arm : settings.arms) arm.dead_man = dead_man;
+    HaplyServer server(settings);
+    const SilenceFinding found = measureSilence(*servicePlaceOf(server.place()), "049D", {3, 5}, ending, never);
+    EXPECT_EQ(server.force(0), 0) << "afterwards";
+    return found;
+  };
+  const SilenceFinding idle = finding(emulate::DeadMan::kIdleAfter, Ending::kSilence);
+  EXPECT_TRUE(idle.went_idle);
+  EXPECT_GE(idle.seconds, 0.09) << "it is 0.1 s";
+  EXPECT_FALSE(finding(emulate::DeadMan::kKeepsForEver, Ending::kSilence).went_idle);
+  EXPECT_FALSE(finding(emulate::DeadMan::kKeepsForEver, Ending::kClose).went_idle);
+  EXPECT_FALSE(finding(emulate::DeadMan::kZeroOnClose, Ending::kSilence).went_idle);
+  EXPECT_TRUE(finding(emulate::DeadMan::kZeroOnClose, Ending::kClose).went_idle);
 }
 
 TEST(HaplyMap, IsTheEmulatorsOwnMapping) {

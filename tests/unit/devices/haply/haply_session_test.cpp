@@ -42,6 +42,11 @@ class Wire {
     session.arm(1, now);
     run(0.21);
   }
+  // The service is away, as on a busy computer; what was sent waits.
+  void pauseService(double seconds) {
+    service_away_until_ = now + static_cast<std::int64_t>(seconds * 1e9);
+    run(seconds);
+  }
   void push(const Vec3& f_H) { session.want(0, f_H), session.want(1, f_H); }
   double force(std::size_t arm = 0) { return service.plant(arm).force_D().norm(); }
 
@@ -53,7 +58,7 @@ class Wire {
   void step() {
     now += kStep;
     service.advance(1e-9 * kStep);
-    while (!to_service_.empty() && to_service_.front().first <= now) {
+    while (now > service_away_until_ && !to_service_.empty() && to_service_.front().first <= now) {
       for (std::string& answer : service.answer(number_, to_service_.front().second))
         to_session_.emplace_back(now + kLatency, std::move(answer));
       to_service_.pop_front();
@@ -67,6 +72,7 @@ class Wire {
   }
 
   int number_ = 0;
+  std::int64_t service_away_until_ = -1;
   std::deque<std::pair<std::int64_t, std::string>> to_service_, to_session_;
 };
 
@@ -277,6 +283,24 @@ TEST(HaplySession, DoubtsALostEventChannelAfterASecond) {
   EXPECT_FALSE(wire.session.doubted());
   wire.run(0.2);
   EXPECT_TRUE(wire.session.doubted());
+}
+
+// A force that ended while the service was away for 40 ms looked like one that nobody had asked for; an echo that was late, like none.
+TEST(HaplySession, DoesNotTakeALateServiceForAWildOne) {
+  Wire wire;
+  wire.run(0.6);
+  wire.session.arm(0, wire.now);
+  wire.pauseService(0.06);
+  wire.run(0.25);
+  EXPECT_FALSE(wire.session.doubted()) << wire.session.complaint();
+  wire.push({0, 0, 1});
+  wire.run(0.1);
+  ASSERT_NEAR(wire.force(), 1, 1e-6) << wire.session.complaint();
+  wire.push({0, 0, 0.05});
+  wire.pauseService(0.04);
+  wire.run(0.1);
+  EXPECT_FALSE(wire.session.doubted()) << wire.session.complaint();
+  EXPECT_NEAR(wire.force(), 0.05, 1e-6);
 }
 
 // Forces that stop coming are zero at once, not at the next turn.
