@@ -70,7 +70,7 @@ bool ArcTrial::tick(double now) {
   const OneFingerAction action = observer_.act({arm, out_.f_D, tactile}, now, cue_);
   arm_.setHand(action.pull);
   if (action.enters && entered_places_.size() < setup_.intervals.size()) entered_places_.push_back(display_.trueRoller());
-  if (action.pitch != 0) arm_.setGimbal(model_.X_WD.q.conjugate() * Quat(Eigen::AngleAxisd(action.pitch, Vec3::UnitX())));
+  if (action.pitch != 0) arm_.setGimbal(model_.X_WD.q.conjugate() * quatFromRotationVector(action.pitch * Vec3::UnitX()));
   advance(action, now);
   if (ticks_++ % setup_.stride == 0) record(tactile, now, took);
   return stage_ != Stage::kOver;
