@@ -83,7 +83,7 @@ class HaplyHost::Life final : public PortSink {
   void speak(std::int64_t now) {
     for (auto text = session_.next(now); !text.empty(); text = session_.next(now)) {
       last_.writing(true);
-      port_.send(text);
+      if (!LastZero::isLast()) port_.send(text);
       last_.writing(false);
     }
     const bool commands = session_.phase() == SessionPhase::kReady;
