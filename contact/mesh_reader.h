@@ -24,6 +24,9 @@ enum class Degenerate : std::uint8_t { reject, keep };
 struct ReadOptions {
   double metres_per_unit = 1;  // of the file's coordinates, > 0 and finite
   Degenerate degenerate = Degenerate::reject;
+  // Told of each polygon that can't be used: its index is out of range, it has fewer than three corners, or no triangles. It is then left out
+  // and the rest is read. Empty: the first such polygon throws.
+  std::function<void(const std::string& what)> left_out = {};
   std::function<void(double fraction)> progress = {};  // of the bytes read, 0 .. 1; called about once a megabyte; may throw to cancel
 };
 

@@ -2,7 +2,8 @@
 //
 // In this order: weld vertices on open edges that lie at one place; turn the neighbours of triangles without area so that these vanish
 // without a gap; drop duplicate faces; make the orientation consistent; cut edges and vertices apart where the surface branches or touches
-// itself; fill small holes, if asked; turn closed pieces outwards; drop unused vertices.
+// itself; fill small holes, if asked; turn closed pieces outwards; drop the file's normals of
+// triangles that have one to their back; drop unused vertices.
 // A mesh that has none of these faults comes back as it was, to the last bit. No vertex is moved: a welded one takes its partner's place.
 #pragma once
 #include <string>
@@ -15,7 +16,8 @@ namespace pincer::contact {
 
 struct RepairOptions {
   double weld = 0;     // vertices on open edges this near to each other become one [m], >= 0; 0: exactly equal ones
-  int fill_holes = 0;  // holes of at most so many edges, nearly flat, are closed with triangles between the vertices of their rim
+  int fill_holes = 0;  // nearly flat holes of at most so many edges are closed with triangles between the vertices of their rim; not the
+                       // rim of a flat sheet, which would enclose nothing
 };
 
 struct MeshChange {

@@ -58,6 +58,10 @@ struct InspectOptions {
 // Total over every validated mesh, also one whose reader kept degenerate triangles.
 MeshReport inspect(const TriangleMesh& mesh, const InspectOptions& options = {});
 
+// Throws InputError naming the first element that no reader would have let through: a vertex that isn't finite, an index that is out of
+// range or named twice by one triangle, a list that is as long as no other, a normal that isn't of unit length to 1e-3. For meshes that were
+// made in memory; everything below needs it.
+void requireWellFormed(const TriangleMesh& mesh);
 // Throws InputError naming the first edge (or vertex) where the surface branches, how many there are, and the remedy.
 void requireManifold(const TriangleMesh& mesh);
 // The same, and for open borders and pieces that face inwards: what mass properties and grasping need.

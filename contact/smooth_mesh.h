@@ -35,8 +35,8 @@ struct SurfaceOptions {
 
 class SmoothMesh {
  public:
-  // Builds neighbours, normals, search tree and convex hull; no patch. The mesh must be manifold (requireManifold, mesh_report.h); an open border is felt as a
-  // sharp edge. Throws InputError.
+  // Builds neighbours, normals, search tree and convex hull; no patch. The mesh must be well-formed and manifold (mesh_report.h); an open
+  // border is felt as a sharp edge. Normals of the file that point to the back of their triangle don't count. Throws InputError.
   static std::shared_ptr<const SmoothMesh> build(TriangleMesh mesh, const SurfaceOptions& options = {});
   ~SmoothMesh();
   SmoothMesh(const SmoothMesh&) = delete;

@@ -4,6 +4,9 @@
 // people read B (bodyPose, state.h).
 #pragma once
 #include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -29,25 +32,44 @@ struct Material {
 // The number of rows that the solver sees of a contact: 3 rows, with torsion 4, with rolling 6.
 inline int rowsOf(const Material& m) { return m.rolling_radius > 0 ? kMaxContactRows : m.torsion_radius > 0 ? kRollingRow : kTorsionRow; }
 
-struct BodyModel {
+// Which shapes of different bodies may touch: if (as & other.with) or (other.as & with). Both 0: a shape that is only seen, by fingers neither.
+struct CollisionBits {
+  std::uint32_t as = 1;    // the groups that it is of
+  std::uint32_t with = 1;  // the groups that it touches
+};
+inline bool mayTouch(const CollisionBits& a, const CollisionBits& b) { return ((a.as & b.with) | (b.as & a.with)) != 0; }
+inline bool isOnlySeen(const CollisionBits& bits) { return (bits.as | bits.with) == 0; }
+
+// One shape of a body. Most bodies have one, whose frame S is B.
+struct ColliderModel {
+  int body = 0;
   std::string name;
   contact::Shape shape;
-  bool dynamic = true;           // false: never moves, or is driven
-  bool driven = false;           // follows the motion that the caller gives, whatever touches it
-  int motion = -1;               // of driven bodies: which of the inputs
-  double mass = 0;               // [kg]; 0 for static and driven bodies
-  double inverse_mass = 0;       // [1/kg]
-  double root_inverse_mass = 0;  // its root
-  Vec3 moments = Vec3::Zero();   // principal moments of inertia [kg m^2]
-  Pose X_BI;                     // inertial frame in B; identity for static and driven bodies
+  Pose X_BS;
+  bool is_posed = false;  // X_BS isn't the identity
+  Material material;
+  CollisionBits bits;
+  double bounding_radius = 0;  // about S's origin [m]; infinite for half-spaces and dishes
+};
+
+struct BodyModel {
+  std::string name;
+  int first_collider = 0, collider_count = 1;  // its shapes, of WorldModel::colliders
+  bool dynamic = true;                         // false: never moves, or is driven
+  bool driven = false;                         // follows the motion that the caller gives, whatever touches it
+  int motion = -1;                             // of driven bodies: which of the inputs
+  double mass = 0;                             // [kg]; 0 for static and driven bodies
+  double inverse_mass = 0;                     // [1/kg]
+  double root_inverse_mass = 0;                // its root
+  Vec3 moments = Vec3::Zero();                 // principal moments of inertia [kg m^2]
+  Pose X_BI;                                   // inertial frame in B; identity for static and driven bodies
   Pose X_IB;
   bool body_is_inertial = true;  // X_IB is the identity
   FreeRotation rotation;
-  Material material;
   double bounding_radius = 0;  // about the centre of mass [m]; infinite for half-spaces
-  double inner_radius = 0;     // about half its least thickness [m]; infinite for half-spaces and dishes
+  double inner_radius = 0;     // about half the least thickness of its thinnest shape [m]; infinite for half-spaces and dishes
   double corner_reach = 0;     // how much further than that it reaches; 0 where turning doesn't change its outline [m]
-  bool may_be_hollow = false;  // its surface may curve inwards: a mesh, a dish
+  bool may_be_hollow = false;  // its surface may curve inwards: a mesh, a dish, several shapes
   int joint_group = -1;        // that binds it to others or to the world, -1: none
   bool may_touch = false;      // some pair or point can touch it; the others move in closed form alone
 };
@@ -81,8 +103,9 @@ double slidingFriction(const Material& m, double speed);
 
 // A pair of bodies that may touch: all that is constant about it.
 struct PairModel {
-  int a = 0, b = 0;   // bodies, a < b
-  Material material;  // combined
+  int a = 0, b = 0;         // bodies, a < b
+  Material material;        // of the pair, or combined; of the first of its shapes where one has several (materialOf)
+  bool is_of_many = false;  // one of the two has several shapes: materials go by those
 };
 
 // What a joint leaves free, in its frame J.
@@ -113,6 +136,12 @@ constexpr int kMostJointRows = 7;       // of one joint: a weld's six, a pivot's
 
 constexpr int kMostContacts = 65536;
 
+// How the frictions of two bodies make that of the pair.
+enum class Combination : std::uint8_t {
+  kGeometricMean,
+  kMaximum,  // as MJCF has it
+};
+
 struct WorldOptions {
   double h = 1e-3;                     // tick [s], 1e-5 .. 1e-2
   Vec3 gravity_W = Vec3(0, 0, -9.81);  // [m/s^2]
@@ -122,14 +151,17 @@ struct WorldOptions {
   int threads = 1;  // that solve islands, 1 .. 16; the results are the same to the bit
   // Position error per tick that is allowed [m], 0 or 1e-12 .. 1; 0: every tick is one part. Costs three times a plain tick, or more.
   double position_tolerance = 0;
-  int max_parts = 16;  // that a tick may be cut into for that, 2 .. 1024; rounded down to a power of two
-  bool sleep = true;   // what would repeat its last tick to the bit isn't computed: the world (rest.h), islands (island_sleep.h)
+  int max_parts = 16;                                     // that a tick may be cut into for that, 2 .. 1024; rounded down to a power of two
+  Combination combination = Combination::kGeometricMean;  // of frictions
+  bool sleep = true;  // what would repeat its last tick to the bit isn't computed: the world (rest.h), islands (island_sleep.h)
   SolverOptions solver;
 };
 
 struct WorldModel {
   WorldOptions options;
   std::vector<BodyModel> bodies;
+  std::vector<ColliderModel> colliders;  // by bodies; as many as those where each body has one shape
+  int shape_bits = 0;                    // of a contact's identity that say which of a body's shapes touches (contactId, world/contact.h)
   std::vector<DrivenPointModel> points;
   std::vector<std::array<AxisForm, 3>> point_forms;
   bool has_corners = false;      // of dynamic bodies: some corner_reach isn't 0
@@ -148,14 +180,36 @@ inline bool isHeldBody(const WorldModel& model, const BodyModel& body) {
   return body.joint_group >= 0 && model.joint_groups[body.joint_group].is_held_body;
 }
 
+inline std::span<const ColliderModel> collidersOf(const WorldModel& model, const BodyModel& body) {
+  return {model.colliders.data() + body.first_collider, static_cast<std::size_t>(body.collider_count)};
+}
+
+// What the builder is told about one of several shapes of a body.
+struct ColliderSpec {
+  std::string name;
+  contact::Shape shape;
+  Pose X_BS;
+  std::optional<Material> material = std::nullopt;  // else the body's
+  double mass = 0;                                  // its share of the body's [kg], >= 0; 0: by volume, of what the others leave
+  CollisionBits bits = {};
+};
+
+// An inertia that is known, in place of that of homogeneous shapes.
+struct GivenInertia {
+  Vec3 p_BBcm = Vec3::Zero();  // centre of mass [m]
+  Mat3 I_BBcm = Mat3::Zero();  // about the centre of mass, in B's axes [kg m^2]
+};
+
 // What the builder is told about a body; B's pose and velocity at the start live in BodyStart.
 struct BodySpec {
   std::string name;
-  contact::Shape shape;
+  contact::Shape shape;  // if `shapes` is empty
   bool dynamic = true;
-  double mass = 0;  // [kg], > 0 for dynamic bodies
+  double mass = 0;  // [kg], > 0 for dynamic bodies; 0 takes the sum of the shapes', if each has one
   Material material;
   bool driven = false;  // not dynamic, but moves as the caller says
+  std::vector<ColliderSpec> shapes = {};
+  std::optional<GivenInertia> inertia = std::nullopt;
 };
 
 // Collects bodies and points, checks them, and builds the model. Every error names the body, the value, its range and a remedy (InputError).
@@ -174,9 +228,11 @@ class WorldBuilder {
   std::vector<std::pair<int, int>> excluded_;
 };
 
-Material combine(const Material& a, const Material& b);
+Material combine(const Material& a, const Material& b, Combination rule = Combination::kGeometricMean);
 
-// Of two bodies, a < b: their own, or combined.
+// Of two bodies, a < b: their own, or combined of their first shapes' materials.
 Material materialOf(const WorldModel& model, int a, int b);
+// Of two shapes, of bodies a.body < b.body: the bodies' own, or combined of the two materials.
+Material materialOf(const WorldModel& model, const ColliderModel& a, const ColliderModel& b);
 
 }  // namespace pincer::engine

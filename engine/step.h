@@ -96,6 +96,8 @@ struct ContactReport {
   int point = -1;                // that touches, -1: a body does
   int other_body = -1;           // that touches, -1: a point does
   int body = -1;                 // that is touched
+  int shape = 0;                 // of its shapes, the one that is touched
+  int other_shape = 0;           // of those of `other_body`, the one that touches
   Vec3 p_W = Vec3::Zero();       // where [m]
   Vec3 n_W = Vec3::UnitZ();      // out of `body`
   double gap = 0;                // in the middle of the tick [m], negative: overlap

@@ -15,7 +15,7 @@ struct FingerDistance {
   Vec2 place_L = Vec2::Zero();     // on the pad, where it would touch [m]
 };
 
-// Of every finger and every body, finger by finger, with the proxies and orientations of `state`. Searches each surface anew and allocates: off
+// Of every finger and every body that it can touch, finger by finger, with the proxies and orientations of `state`. Searches each surface anew and allocates: off
 // the tick. The tick itself reports each finger's nearest body within its reach (FingerReport::gap, nearest).
 std::vector<FingerDistance> fingerDistances(const GraspModel& model, const GraspState& state);
 

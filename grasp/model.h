@@ -32,6 +32,14 @@ struct SoftPad {
 double patchRadius(const SoftPad& pad, double tip_radius, double f_n);    // a [m]
 double torsionRadius(const SoftPad& pad, double tip_radius, double f_n);  // e [m], > 0
 
+// Taxels in rows across the pad (from proximal to distal) and columns along it, its middle on the pad's centre (pressure_map.h).
+struct PressureGrid {
+  int rows = 0, columns = 0;  // 2 .. 64 each; 0: no map, and no cost
+  double pitch = 2e-3;        // from one to the next over the skin [m], > 0
+
+  bool isOn() const { return rows > 0; }
+};
+
 struct FingerModel {
   std::string name;
   double radius = 8e-3;                       // of the fingertip sphere [m], > 0
@@ -39,6 +47,7 @@ struct FingerModel {
   engine::DrivenPointModel coupling;          // proxy mass, stiffness and damping, twist
   bool along_normal = false;                  // the coupling's axes are those of the contact (t1, t2, n), not the world's
   SoftPad pad;
+  PressureGrid taxels;
   std::optional<ArmPort> arm;  // that is to carry it, if somebody said: `pincer plan` compares the coupling with what it can
   // The fingerpad frame L in the finger frame F: pad normal (out of the pad, where a flat touch lands) and distal axis (towards the nail tip).
   Vec3 pad_normal_F = Vec3(0, 0, -1);  // unit

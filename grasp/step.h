@@ -30,9 +30,15 @@ struct FingerState {
 
 struct GraspState {
   engine::WorldState world;
-  std::vector<contact::SurfaceTracker> trackers;  // finger-major: fingers x bodies
+  std::vector<contact::SurfaceTracker> trackers;  // finger-major: fingers x shapes
   std::vector<contact::FingerTracker> tips;       // likewise, of fingers that aren't spheres; empty if there are none
   std::vector<FingerState> fingers;
+};
+
+// The force on one place of a finger's skin: into the skin, and along it in the directions (distal, radial). [N]
+struct Taxel {
+  double normal = 0;
+  Vec2 tangential = Vec2::Zero();
 };
 
 // What a finger feels after a tick.
@@ -46,11 +52,13 @@ struct FingerReport {
   double normal_force = 0;       // [N], >= 0
   double tangential_force = 0;   // [N]
   bool sliding = false;
-  double torsion = 0;          // moment of the contacts on the finger, about n_W [N m]
-  double patch_radius = 0;     // of a soft pad [m]
-  PadTouch touch, last_touch;  // where on the pad, now and in the tick before: placeOnPad, placeRateOnPad (pad_place.h)
-  double gap = 0;              // to the nearest body [m]; larger than `reach`: a lower bound
-  PadTouch nearest;            // where the nearest point would touch the pad, while nothing does
+  double torsion = 0;               // moment of the contacts on the finger, about n_W [N m]
+  double patch_radius = 0;          // of a soft pad [m]
+  PadTouch touch, last_touch;       // where on the pad, now and in the tick before: placeOnPad, placeRateOnPad (pad_place.h)
+  double gap = 0;                   // to the nearest body [m]; larger than `reach`: a lower bound
+  std::span<const Taxel> pressure;  // row by row, valid until the next step; empty unless FingerModel::taxels asks for it (pressure_map.h)
+  double off_grid = 0;              // normal force of `pressure` that belongs beyond its rim, and is on the taxels there [N]
+  PadTouch nearest;                 // where the nearest point would touch the pad, while nothing does
 };
 
 // State with every body at `starts` and every finger's device at `fingers` [m].

@@ -4,7 +4,7 @@
 //   p = -1 where the fan's edges are of about one length (up to 2 : 1), +1 where they aren't (from 6 : 1), between in the logarithm
 //
 // Edge i of a triangle goes from its corner i to corner (i + 1) mod 3. A fan is the triangles around a vertex between two sharp edges, so a
-// vertex on a crease has several normals. Where the file has normals their mean replaces that sum, and an edge is sharp where the two
+// vertex on a crease has several normals. Where the file has usable normals their mean replaces that sum, and an edge is sharp where the two
 // sides' normals differ at an end by more than kSameNormal; elsewhere, where the file has smoothing groups, it is sharp unless both sides
 // are in the same one or in one plane (within kSameNormal); elsewhere where the facets' angle exceeds the crease angle.
 // A fan that ends at a sharp edge sees one side of its vertex only, and its facets' mean would lean away from the edge by half a facet's
@@ -40,6 +40,13 @@ struct CornerNormals {
 
 // Requires a manifold mesh (requireManifold); throws std::logic_error if it isn't.
 Neighbours findNeighbours(const TriangleMesh& mesh);
+
+// Corners 3 t + i whose normal of the file points to the back of their triangle, and also to that of all triangles at the vertex with this
+// normal: a sliver alone may lie askew. Between normals that oppose each other no shading exists. Empty where there is none.
+std::vector<bool> findOpposingCorners(const TriangleMesh& mesh);
+
+// The file's normal at corner i (mod 3) of triangle t; null where it has none or where it opposes the triangle, as `opposing` says.
+const Vec3* usableFileNormal(const TriangleMesh& mesh, std::size_t t, std::size_t i, const std::vector<bool>& opposing);
 
 // Requires 0 < crease_angle <= pi [rad].
 CornerNormals findCornerNormals(const TriangleMesh& mesh, const Neighbours& neighbours, double crease_angle, bool use_file_normals);

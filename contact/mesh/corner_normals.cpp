@@ -21,7 +21,8 @@ class CornerNormalFinder {
       : mesh_(mesh),
         neighbours_(neighbours),
         use_file_normals_(use_file_normals && !mesh.triangle_normals.empty()),
-        use_groups_(use_file_normals && !mesh.smoothing_groups.empty()) {
+        use_groups_(use_file_normals && !mesh.smoothing_groups.empty()),
+        opposing_(use_file_normals_ ? findOpposingCorners(mesh) : std::vector<bool>()) {
     facet_normals_.reserve(mesh.triangles.size());
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
       facet_normals_.push_back((corner(t, 1) - corner(t, 0)).cross(corner(t, 2) - corner(t, 0)).normalized());
@@ -45,9 +46,7 @@ class CornerNormalFinder {
   const Vec3& corner(std::size_t t, std::size_t i) const { return mesh_.vertices[static_cast<std::size_t>(mesh_.triangles[t][i % 3])]; }
 
   const Vec3* fileNormal(std::size_t t, std::size_t i) const {
-    if (!use_file_normals_) return nullptr;
-    const std::int32_t n = mesh_.triangle_normals[t][i % 3];
-    return n < 0 ? nullptr : &mesh_.normals[static_cast<std::size_t>(n)];
+    return use_file_normals_ ? usableFileNormal(mesh_, t, i, opposing_) : nullptr;
   }
 
   bool isSharp(std::size_t t, std::size_t i, double crease_angle) const {
@@ -201,6 +200,7 @@ class CornerNormalFinder {
   const TriangleMesh& mesh_;
   const Neighbours& neighbours_;
   bool use_file_normals_, use_groups_;
+  std::vector<bool> opposing_;  // corners
   std::vector<Vec3> facet_normals_;
 };
 

@@ -6,6 +6,7 @@
 
 #include "pincer/contact/io/counted.h"
 #include "pincer/contact/mesh/mesh_findings.h"
+#include "pincer/contact/mesh/mesh_pieces.h"
 #include "pincer/contact/mesh/mesh_topology.h"
 #include "pincer/contact/mesh/polygon.h"
 #include "pincer/contact/mesh/repair_steps.h"
@@ -65,20 +66,30 @@ class HoleFiller {
     for (const Loop& loop : findLoops(half_edges_)) {
       if (loop.size() > most_edges || !fillOne(loop)) ++left_;
     }
-    if (filled_.count == 0) return {};
-    const std::string left = left_ > 0 ? fmt::format("; {} left: larger than asked, or not flat enough", left_) : "";
-    return MeshChange{"filled-holes", filled_.count,
-                      fmt::format("filled {} with {}; the first is at {}{}", counted(filled_.count, "hole"),
-                                  counted(triangles_, "triangle"), vertexPlace(mesh_, filled_.first), left)};
+    const int sheets = reopenSheets();
+    if (fills_.empty()) return {};
+    std::size_t triangles = 0;
+    for (const Fill& fill : fills_) triangles += fill.triangles;
+    std::string left = left_ > 0 ? fmt::format("; {} left: larger than asked, or not flat enough", left_) : "";
+    if (sheets > 0) left += fmt::format("; {} left open that would enclose nothing", counted(sheets, "sheet"));
+    return MeshChange{"filled-holes", static_cast<int>(fills_.size()),
+                      fmt::format("filled {} with {}; the first is at {}{}", counted(static_cast<int>(fills_.size()), "hole"),
+                                  counted(static_cast<int>(triangles), "triangle"), vertexPlace(mesh_, fills_[0].rim_vertex), left)};
   }
 
  private:
+  struct Fill {
+    std::int32_t rim_vertex;
+    std::size_t first_triangle, triangles;
+  };
+
   bool fillOne(const Loop& loop) {
     std::vector<Vec3> rim;
     for (const std::int32_t v : loop) rim.push_back(mesh_.vertices[static_cast<std::size_t>(v)]);
     if (!isFlatEnough(rim)) return false;
     const std::vector<CornerTriple> triples = triangulate(rim);
     if (triples.empty() || !diagonalsAreFree(loop, triples)) return false;
+    fills_.push_back({loop[0], mesh_.triangles.size(), triples.size()});
     ++last_group_;  // what fills a hole is smooth in itself
     for (const auto& [a, b, c] : triples) {
       const auto v = [&](int i) { return loop[static_cast<std::size_t>(i)]; };
@@ -86,9 +97,26 @@ class HoleFiller {
       if (!mesh_.triangle_normals.empty()) mesh_.triangle_normals.push_back({-1, -1, -1});
       if (!mesh_.smoothing_groups.empty()) mesh_.smoothing_groups.push_back(last_group_);
     }
-    triangles_ += triples.size();
-    filled_.add(loop[0]);
     return true;
+  }
+
+  // The rim of a sheet is a loop too. Filled, a flat sheet would be two faces on top of each other: such pieces stay open. Returns how many
+  // fills were taken back.
+  int reopenSheets() {
+    if (fills_.empty()) return 0;
+    const std::vector<HalfEdge> half_edges = sortedHalfEdges(mesh_.triangles);
+    const MeshTopology topology = findTopology(mesh_, half_edges);
+    const MeshPieces pieces = findPieces(mesh_, half_edges, topology);
+    std::vector<bool> drop(mesh_.triangles.size());
+    const auto isSheet = [&](const Fill& fill) {
+      const std::int32_t piece = topology.piece_of[fill.first_triangle];
+      if (!pieces.list[static_cast<std::size_t>(piece)].hasNoThickness()) return false;
+      std::fill_n(drop.begin() + static_cast<std::ptrdiff_t>(fill.first_triangle), fill.triangles, true);
+      return true;
+    };
+    const auto sheets = static_cast<int>(std::erase_if(fills_, isSheet));
+    if (sheets > 0) dropTriangles(mesh_, drop);
+    return sheets;
   }
 
   // A diagonal that is an edge already would make the surface branch there.
@@ -114,9 +142,8 @@ class HoleFiller {
   std::vector<HalfEdge> half_edges_;
   std::vector<VertexPair> taken_;  // sorted
   std::set<VertexPair> filled_edges_;
-  Occurrences<std::int32_t> filled_;
+  std::vector<Fill> fills_;
   std::int32_t last_group_ = 0;
-  std::size_t triangles_ = 0;
   int left_ = 0;
 };
 

@@ -72,21 +72,24 @@ void MeshBuilder::addNormal(const Vec3& n, std::int32_t place) {
 }
 
 void MeshBuilder::beginFace(std::int64_t corners, std::int32_t place) {
-  if (corners < 3) {
-    file_.failAt(place, fmt::format("face {} has {} corners; it needs at least 3. {}", nextFace(), corners, kDelete));
-  }
   if (corners > static_cast<std::int64_t>(kMaxCorners)) {
     file_.failAt(place, fmt::format("face {} has {} corners; the limit is {}. Triangulate the mesh before export.", nextFace(), corners,
                                     kMaxCorners));
   }
-  triangles_ += static_cast<std::size_t>(corners) - 2;
+  const auto needed = static_cast<std::size_t>(std::max<std::int64_t>(corners, 2));
+  triangles_ += needed - 2;
   requireFew(triangles_, place);
   faces_.push_back({corners_.size(), place, group_});
+  if (corners >= 3) return;
+  leaveOutIfBad(faces_.back(), [&] {
+    file_.failAt(place, fmt::format("face {} has {} corners; it needs at least 3. {}", nextFace() - 1, corners, kDelete));
+  });
 }
 
 void MeshBuilder::addCorner(std::int64_t vertex, std::int64_t normal) {
   PINCER_ASSERT(!faces_.empty());  // begun
-  corners_.push_back({inRange(vertex, "vertex"), inRange(normal, "normal")});
+  if (faces_.back().is_left_out) return;
+  leaveOutIfBad(faces_.back(), [&] { corners_.push_back({inRange(vertex, "vertex"), inRange(normal, "normal")}); });
 }
 
 std::int32_t MeshBuilder::inRange(std::int64_t index, const char* what) const {
@@ -103,10 +106,27 @@ TriangleMesh MeshBuilder::build() {
   }
   dropUnusedFeatures();
   mesh_.triangles.reserve(triangles_);
-  for (std::size_t i = 0; i < faces_.size(); ++i) addPolygon(polygon(i));
+  addPolygons();
   PINCER_ASSERT(mesh_.triangle_normals.empty() || mesh_.triangle_normals.size() == mesh_.triangles.size());
   PINCER_ASSERT(mesh_.smoothing_groups.empty() || mesh_.smoothing_groups.size() == mesh_.triangles.size());
   return std::move(mesh_);
+}
+
+void MeshBuilder::addPolygons() {
+  for (std::size_t i = 0; i < faces_.size(); ++i) {
+    if (faces_[i].is_left_out) continue;
+    const std::size_t before = mesh_.triangles.size();
+    leaveOutIfBad(faces_[i], [&] { addPolygon(polygon(i)); });
+    if (faces_[i].is_left_out) cutOff(before);
+  }
+  if (!mesh_.triangles.empty()) return;
+  file_.fail(fmt::format("none of its {} faces can be used, so there is nothing to touch. Export it again.", faces_.size()));
+}
+
+void MeshBuilder::cutOff(std::size_t triangles) {
+  mesh_.triangles.resize(triangles);
+  if (!mesh_.triangle_normals.empty()) mesh_.triangle_normals.resize(triangles);
+  if (!mesh_.smoothing_groups.empty()) mesh_.smoothing_groups.resize(triangles);
 }
 
 MeshBuilder::Polygon MeshBuilder::polygon(std::size_t face) const {

@@ -1,7 +1,7 @@
 // mesh_builder: what all readers share: it takes vertices, normals and polygons as a file lists them, and makes a validated mesh of them.
 //
 // Every defect throws InputError at the place (MeshFile) that the reader gave with the vertex or face. Faces are checked at the end, since a
-// file may give a face's vertices after it. Numbers in messages count as the format does, from `first_index`.
+// file may give a face's vertices after it. Where ReadOptions::left_out is set, a face that is bad is told there and left out. Numbers in messages count as the format does, from `first_index`.
 #pragma once
 #include <span>
 #include <vector>
@@ -40,6 +40,11 @@ class MeshBuilder {
   // A face is begun, then gets its corners. Indices count from 0; `normal` -1 stands for none. Whether they exist is checked at the end.
   void beginFace(std::int64_t corners, std::int32_t place);
   void addCorner(std::int64_t vertex, std::int64_t normal = -1);
+  // Runs `read`, which reads corners of the face begun last. If that throws InputError and bad faces are to be left out, this one is.
+  template <class Read>
+  void readCorners(Read&& read) {
+    leaveOutIfBad(faces_.back(), read);
+  }
   // Of the faces begun from here on; 0 for none.
   void setSmoothingGroup(std::int32_t group) { group_ = group; }
 
@@ -54,6 +59,7 @@ class MeshBuilder {
     std::size_t first_corner;
     std::int32_t place;
     std::int32_t group;
+    bool is_left_out = false;
   };
   struct Polygon {
     std::size_t number;  // as messages count
@@ -62,6 +68,18 @@ class MeshBuilder {
     std::span<const Corner> corners;
   };
 
+  template <class Use>
+  void leaveOutIfBad(Face& face, Use&& use) {
+    if (!options_.left_out) return use();
+    try {
+      use();
+    } catch (const InputError& error) {
+      if (!face.is_left_out) options_.left_out(error.what());
+      face.is_left_out = true;
+    }
+  }
+  void addPolygons();
+  void cutOff(std::size_t triangles);
   Polygon polygon(std::size_t face) const;
   void requireFew(std::size_t triangles, std::int32_t place) const;
   void requireRoom(std::size_t count, const char* what, std::int32_t place) const;

@@ -184,6 +184,27 @@ MaybeFinding duplicateTriangleFinding(const TriangleMesh& mesh, const Occurrence
                                  counted(triangles.count, "triangle"), trianglePlace(mesh, triangles.first))};
 }
 
+MaybeFinding opposingNormalFinding(const TriangleMesh& mesh, const Occurrences<std::int32_t>& triangles) {
+  if (triangles.count == 0) return {};
+  return MeshFinding{"opposing-normals", false, triangles.count,
+                     fmt::format("the file's normals point to the back of {}, the first is {}. Such normals don't count, the facets decide "
+                                 "there. `pincer mesh convert --repair` drops them; or have your program compute the normals again.",
+                                 counted(triangles.count, "triangle"), trianglePlace(mesh, triangles.first))};
+}
+
+MaybeFinding flatPieceFinding(const TriangleMesh& mesh, const MeshPieces& pieces) {
+  Occurrences<const MeshPiece*> flat;
+  for (const MeshPiece& piece : pieces.list) {
+    if (piece.hasNoThickness()) flat.add(&piece);
+  }
+  if (flat.count == 0) return {};
+  return MeshFinding{
+      "zero-thickness", true, flat.count,
+      fmt::format("{} closed, but without thickness: its two sides lie on each other, so that it encloses no volume and a "
+                  "finger slips through. The first is {}. Give it a thickness in a mesh editor (\"solidify\"), or delete it.",
+                  counted(flat.count, "piece"), piecePlace(mesh, *flat.first))};
+}
+
 MaybeFinding sizeFinding(double size, double metres_per_unit) {
   if (size >= kSmallestHeld && size <= kLargestHeld) return {};
   std::string text = fmt::format("the mesh is {:.4g} mm long; hands hold 5 to 500 mm. ", 1e3 * size);

@@ -29,6 +29,10 @@ MaybeFinding unusedVertexFinding(const TriangleMesh& mesh, const std::vector<boo
 MaybeFinding zeroAreaFinding(const TriangleMesh& mesh, const Occurrences<std::int32_t>& triangles);
 MaybeFinding needleFinding(const TriangleMesh& mesh, const Occurrences<std::int32_t>& triangles);
 MaybeFinding duplicateTriangleFinding(const TriangleMesh& mesh, const Occurrences<std::int32_t>& triangles);
+// Triangles with a normal of the file that points to their back.
+Occurrences<std::int32_t> findOpposingNormals(const TriangleMesh& mesh);
+MaybeFinding opposingNormalFinding(const TriangleMesh& mesh, const Occurrences<std::int32_t>& triangles);
+MaybeFinding flatPieceFinding(const TriangleMesh& mesh, const MeshPieces& pieces);
 MaybeFinding sizeFinding(double size, double metres_per_unit);
 
 }  // namespace pincer::contact

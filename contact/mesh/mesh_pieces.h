@@ -23,6 +23,7 @@ struct MeshPiece {
   bool within = false;    // closed, and inside an odd number of other closed pieces
 
   bool facesInwards() const { return closed && !within && volume < 0; }
+  bool hasNoThickness() const;  // closed, and flat to a ten-thousandth of its size
   bool isNestedSolid() const { return closed && within && volume > 0; }
 };
 

@@ -39,6 +39,7 @@ RepairedMesh repair(TriangleMesh mesh, const RepairOptions& options) {
   note(cutApart(m));
   if (options.fill_holes > 0) note(fillHoles(m, options.fill_holes));
   note(turnOutwards(m));
+  note(dropOpposingNormals(m));
   note(dropUnusedVertices(m));
   return result;
 }

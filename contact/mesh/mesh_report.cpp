@@ -16,11 +16,9 @@ using Triangle = std::array<std::int32_t, 3>;
 
 const Vec3& vertex(const TriangleMesh& mesh, std::int32_t i) { return mesh.vertices[static_cast<std::size_t>(i)]; }
 
-// The file's normal at corner i of a triangle; null where it has none.
-const Vec3* fileNormal(const TriangleMesh& mesh, std::int32_t t, int i) {
+const Vec3* fileNormal(const TriangleMesh& mesh, const std::vector<bool>& opposing, std::int32_t triangle, int i) {
   if (mesh.triangle_normals.empty()) return nullptr;
-  const std::int32_t n = mesh.triangle_normals[static_cast<std::size_t>(t)][static_cast<std::size_t>(i % 3)];
-  return n < 0 ? nullptr : &mesh.normals[static_cast<std::size_t>(n)];
+  return usableFileNormal(mesh, static_cast<std::size_t>(triangle), static_cast<std::size_t>(i), opposing);
 }
 
 bool inOneGroup(const TriangleMesh& mesh, const HalfEdge& h, const HalfEdge& k) {
@@ -29,10 +27,11 @@ bool inOneGroup(const TriangleMesh& mesh, const HalfEdge& h, const HalfEdge& k) 
 }
 
 // As findCornerNormals (connectivity.h) decides it, for meshes that may branch elsewhere.
-bool isCrease(const TriangleMesh& mesh, std::span<const HalfEdge> edge, double crease_angle) {
+bool isCrease(const TriangleMesh& mesh, const std::vector<bool>& opposing, std::span<const HalfEdge> edge, double crease_angle) {
   const HalfEdge &h = edge[0], &k = edge[1];
-  const Vec3 *a0 = fileNormal(mesh, h.triangle, h.side), *a1 = fileNormal(mesh, h.triangle, h.side + 1);
-  const Vec3 *b0 = fileNormal(mesh, k.triangle, k.side + 1), *b1 = fileNormal(mesh, k.triangle, k.side);
+  const auto normalAt = [&](std::int32_t triangle, int i) { return fileNormal(mesh, opposing, triangle, i); };
+  const Vec3 *a0 = normalAt(h.triangle, h.side), *a1 = normalAt(h.triangle, h.side + 1);
+  const Vec3 *b0 = normalAt(k.triangle, k.side + 1), *b1 = normalAt(k.triangle, k.side);
   if (a0 && a1 && b0 && b1) return angleBetween(*a0, *b0) > kSameNormal || angleBetween(*a1, *b1) > kSameNormal;
   const auto area = [&](const HalfEdge& e) { return areaVector(mesh, mesh.triangles[static_cast<std::size_t>(e.triangle)]); };
   const double angle = angleBetween(area(h), area(k));
@@ -41,8 +40,9 @@ bool isCrease(const TriangleMesh& mesh, std::span<const HalfEdge> edge, double c
 
 void countCreases(const TriangleMesh& mesh, const std::vector<HalfEdge>& half_edges, double crease_angle, MeshReport& report) {
   std::vector<bool> creased(mesh.vertices.size());
+  const std::vector<bool> opposing = findOpposingCorners(mesh);
   forEachEdge(half_edges, [&](auto edge) {
-    if (!isRegular(edge) || !isCrease(mesh, edge, crease_angle)) return;
+    if (!isRegular(edge) || !isCrease(mesh, opposing, edge, crease_angle)) return;
     ++report.crease_edges;
     creased[static_cast<std::size_t>(edge[0].low)] = creased[static_cast<std::size_t>(edge[0].high)] = true;
   });
@@ -161,9 +161,10 @@ MeshReport inspect(const TriangleMesh& mesh, const InspectOptions& options) {
   const double size = (report.box_max - report.box_min).maxCoeff();
   for (const MaybeFinding& finding :
        {boundaryFinding(mesh, topology), branchingFinding(mesh, topology), reversedFinding(mesh, topology), touchingFinding(mesh, topology),
-        flippedPieceFinding(mesh, pieces), zeroAreaFinding(mesh, quality.zero_area), duplicateTriangleFinding(mesh, quality.duplicate),
-        sizeFinding(size, options.metres_per_unit), needleFinding(mesh, quality.needle), duplicateVertexFinding(mesh, first),
-        unusedVertexFinding(mesh, used), severalPiecesFinding(mesh, pieces), nestedPieceFinding(mesh, pieces)}) {
+        flippedPieceFinding(mesh, pieces), flatPieceFinding(mesh, pieces), zeroAreaFinding(mesh, quality.zero_area),
+        duplicateTriangleFinding(mesh, quality.duplicate), sizeFinding(size, options.metres_per_unit), needleFinding(mesh, quality.needle),
+        opposingNormalFinding(mesh, findOpposingNormals(mesh)), duplicateVertexFinding(mesh, first), unusedVertexFinding(mesh, used),
+        severalPiecesFinding(mesh, pieces), nestedPieceFinding(mesh, pieces)}) {
     if (finding) report.findings.push_back(*finding);
   }
   return report;

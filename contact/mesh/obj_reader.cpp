@@ -32,6 +32,7 @@ class ObjParser {
   void readTexture();
   void readSmoothingGroup();
   void readFace();
+  void readCorners(const std::vector<std::string_view>& words);
   CornerForm readCorner(std::string_view word);
   std::int64_t readIndex(std::string_view word, std::string_view what, std::size_t count) const;
 
@@ -115,8 +116,12 @@ void ObjParser::readSmoothingGroup() {
 
 void ObjParser::readFace() {
   const auto& words = lines_.words();
-  if (words.size() < 4) lines_.fail(fmt::format("face {} has {} corners; it needs at least 3.", builder_.nextFace(), words.size() - 1));
-  builder_.beginFace(static_cast<std::int64_t>(words.size()) - 1, lines_.line());
+  builder_.beginFace(std::max<std::int64_t>(static_cast<std::int64_t>(words.size()) - 1, 3), lines_.line());
+  builder_.readCorners([&] { readCorners(words); });
+}
+
+void ObjParser::readCorners(const std::vector<std::string_view>& words) {
+  if (words.size() < 4) lines_.fail(fmt::format("face {} has {} corners; it needs at least 3.", builder_.nextFace() - 1, words.size() - 1));
   const CornerForm first = readCorner(words[1]);
   for (std::size_t i = 2; i < words.size(); ++i) {
     if (readCorner(words[i]) == first) continue;

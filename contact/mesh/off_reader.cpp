@@ -136,6 +136,7 @@ void OffParser::readVertex() {
 void OffParser::readFace() {
   const auto& words = lines_.words();
   const std::int64_t corners = lines_.integer(words[0], "number of corners");
+  if (corners < 0) lines_.fail(fmt::format("face {} has {} corners; it needs at least 3.", builder_.nextFace(), corners));
   builder_.beginFace(corners, lines_.line());
   const std::size_t used = static_cast<std::size_t>(corners) + 1;
   const std::size_t colour = words.size() - std::min(words.size(), used);
@@ -143,10 +144,12 @@ void OffParser::readFace() {
     lines_.fail(fmt::format("face {} has {} numbers after its first; it needs {} corners and a colour of 0, 1, 3 or 4 numbers.",
                             builder_.nextFace() - 1, words.size() - 1, corners));
   }
-  for (std::size_t i = 1; i < used; ++i) {
-    const std::int64_t vertex = lines_.integer(words[i], "vertex");
-    builder_.addCorner(vertex, kind_.normal ? vertex : -1);
-  }
+  builder_.readCorners([&] {
+    for (std::size_t i = 1; i < used; ++i) {
+      const std::int64_t vertex = lines_.integer(words[i], "vertex");
+      builder_.addCorner(vertex, kind_.normal ? vertex : -1);
+    }
+  });
 }
 
 }  // namespace

@@ -148,7 +148,7 @@ VertexLayout layoutOf(const PlyElement& element, const MeshFile& file) {
   return layout;
 }
 
-// Which property of a face lists its vertices.
+// Which property of a face or strip lists its vertices.
 std::size_t vertexListOf(const PlyElement& element, const MeshFile& file) {
   for (std::size_t i = 0; i < element.properties.size(); ++i) {
     const PlyProperty& p = element.properties[i];
@@ -158,7 +158,7 @@ std::size_t vertexListOf(const PlyElement& element, const MeshFile& file) {
     }
     return i;
   }
-  file.failAt(element.line, "element \"face\" has no list \"vertex_indices\". Export the mesh as polygons.");
+  file.failAt(element.line, fmt::format("element \"{}\" has no list \"vertex_indices\". Export the mesh as polygons.", element.name));
 }
 
 template <typename Values>
@@ -180,9 +180,7 @@ class PlyParser {
   void readElement(const PlyElement& element) {
     if (element.name == "vertex") return readVertices(element);
     if (element.name == "face") return readFaces(element);
-    if (element.name == "tristrips" && element.count > 0) {
-      file_.failAt(element.line, "the file holds triangle strips, which can't be read. Export the mesh as faces.");
-    }
+    if (element.name == "tristrips") return readStrips(element);
     for (std::size_t i = 0; i < element.count; ++i) {
       values_.begin(element, i);
       for (const PlyProperty& p : element.properties) skip(p);
@@ -218,6 +216,46 @@ class PlyParser {
     }
   }
 
+  void readStrips(const PlyElement& element) {
+    const std::size_t list = element.count > 0 ? vertexListOf(element, file_) : 0;
+    for (std::size_t i = 0; i < element.count; ++i) {
+      values_.begin(element, i);
+      for (std::size_t k = 0; k < element.properties.size(); ++k) {
+        k == list ? readStrip(element.properties[k]) : skip(element.properties[k]);
+      }
+      values_.end(element);
+    }
+  }
+
+  // Each vertex makes a triangle with the two before it, every second one turned round. -1 ends a strip; another begins in the same list.
+  // Strips are joined by triangles that name a vertex twice: these aren't part of the surface.
+  void readStrip(const PlyProperty& p) {
+    constexpr std::int64_t kEnd = -1;
+    const std::int32_t place = values_.place();
+    const std::int64_t items = values_.count(p);
+    requireNotNegative(items, p, place);
+    std::array<std::int64_t, 3> latest{};
+    std::int64_t length = 0;
+    for (std::int64_t i = 0; i < items; ++i) {
+      const std::int32_t here = values_.place();
+      const std::int64_t vertex = values_.index(p);
+      if (vertex == kEnd) {
+        length = 0;
+        continue;
+      }
+      latest = {latest[1], latest[2], vertex};
+      if (++length >= 3) addStripTriangle(latest, length % 2 == 0, here);
+    }
+  }
+
+  void addStripTriangle(const std::array<std::int64_t, 3>& v, bool is_turned, std::int32_t place) {
+    if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) return;
+    builder_.beginFace(3, place);
+    for (const std::size_t i : is_turned ? std::array<std::size_t, 3>{1, 0, 2} : std::array<std::size_t, 3>{0, 1, 2}) {
+      builder_.addCorner(v[i], layout_.has_normals ? v[i] : -1);
+    }
+  }
+
   void readFace(const PlyProperty& p) {
     const std::int32_t place = values_.place();
     const std::int64_t corners = values_.count(p);
@@ -232,9 +270,13 @@ class PlyParser {
     if (!p.is_list) return values_.skip(p, 1);
     const std::int32_t place = values_.place();
     const std::int64_t items = values_.count(p);
-    if (items < 0)
-      file_.failAt(place, fmt::format("list \"{}\" has the count {}, which can't be negative. Export the mesh again.", p.name, items));
+    requireNotNegative(items, p, place);
     values_.skip(p, static_cast<std::size_t>(items));
+  }
+
+  void requireNotNegative(std::int64_t items, const PlyProperty& p, std::int32_t place) const {
+    if (items >= 0) return;
+    file_.failAt(place, fmt::format("list \"{}\" has the count {}, which can't be negative. Export the mesh again.", p.name, items));
   }
 
   MeshFile& file_;

@@ -2,7 +2,7 @@
 //
 // Read: element "vertex" with x, y, z and, where all three are there, nx, ny, nz, of any type; element "face" with the list vertex_indices
 // (or vertex_index), counts and indices of any type of whole numbers, indices from 0. Elements and properties may stand in any order; all
-// others are skipped. Refused by name: triangle strips. Departure from Turk's text: in an ascii file each entry has a line of its own.
+// others are skipped. Element "tristrips" holds triangle strips, as Stanford's scans do: lists of the same name, -1 between strips. Departure from Turk's text: in an ascii file each entry has a line of its own.
 // Source: ply_header.h.
 #pragma once
 #include "pincer/contact/mesh/mesh_file.h"

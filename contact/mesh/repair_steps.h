@@ -17,6 +17,7 @@ MaybeChange turnFlatTriangles(TriangleMesh& mesh);  // without area: their longe
 MaybeChange cutApart(TriangleMesh& mesh);
 MaybeChange fillHoles(TriangleMesh& mesh, int most_edges);
 MaybeChange turnOutwards(TriangleMesh& mesh);
+MaybeChange dropOpposingNormals(TriangleMesh& mesh);  // of triangles with one that points to their back
 MaybeChange dropUnusedVertices(TriangleMesh& mesh);
 
 // What the steps share.

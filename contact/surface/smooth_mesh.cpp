@@ -70,6 +70,7 @@ std::shared_ptr<const SmoothMesh> SmoothMesh::build(TriangleMesh mesh, const Sur
     throw InputError(
         fmt::format("{}: crease angle {} rad is out of range (0, 3.1416]; typical: 0.7 (40 degrees).", mesh.source, options.crease_angle));
   }
+  requireWellFormed(mesh);
   requireManifold(mesh);
   if (options.progress) options.progress(kManifoldKnown);
   std::shared_ptr<const SmoothMesh> built(new SmoothMesh(std::make_unique<const Data>(std::move(mesh), options)));

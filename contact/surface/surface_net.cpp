@@ -6,6 +6,7 @@
 #include "pincer/contact/functions/invariants.h"
 #include "pincer/contact/surface/edge_cubic.h"
 #include "pincer/contact/surface/large_pages.h"
+#include "pincer/contact/surface/smooth_patch.h"
 
 namespace pincer::contact {
 
@@ -206,6 +207,19 @@ std::size_t bytesOf(const std::vector<T>& v) {
 }
 
 }  // namespace
+
+Patch smoothPatch(const std::array<Vec3, 3>& corners, const std::array<Vec3, 3>& normals) {
+  Patch p;
+  p.b300 = corners[0];
+  p.b030 = corners[1];
+  p.b003 = corners[2];
+  p.n200 = normals[0];
+  p.n020 = normals[1];
+  p.n002 = normals[2];
+  const Middles middles = setSmoothEdges(p);
+  if (!setCentreByMedians(p, middles)) setCentre(p);
+  return p;
+}
 
 SurfaceNet::SurfaceNet(TriangleMesh mesh, double crease_angle, bool use_file_normals, SurfaceVariant variant)
     : variant_(variant),

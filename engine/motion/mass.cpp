@@ -126,4 +126,23 @@ double volumeOf(const contact::TriangleMesh& mesh) { return momentsOf(mesh).volu
 MassProperties massPropertiesOf(const contact::Shape& shape, double mass) { return massProperties(momentsOf(shape), mass); }
 MassProperties massPropertiesOf(const contact::TriangleMesh& mesh, double mass) { return massProperties(momentsOf(mesh), mass); }
 
+MassProperties movedBy(const Pose& X_BS, const MassProperties& properties) {
+  const Mat3 R = X_BS.q.toRotationMatrix(), I = R * properties.I_BBcm * R.transpose();
+  return {properties.mass, X_BS * properties.p_BBcm, 0.5 * (I + I.transpose())};
+}
+
+MassProperties sumOf(std::span<const MassProperties> parts) {
+  MassProperties sum;
+  for (const MassProperties& part : parts) {
+    sum.mass += part.mass;
+    sum.p_BBcm += part.mass * part.p_BBcm;
+  }
+  sum.p_BBcm /= sum.mass;
+  for (const MassProperties& part : parts) {
+    const Vec3 arm = part.p_BBcm - sum.p_BBcm;
+    sum.I_BBcm += part.I_BBcm + part.mass * (arm.squaredNorm() * Mat3::Identity() - arm * arm.transpose());
+  }
+  return sum;
+}
+
 }  // namespace pincer::engine

@@ -1,5 +1,7 @@
 // mass: mass, centre of mass and inertia of solids.
 #pragma once
+#include <span>
+
 #include "pincer/contact/shape.h"
 #include "pincer/contact/triangle_mesh.h"
 
@@ -28,6 +30,12 @@ MassProperties massPropertiesOf(const contact::Shape& shape, double mass);
 // Throws InputError when the volume isn't positive (open mesh, or turned inside out).
 MassProperties massPropertiesOf(const contact::TriangleMesh& mesh, double mass);
 double volumeOf(const contact::TriangleMesh& mesh);
+
+// The same solid in another frame: of `properties` in S, those in B. Rotates the tensor, which is about the centre of mass.
+MassProperties movedBy(const Pose& X_BS, const MassProperties& properties);
+
+// Of several solids in one frame, one or more, rigidly joined: parallel axes (Steiner). What overlaps counts twice.
+MassProperties sumOf(std::span<const MassProperties> parts);
 
 // Throws InputError when a moment isn't positive or the triangle inequality of moments is violated by more than 1e-9.
 PrincipalInertia principalInertia(const MassProperties& properties);

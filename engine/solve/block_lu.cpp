@@ -105,13 +105,18 @@ void BlockLu::connect(int a, int b) {
   const std::uint64_t edge =
       static_cast<std::uint64_t>(std::min(a, b)) * static_cast<std::uint64_t>(nodes_) + static_cast<std::uint64_t>(std::max(a, b));
   if (!edges_.empty() && edges_.back() == edge) return;  // contacts of one pair follow each other
+  if (edges_.size() == edges_.capacity()) sortEdges();
   if (edges_.size() < edges_.capacity()) edges_.push_back(edge);
 }
 
-bool BlockLu::order(int most) {
-  if (nodes_ > max_nodes_ || edges_.size() == edges_.capacity()) return false;
+void BlockLu::sortEdges() {
   std::sort(edges_.begin(), edges_.end());
   edges_.erase(std::unique(edges_.begin(), edges_.end()), edges_.end());
+}
+
+bool BlockLu::order(int most) {
+  sortEdges();
+  if (nodes_ > max_nodes_ || edges_.size() == edges_.capacity()) return false;
   if (isKept(most)) return kept_fits_;
   kept_nodes_ = nodes_;
   kept_most_ = most;

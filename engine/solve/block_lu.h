@@ -40,6 +40,7 @@ class BlockLu {
   void solve(double* b) const;
 
  private:
+  void sortEdges();
   bool isKept(int most);
   bool analyse(int most);
   void link(int a, int b);

@@ -66,6 +66,7 @@ class Search {
 
  private:
   int rows() const { return problem_.rowCount(); }
+  int times() const { return scratch_.is_patient ? kPatient : 1; }
   bool isSpent() const { return scratch_.operations_left < std::max<std::int64_t>(0, last_operation_); }
   bool isWithinTolerance() const { return error_.residual <= options_.tolerance; }
   // As good as what rests asks for.
@@ -75,7 +76,7 @@ class Search {
   }
   // What is enough [m/s].
   double limit() const {
-    if (problem_.contactCount() <= kFewContacts) return restErrorOf(options_);
+    if (problem_.contactCount() <= kFewContacts || options_.accuracy == 0) return restErrorOf(options_);
     return std::max(kShareOfSlip * slip_, options_.accuracy);
   }
   bool isEnough() const { return isWithinTolerance() || error_.speed <= limit(); }
@@ -100,7 +101,7 @@ class Search {
     MoverMatrix matrix(problem_, scratch_);
     if (!matrix.fits()) return sweep();
     const std::int64_t operations = std::max(kFewestOperations, kMostFactorisations * matrix.costOfFactorisation());
-    last_operation_ = scratch_.operations_left - operations / scratch_.haste;
+    last_operation_ = scratch_.operations_left - operations * times() / scratch_.haste;
     ProximalRound round(problem_, matrix, scratch_);
     if (isEnough()) return polish(round);
     Alternation alternation(problem_, matrix, scratch_);
@@ -167,25 +168,36 @@ class Search {
   void proceed(ProximalRound& round, Alternation& alternation) {
     double epsilon = std::clamp(kEpsilonOfError * error_.speed, 10 * kLeastEpsilon, kFirstEpsilon);
     double give = std::numeric_limits<double>::infinity();
-    int patience = kPatience, failures = 0;
+    const int longest = kPatience * times();
+    int patience = longest, failures = 0;
     while (!isEnough() && !isSpent()) {
       const int before = result_.iterations;
       if (!round.solve(epsilon, kMostRoundSteps, result_.iterations)) {
         epsilon = std::min(kMostEpsilon, kHarder * epsilon);
-        if (++failures > kMostFailures) return;
-        slides() ? smooth() : alternate(alternation, false);
+        if (++failures > kMostFailures * times()) return;
+        goAround(alternation, failures);
         continue;
       }
-      const double last_give = give;
+      const double last_give = give, last_error = error_.speed;
       give = noteGive(epsilon);
       recentre();
-      patience = give < kStillFading * last_give ? kPatience : patience - 1;
+      if (give < kStillFading * last_give)
+        patience = longest;
+      else if (epsilon == kLeastEpsilon || !scratch_.is_patient)
+        --patience;
       if (patience == 0) {
         if (!isEnough() && give <= options_.largest_give) giveWay(give);
         return;
       }
-      if (result_.iterations - before <= kEasySteps) epsilon = std::max(kLeastEpsilon, kEasier * epsilon);
+      if (result_.iterations - before <= kEasySteps || error_.speed > kStillFading * last_error)
+        epsilon = std::max(kLeastEpsilon, kEasier * epsilon);
     }
+  }
+
+  // What failed once more is gone around further.
+  void goAround(Alternation& alternation, int failures) {
+    if (slides()) return smooth();
+    for (int n = 0; n < failures && !isSpent(); ++n) alternate(alternation, n > 0);
   }
 
   // scratch.give = e (r - r_c) of the round just solved; the largest [m/s].
@@ -269,6 +281,7 @@ class Search {
 
   static constexpr double kMostAccuracies = 100;  // of what is too entangled for anything but sweeps
   static constexpr int kPatience = 3, kMostFailures = 12, kSoftSteps = 12;
+  static constexpr int kPatient = 10;  // times as much of everything, where there is time
   static constexpr double kSoftEpsilons[] = {1e-3, 1e-2, 0.1};
 
   const ContactProblem& problem_;
@@ -308,6 +321,14 @@ void solveFew(const ContactProblem& problem, const SolverOptions& options, Solve
     solveFewContacts(problem, options, start.residual, scratch, r, u, result);
 }
 
+// What isn't solved brings no energy in.
+void settleEnergy(const ContactProblem& problem, SolverScratch& scratch, double* r, double* u, SolveResult& result) {
+  if (result.converged || result.yields || !removeAddedEnergy(problem, r, u)) return;
+  const ContactError error = errorOf(problem, r, scratch, u);
+  result.residual = error.residual;
+  result.error = error.speed;
+}
+
 }  // namespace
 
 void solveContacts(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch, double* r, double* u,
@@ -317,6 +338,10 @@ void solveContacts(const ContactProblem& problem, const SolverOptions& options, 
   PINCER_ASSERT(problem.first_row.size() == problem.mu.size() + 1);
   PINCER_ASSERT(problem.firstRow(problem.contactCount()) == problem.rowCount());
   projectOntoCones(problem, r);
+  if (!problem.first_side.empty()) {  // the forms for few contacts know two movers each
+    result = Search(problem, options, scratch).run(r, u);
+    return settleEnergy(problem, scratch, r, u, result);
+  }
   const bool is_solved = solveSmallProblem(problem, options, r, u, result);
   spend(kPerSmallStep * (1 + result.iterations), scratch);
   if (is_solved) return;
@@ -325,10 +350,7 @@ void solveContacts(const ContactProblem& problem, const SolverOptions& options, 
   if (!is_few ||
       (!result.converged && !result.yields && problem.contactCount() >= kManyContacts && options.thorough && scratch.operations_left >= 0))
     result = Search(problem, options, scratch).run(r, u);
-  if (result.converged || result.yields || !removeAddedEnergy(problem, r, u)) return;
-  const ContactError error = errorOf(problem, r, scratch, u);
-  result.residual = error.residual;
-  result.error = error.speed;
+  settleEnergy(problem, scratch, r, u, result);
 }
 
 bool restsAsItIs(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch, double* r, double* u,

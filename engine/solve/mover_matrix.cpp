@@ -1,6 +1,7 @@
 #include "pincer/engine/solve/mover_matrix.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "pincer/contact/functions/invariants.h"
 #include "pincer/engine/solve/mobility.h"
@@ -59,7 +60,8 @@ template <class Rows>
 
 MoverMatrix::MoverMatrix(const ContactProblem& problem, SolverScratch& scratch) : problem_(problem), scratch_(scratch) {
   connectMovers(problem, scratch.lu);
-  fits_ = scratch.lu.order(std::max(kFewProducts, kProductsPerContact * problem.contactCount())) && findPlaces(problem, scratch);
+  const int most = std::max(kFewProducts, kProductsPerContact * problem.contactCount());
+  fits_ = scratch.lu.order(scratch.is_patient ? std::numeric_limits<int>::max() : most) && findPlaces(problem, scratch);
 }
 
 void MoverMatrix::clear() {

@@ -31,20 +31,28 @@ void sizeForFew(int contacts, int movers, SolverScratch& s) {
   s.active.resize(n);
 }
 
+SolverSize sizeFor(int contacts, int movers) {
+  return {.contacts = contacts,
+          .movers = movers,
+          .places = 4 * contacts,
+          .blocks = kBlocksPerMover * std::min({movers, 2 * contacts, BlockLu::kMaxNodes}),
+          .products = std::max(kProductsAtLeast, kProductsPerContact * contacts)};
+}
+
 }  // namespace
 
-SolverScratch::SolverScratch(int contacts, int movers)
-    : lu(std::min(movers, 2 * contacts), kBlocksPerMover * std::min({movers, 2 * contacts, BlockLu::kMaxNodes}),
-         std::max(kProductsAtLeast, kProductsPerContact * contacts)) {
-  const auto n = static_cast<std::size_t>(contacts), m = kMaxContactRows * n;
-  const std::size_t size = kMoverFreedoms * static_cast<std::size_t>(movers);
+SolverScratch::SolverScratch(const SolverSize& its) : lu(its.movers, its.blocks, its.products) {
+  const auto n = static_cast<std::size_t>(its.contacts), m = kMaxContactRows * n;
+  const std::size_t size = kMoverFreedoms * static_cast<std::size_t>(its.movers);
   weight.resize(n);
   for (std::vector<double>* per_row : {&r, &u, &centre, &best_r, &best_u, &give, &multiplier, &change, &work}) per_row->resize(m);
   for (std::vector<double>* per_mover : {&y, &direction, &gradient, &way}) per_mover->resize(size);
   local.resize(2 * (kMaxContactRows * m + n));
   round.resize(n);
-  places.resize(4 * n);
-  sizeForFew(std::min(contacts, kFewContacts), movers, *this);
+  places.resize(static_cast<std::size_t>(its.places));
+  sizeForFew(std::min(its.contacts, kFewContacts), its.movers, *this);
 }
+
+SolverScratch::SolverScratch(int contacts, int movers) : SolverScratch(sizeFor(contacts, movers)) {}
 
 }  // namespace pincer::engine

@@ -26,8 +26,17 @@ struct ContactTerms {
   double E[kSize], P[kSize], R[kSize], K_inverse[kSize], G[kSize];
 };
 
-// For at most `max_contacts` that touch at most `max_movers`.
+// What memory has to be there for.
+struct SolverSize {
+  int contacts, movers;  // at most
+  int places;            // of blocks: the squared number of movers of each contact, summed
+  int blocks, products;  // of the movers' matrix: in its factors; in a factorisation, beyond which none is tried
+};
+
 struct SolverScratch {
+  explicit SolverScratch(const SolverSize& size);
+
+  // For at most `max_contacts` of two movers each, at most `max_movers` in all.
   SolverScratch(int max_contacts, int max_movers);
 
   std::int64_t operations_left = kNoLimit;  // of the budget; less than 0: spent
@@ -41,6 +50,7 @@ struct SolverScratch {
   std::vector<RoundContact> round;  // round_contact.h
   std::vector<int> places;          // mover_matrix.h
   BlockLu lu;
+  bool is_patient = false;  // factorises whatever there is memory for
 
   // Of few_contacts.h: the scaled problem, linear equations, three iterates.
   int max_contacts = 0, dense_contacts = 0;

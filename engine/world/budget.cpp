@@ -29,7 +29,7 @@ double kineticEnergyOf(const WorldModel& model, const WorldState& state, std::si
 
 }  // namespace
 
-void chargeQuery(const BodyModel& a, const BodyModel& b, WorldScratch& scratch) {
+void chargeQuery(const ColliderModel& a, const ColliderModel& b, WorldScratch& scratch) {
   constexpr std::int64_t kOfSphere = 200, kOfSolids = 5000;
   const bool has_sphere = std::holds_alternative<contact::Sphere>(a.shape) || std::holds_alternative<contact::Sphere>(b.shape);
   charge(has_sphere ? kOfSphere : kOfSolids, scratch);

@@ -13,8 +13,8 @@ inline void charge(std::int64_t operations, WorldScratch& scratch) {
   if (isLimited(scratch)) scratch.operations_left -= operations;
 }
 
-// For a query of where two bodies touch: solids' facets are laid over each other, spheres need little.
-void chargeQuery(const BodyModel& a, const BodyModel& b, WorldScratch& scratch);
+// For a query of where two shapes touch: solids' facets are laid over each other, spheres need little.
+void chargeQuery(const ColliderModel& a, const ColliderModel& b, WorldScratch& scratch);
 
 // Kinetic and potential energy of all bodies in this gravity [J].
 double energyOf(const WorldModel& model, const WorldState& state, const Vec3& gravity_W);

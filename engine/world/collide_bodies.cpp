@@ -3,41 +3,59 @@
 #include "pincer/contact/functions/invariants.h"
 #include "pincer/contact/pair_query.h"
 #include "pincer/engine/world/budget.h"
+#include "pincer/engine/world/colliders.h"
 #include "pincer/engine/world/impact.h"
 #include "pincer/engine/world/island_sleep.h"
+#include "pincer/engine/world/thin_contacts.h"
 
 namespace pincer::engine {
 namespace {
 
 // Whether `plane` is a half-space that is further than `margin` from b's bounding sphere.
-bool isOver(const BodyModel& plane, const BodyModel& b, const BodyScratch& s_plane, const BodyScratch& sb, double margin) {
-  return std::holds_alternative<contact::HalfSpace>(plane.shape) &&
-         s_plane.R_WB_mid.col(2).dot(sb.X_WI_mid.p - s_plane.X_WB_mid.p) > b.bounding_radius + margin;
+bool isOver(const WorldModel& model, const BodyModel& plane, const BodyModel& b, const BodyScratch& s_plane, const BodyScratch& sb,
+            double margin) {
+  const ColliderModel* const lone = loneCollider(model, plane);
+  return lone && isPlane(*lone) && s_plane.R_WB_mid.col(2).dot(sb.X_WI_mid.p - s_plane.X_WB_mid.p) > b.bounding_radius + margin;
 }
 
-bool boundsTouch(const BodyModel& a, const BodyModel& b, const BodyScratch& sa, const BodyScratch& sb, double margin) {
+bool boundsTouch(const WorldModel& model, const BodyModel& a, const BodyModel& b, const BodyScratch& sa, const BodyScratch& sb,
+                 double margin) {
   const double reach = a.bounding_radius + b.bounding_radius + margin;
   if ((sa.X_WI_mid.p - sb.X_WI_mid.p).squaredNorm() > reach * reach) return false;
-  return !isOver(a, b, sa, sb, margin) && !isOver(b, a, sb, sa, margin);
+  return !isOver(model, a, b, sa, sb, margin) && !isOver(model, b, a, sb, sa, margin);
 }
 
 double cornerSpeed(const BodyModel& body, const BodyScratch& s) {
   return body.corner_reach > 0 ? body.corner_reach * s.start.w_W.norm() : 0;
 }
 
-bool isSphere(const BodyModel& body) { return std::holds_alternative<contact::Sphere>(body.shape); }
-
-// Of the first contact that the pair had in the last tick; zero if it had none, or for spheres, which need none.
-Vec3 lastNormal(const WorldModel& model, const WorldState& state, const BodyPair& pair) {
-  if (isSphere(model.bodies[pair.a]) || isSphere(model.bodies[pair.b])) return Vec3::Zero();
-  const std::uint64_t first = contactId(0, pair.a, pair.b, 0);
+// Of the first contact that the two shapes had in the last tick; zero if they had none, or for spheres, which need none.
+Vec3 lastNormal(const WorldModel& model, const WorldState& state, const ColliderModel& a, const ColliderModel& b) {
+  if (isSphere(a) || isSphere(b)) return Vec3::Zero();
+  const std::uint64_t first = contactId(model.shape_bits, sideOf(model, a), sideOf(model, b), 0);
   const auto end = state.contacts.begin() + state.contact_count;
   const auto less = [](const ContactMemory& m, std::uint64_t id) { return m.id < id; };
   const auto found = std::lower_bound(state.contacts.begin(), end, first, less);
   return found != end && found->id >> 32 == first >> 32 ? found->n_W : Vec3(Vec3::Zero());
 }
 
-// material  of the pair, null where it is combined once they touch;   found  working memory
+void addPoints(const WorldModel& model, const ColliderModel& a, const ColliderModel& b, const Material& material,
+               const contact::PairPoints& found, WorldScratch& scratch) {
+  const Side side_a = sideOf(model, a), side_b = sideOf(model, b);
+  for (int i = 0; i < found.count; ++i) {
+    const contact::PairPoint& point = found.points[i];
+    Contact* const contact = addContact(scratch, point.phi);
+    if (!contact) continue;
+    contact->id = contactId(model.shape_bits, side_a, side_b, point.feature);
+    contact->a = side_a;
+    contact->b = side_b;
+    contact->p_W = point.p_W;
+    contact->R_WC.col(2) = point.n_W;
+    contact->material = material;
+  }
+}
+
+// material  of the pair, null where it is combined once two shapes touch;   found  working memory
 void collidePair(const WorldModel& model, const WorldState& state, const BodyPair& pair, const Material* material, double h,
                  contact::PairPoints& found, WorldScratch& scratch) {
   if (isIdle(scratch, pair.a) && isIdle(scratch, pair.b)) return;
@@ -49,23 +67,16 @@ void collidePair(const WorldModel& model, const WorldState& state, const BodyPai
   const double speed = (sa.start.v_W - sb.start.v_W).norm();
   const double turning = model.has_corners ? cornerSpeed(a, sa) + cornerSpeed(b, sb) : 0;
   const double margin = model.options.contact_margin + h * std::max(speed, 0.5 * (speed + turning)) + sa.flung + sb.flung;
-  if (!boundsTouch(a, b, sa, sb, margin)) return;
+  if (!boundsTouch(model, a, b, sa, sb, margin)) return;
   noteFastPair(model, pair.a, pair.b, scratch);
-  chargeQuery(a, b, scratch);
-  contact::collideShapes(a.shape, sa.X_WB_mid, b.shape, sb.X_WB_mid, margin, scratch.patches, found, lastNormal(model, state, pair));
-  if (found.count == 0) return;
-  const Material combined = material ? *material : materialOf(model, pair.a, pair.b);
-  for (int i = 0; i < found.count; ++i) {
-    const contact::PairPoint& point = found.points[i];
-    Contact* const contact = addContact(scratch, point.phi);
-    if (!contact) continue;
-    contact->id = contactId(0, pair.a, pair.b, point.feature);
-    contact->a = {SideKind::kBody, pair.a};
-    contact->b = {SideKind::kBody, pair.b};
-    contact->p_W = point.p_W;
-    contact->R_WC.col(2) = point.n_W;
-    contact->material = combined;
-  }
+  const auto collide = [&](const ColliderModel& ca, const Pose& X_WA, const ColliderModel& cb, const Pose& X_WB) {
+    chargeQuery(ca, cb, scratch);
+    contact::collideShapes(ca.shape, X_WA, cb.shape, X_WB, margin, scratch.patches, found, lastNormal(model, state, ca, cb));
+    if (found.count > 0) addPoints(model, ca, cb, material ? *material : materialOf(model, ca, cb), found, scratch);
+  };
+  const std::size_t first = scratch.contacts.size();
+  forEachNearShapes(model, a, sa.X_WB_mid, b, sb.X_WB_mid, margin, collide);
+  if (a.collider_count + b.collider_count > 2) thinContacts(first, scratch);
 }
 
 }  // namespace
@@ -73,7 +84,10 @@ void collidePair(const WorldModel& model, const WorldState& state, const BodyPai
 void collideBodies(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
   const double h = model.options.h;
   contact::PairPoints found;
-  for (const PairModel& pair : model.pairs) collidePair(model, state, {pair.a, pair.b}, &pair.material, h, found, scratch);
+  for (const PairModel& pair : model.pairs) {
+    const Material* const material = pair.is_of_many ? nullptr : &pair.material;
+    collidePair(model, state, {pair.a, pair.b}, material, h, found, scratch);
+  }
   if (!scratch.broad_phase) return;
   for (const BodyPair& pair : scratch.broad_phase->candidates(model, scratch)) collidePair(model, state, pair, nullptr, h, found, scratch);
 }

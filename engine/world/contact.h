@@ -16,8 +16,14 @@ struct MoverScratch;
 // One of the two that touch.
 struct Side {
   SideKind kind = SideKind::kBody;
+  std::uint16_t shape = 0;  // of a body: which of its shapes
   int index = 0;
 };
+inline Side sideOf(const WorldModel& model, const ColliderModel& collider) {
+  const auto shape = static_cast<std::uint16_t>(&collider - model.colliders.data() - model.bodies[collider.body].first_collider);
+  return {SideKind::kBody, shape, collider.body};
+}
+inline bool isSame(const Side& x, const Side& y) { return x.kind == y.kind && x.index == y.index; }  // whichever shape of it
 
 // A contact of this tick: n_W points out of b towards a. All geometry is that of the predicted middle of the tick. Each group of fields has one that
 // fills it, in this order; until then they are without a value. Rows of vectors that the contact doesn't have stay so.
@@ -85,8 +91,19 @@ template <class Rows>
   for (int k = kTorsionRow; k < rows; ++k) v[k] = axisOf(c, k).dot(a.w_W - b.w_W);
 }
 
-// Identity of a contact from tick to tick; contacts are sorted by it.
-//   kind 0: bodies (a, b, feature);  kind 1: point a on body b (feature)
-std::uint64_t contactId(int kind, int a, int b, std::uint32_t feature);
+inline bool isOfSameTwo(const Contact& x, const Contact& y) { return isSame(x.a, y.a) && isSame(x.b, y.b); }
+
+// Identity of a contact from tick to tick; contacts are sorted by it. From the highest bit on:
+//   2 bits kind   0: body a on body b;  1: point a on body b
+//   30 bits who   bodies a and b with 15 - s bits each, a's shape and b's with s each; or the point with 15, b with 15 - s, its shape with s
+//   32 bits feature
+//   shape_bits  s of the model: 0 where each body has one shape
+std::uint64_t contactId(int shape_bits, const Side& a, const Side& b, std::uint32_t feature);
+
+// Two identities of the same two bodies, or of the same point and body, whichever shapes touch. Those follow each other.
+inline bool isOfSameTwo(int shape_bits, std::uint64_t x, std::uint64_t y) {
+  const int shapes = x >> 62 ? shape_bits : 2 * shape_bits;
+  return x >> (32 + shapes) == y >> (32 + shapes);
+}
 
 }  // namespace pincer::engine

@@ -24,11 +24,12 @@ std::span<const ContactMemory> memories(const WorldState& state) {
 }
 
 // Whether a contact of the pair pushed in the last tick.
-bool isTouching(const WorldState& state, int a, int b) {
-  const std::uint64_t first = contactId(0, a, b, 0);
+bool isTouching(const WorldModel& model, const WorldState& state, int a, int b) {
+  const std::uint64_t first = contactId(model.shape_bits, {SideKind::kBody, 0, a}, {SideKind::kBody, 0, b}, 0);
   const auto all = memories(state);
   const auto less = [](const ContactMemory& m, std::uint64_t id) { return m.id < id; };
-  for (auto m = std::lower_bound(all.begin(), all.end(), first, less); m != all.end() && m->id >> 32 == first >> 32; ++m) {
+  auto m = std::lower_bound(all.begin(), all.end(), first, less);
+  for (; m != all.end() && isOfSameTwo(model.shape_bits, m->id, first); ++m) {
     if (m->active) return true;
   }
   return false;
@@ -73,14 +74,14 @@ bool mayBounce(const WorldModel& model, const WorldState& state, const WorldScra
   const double phi = std::max(c.phi - 0.5 * scratch.h * u, 0.0);
   const double u_hit = -std::sqrt(std::max(u * u - 2 * a * phi, 0.0));
   if (!(bounceRestitution(c.material.restitution, u_hit, a, model.options.h) > 0)) return false;
-  return !isTouching(state, c.a.index, c.b.index);
+  return !isTouching(model, state, c.a.index, c.b.index);
 }
 
 // Those that bounce, or are too fast.
 void holdBackHits(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
   for (const auto* pairs : {&scratch.fast_pairs, &scratch.pushed_pairs}) {
     for (const ImpactPair& pair : *pairs) {
-      if (isNoted(scratch.impact_pairs, pair.a, pair.b) || isTouching(state, pair.a, pair.b) || hasLanded(scratch, pair)) continue;
+      if (isNoted(scratch.impact_pairs, pair.a, pair.b) || isTouching(model, state, pair.a, pair.b) || hasLanded(scratch, pair)) continue;
       PINCER_ASSERT(scratch.impact_pairs.size() < scratch.impact_pairs.capacity());  // the tick allocates nothing
       scratch.impact_pairs.push_back(pair);
     }
@@ -262,7 +263,7 @@ void notePushedPairs(const WorldModel& model, const WorldState& state, WorldScra
   for (const PairModel& pair : model.pairs) {
     if (!scratch.bodies[pair.a].touched && !scratch.bodies[pair.b].touched) continue;
     const Vec3 way = scratch.h * (endVelocity(model, scratch, pair.a) - endVelocity(model, scratch, pair.b));
-    if (!isFarFor(model, pair.a, pair.b, way) || isTouching(state, pair.a, pair.b)) continue;
+    if (!isFarFor(model, pair.a, pair.b, way) || isTouching(model, state, pair.a, pair.b)) continue;
     const auto is_seen = [&](const Contact& c) { return isOfBodies(c, pair.a, pair.b); };
     if (std::any_of(scratch.contacts.begin(), scratch.contacts.end(), is_seen)) continue;
     if (isNoted(scratch.impact_pairs, pair.a, pair.b) || scratch.pushed_pairs.size() == scratch.pushed_pairs.capacity()) continue;
@@ -280,7 +281,7 @@ void holdBackImpacts(const WorldModel& model, const WorldState& state, bool land
 bool impactsWait(const WorldModel& model, const WorldState& state, const WorldScratch& scratch) {
   for (const auto* pairs : {&scratch.fast_pairs, &scratch.pushed_pairs}) {
     for (const ImpactPair& pair : *pairs) {
-      if (!isTouching(state, pair.a, pair.b) && !hasLanded(scratch, pair)) return true;
+      if (!isTouching(model, state, pair.a, pair.b) && !hasLanded(scratch, pair)) return true;
     }
   }
   return model.bounces && std::any_of(scratch.contacts.begin(), scratch.contacts.end(), [&](const Contact& c) {

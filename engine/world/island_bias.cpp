@@ -20,7 +20,7 @@ constexpr double kNegligible = 1e-11;  // contradictions between biases below th
 constexpr double kConverged = 1e-10;   // of |A^T b|, squared: 1e-5
 constexpr double kConsistent = 1e-6;   // of what is asked for: what is left then is the ridge's
 constexpr int kMostSteps = 40;         // of conjugate gradients
-constexpr int kFewContacts = 200;      // for which so many may be taken; beyond,
+constexpr int kFewFitted = 200;        // for which so many may be taken; beyond,
 constexpr int kFitVisits = 1500;       // of contacts, but
 constexpr int kFewestSteps = 3;
 constexpr std::int64_t kPerContactFitted = 200;  // multiplications of a step
@@ -51,7 +51,7 @@ class BiasFit {
         memory_(memory),
         rows_(problem.rowCount()),
         size_(kMoverFreedoms * problem.movers),
-        most_steps_(problem.contactCount() <= kFewContacts ? kMostSteps : std::max(kFewestSteps, kFitVisits / problem.contactCount())),
+        most_steps_(problem.contactCount() <= kFewFitted ? kMostSteps : std::max(kFewestSteps, kFitVisits / problem.contactCount())),
         b_(memory.work.data()),
         image_(memory.change.data()),
         weight_(memory.best_r.data()),

@@ -4,68 +4,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <iterator>
 
 #include "pincer/contact/functions/invariants.h"
 #include "pincer/contact/pair_query.h"
-#include "pincer/engine/motion/mass.h"
 #include "pincer/engine/solve/contact_problem.h"
+#include "pincer/engine/world/body_model.h"
 #include "pincer/engine/world/broad_phase.h"
+#include "pincer/engine/world/colliders.h"
 #include "pincer/engine/world/most_numbered.h"
 
 namespace pincer::engine {
 namespace {
-
-void requireRange(const std::string& what, double value, double low, double high, const char* remedy) {
-  if (value >= low && value <= high) return;
-  throw InputError(fmt::format("{} = {} is out of range [{}, {}]. {}", what, value, low, high, remedy));
-}
-
-constexpr double kInfinity = std::numeric_limits<double>::max();
-
-void checkMaterial(const std::string& body, const Material& m) {
-  requireRange(body + ".material.mu_s", m.mu_s, 0, kInfinity, "A friction coefficient can't be negative; typical: skin on plastic 0.6.");
-  requireRange(body + ".material.mu_d", m.mu_d, 0, m.mu_s, "Dynamic friction lies between 0 and static friction mu_s.");
-  requireRange(body + ".material.restitution", m.restitution, 0, 1, "0 doesn't bounce, 1 keeps all speed.");
-  requireRange(body + ".material.torsion_radius", m.torsion_radius, 0, 1,
-               "It is about two thirds of the contact patch's radius: a few mm.");
-  requireRange(body + ".material.rolling_radius", m.rolling_radius, 0, 1,
-               "Friction times it is the arm of the force that resists rolling: a hundredth to a tenth of a ball's radius.");
-  requireRange(body + ".material.stribeck_speed", m.stribeck_speed, 0, 100,
-               "In m/s; 0 if friction doesn't change with speed, else about 0.01.");
-}
-
-bool isSupportOnly(const contact::Shape& shape) {
-  return std::holds_alternative<contact::HalfSpace>(shape) || std::holds_alternative<contact::Dish>(shape);
-}
-
-void setInertia(const BodySpec& spec, BodyModel& body) {
-  requireRange(spec.name + ".mass", spec.mass, 1e-9, 1e9, "A dynamic body needs a positive mass in kilograms.");
-  const PrincipalInertia inertia = principalInertia(massPropertiesOf(spec.shape, spec.mass));
-  body.mass = spec.mass;
-  body.inverse_mass = 1 / spec.mass;
-  body.root_inverse_mass = std::sqrt(body.inverse_mass);
-  body.moments = inertia.moments;
-  body.X_BI = inertia.X_BI;
-  body.X_IB = inertia.X_BI.inverse();
-  body.body_is_inertial = inertia.X_BI.p.isZero(0) && inertia.X_BI.q.vec().isZero(0);
-  body.rotation = FreeRotation(inertia.moments);
-}
-
-// Of a homogeneous solid: a slab's half thickness is the root of three times the mean square distance from its middle plane.
-double innerRadius(const contact::Shape& shape) {
-  if (isSupportOnly(shape)) return std::numeric_limits<double>::infinity();
-  const Vec3 moments = principalInertia(massPropertiesOf(shape, 1)).moments;
-  return std::sqrt(std::max(3 * (0.5 * moments.sum() - moments.maxCoeff()), 0.0));
-}
-
-void setExtent(const BodySpec& spec, BodyModel& body) {
-  body.bounding_radius = contact::boundingRadius(spec.shape) + body.X_BI.p.norm();
-  body.inner_radius = innerRadius(spec.shape);
-  const bool is_round = isSupportOnly(spec.shape) || std::holds_alternative<contact::Sphere>(spec.shape);
-  body.may_be_hollow = std::holds_alternative<contact::Mesh>(spec.shape) || std::holds_alternative<contact::Dish>(spec.shape);
-  body.corner_reach = is_round ? 0 : std::max(body.bounding_radius - body.inner_radius, 0.0);
-}
 
 // Fox-Goodwin is stable up to omega h = sqrt(6); half of the first axis' own limit leaves room for what the contact adds.
 AxisForm formOf(const DrivenPointModel& point, int axis, double h) {
@@ -181,31 +131,39 @@ std::vector<int> partnersOf(const WorldModel& model, const std::vector<IndexPair
 // Marks the bodies that something can touch, and prepares the meshes that are touched as flat triangles (contact::preparePair).
 void findWhoMayTouch(WorldModel& model, const std::vector<IndexPair>& excluded) {
   const auto any = [](const BodyModel&) { return true; };
-  const auto flat = [](const BodyModel& body) {
-    return !isSupportOnly(body.shape) && !std::holds_alternative<contact::Sphere>(body.shape);
+  const auto is_flat = [](const ColliderModel& c) { return !isSupport(c.shape) && !std::holds_alternative<contact::Sphere>(c.shape); };
+  const auto has_flat = [&](const BodyModel& body) {
+    const auto shapes = collidersOf(model, body);
+    return std::any_of(shapes.begin(), shapes.end(), is_flat);
   };
-  const std::vector<int> partners = partnersOf(model, excluded, any), flat_partners = partnersOf(model, excluded, flat);
+  const std::vector<int> partners = partnersOf(model, excluded, any), flat_partners = partnersOf(model, excluded, has_flat);
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
     BodyModel& body = model.bodies[i];
     body.may_touch = body.may_touch || partners[i] > 0;
-    if (flat_partners[i] > 0) contact::preparePair(body.shape, body.shape);
+    if (flat_partners[i] == 0) continue;
+    for (const ColliderModel& c : collidersOf(model, body)) contact::preparePair(c.shape, c.shape);
   }
 }
 
 }  // namespace
 
-Material materialOf(const WorldModel& model, int a, int b) {
-  PINCER_ASSERT(a < b);  // the special pairs are sorted so
-  const PairModel pair{a, b, {}};
+Material materialOf(const WorldModel& model, const ColliderModel& a, const ColliderModel& b) {
+  PINCER_ASSERT(a.body < b.body);  // the special pairs are sorted so
+  const PairModel pair{a.body, b.body, {}, false};
   const auto own = std::lower_bound(model.special_pairs.begin(), model.special_pairs.end(), pair, comesBefore);
   if (own != model.special_pairs.end() && !comesBefore(pair, *own)) return own->material;
-  return combine(model.bodies[a].material, model.bodies[b].material);
+  return combine(a.material, b.material, model.options.combination);
 }
 
-Material combine(const Material& a, const Material& b) {
+Material materialOf(const WorldModel& model, int a, int b) {
+  return materialOf(model, model.colliders[model.bodies[a].first_collider], model.colliders[model.bodies[b].first_collider]);
+}
+
+Material combine(const Material& a, const Material& b, Combination rule) {
+  const bool is_maximum = rule == Combination::kMaximum;
   Material m;
-  m.mu_s = std::sqrt(a.mu_s * b.mu_s);
-  m.mu_d = std::min(m.mu_s, std::sqrt(a.mu_d * b.mu_d));
+  m.mu_s = is_maximum ? std::max(a.mu_s, b.mu_s) : std::sqrt(a.mu_s * b.mu_s);
+  m.mu_d = std::min(m.mu_s, is_maximum ? std::max(a.mu_d, b.mu_d) : std::sqrt(a.mu_d * b.mu_d));
   m.restitution = std::sqrt(a.restitution * b.restitution);
   m.torsion_radius = std::max(a.torsion_radius, b.torsion_radius);
   m.rolling_radius = std::max(a.rolling_radius, b.rolling_radius);
@@ -228,7 +186,9 @@ void listPairs(WorldModel& model, const std::vector<IndexPair>& excluded) {
   for (int a = 0; a < n; ++a) {
     for (int b = a + 1; b < n; ++b) {
       if (!model.bodies[a].dynamic && !model.bodies[b].dynamic) continue;
-      if (!std::binary_search(excluded.begin(), excluded.end(), IndexPair(a, b))) model.pairs.push_back({a, b, materialOf(model, a, b)});
+      if (std::binary_search(excluded.begin(), excluded.end(), IndexPair(a, b)) || !mayTouch(model, a, b)) continue;
+      const bool is_of_many = model.bodies[a].collider_count + model.bodies[b].collider_count > 2;
+      model.pairs.push_back({a, b, materialOf(model, a, b), is_of_many});
     }
   }
 }
@@ -239,11 +199,24 @@ int contactsOf(const contact::Shape& shape) {
   return std::holds_alternative<contact::Capsule>(shape) ? 10 : 24;
 }
 
+// Bits that tell the shapes of any one body apart; what is left of an identity's number must tell the bodies apart.
+int shapeBits(const WorldModel& model) {
+  int most = 1, bits = 0;
+  for (const BodyModel& body : model.bodies) most = std::max(most, body.collider_count);
+  while (1 << bits < most) ++bits;
+  const int bodies = static_cast<int>(model.bodies.size());
+  if (bits <= kNumberBits && bodies <= kMostNumbered >> bits) return bits;
+  throw InputError(
+      fmt::format("{} bodies, of which one has {} shapes: contacts can tell apart {} bodies of so many shapes, {} in all. Use "
+                  "fewer shapes per body, or several worlds.",
+                  bodies, most, kMostNumbered >> std::min(bits, kNumberBits), kMostNumbered));
+}
+
 // Of the whole scene; the fewest are those of a hand-sized one.
 int contactCapacity(const WorldModel& model) {
   constexpr std::int64_t kFewest = 64, kPerPoint = 8;
   std::int64_t sum = kFewest + kPerPoint * std::ssize(model.points);
-  for (const BodyModel& body : model.bodies) sum += body.dynamic ? contactsOf(body.shape) : 0;
+  for (const ColliderModel& c : model.colliders) sum += model.bodies[c.body].dynamic ? contactsOf(c.shape) : 0;
   return static_cast<int>(std::min<std::int64_t>(sum, kMostContacts));
 }
 
@@ -273,23 +246,16 @@ int WorldBuilder::addBody(const BodySpec& spec) {
     throw InputError(
         fmt::format("body \"{}\": the world has {} bodies already, the most that its contacts can tell apart. Use several worlds.",
                     spec.name, kMostNumbered));
-  checkMaterial(spec.name, spec.material);
-  BodyModel body;
-  body.name = spec.name;
-  body.shape = spec.shape;
-  body.dynamic = spec.dynamic;
-  body.material = spec.material;
-  if (spec.dynamic && isSupportOnly(spec.shape)) {
-    throw InputError(fmt::format("body \"{}\": half-spaces and dishes have no mass and can't move. Make it static.", spec.name));
-  }
-  if (spec.dynamic) setInertia(spec, body);
   if (spec.driven && spec.dynamic)
     throw InputError(fmt::format("body \"{}\": it can't be both dynamic and driven. Choose one.", spec.name));
-  body.driven = spec.driven;
+  const int number = static_cast<int>(model_.bodies.size());
+  std::vector<ColliderModel> colliders = collidersFor(spec, number);
+  BodyModel body = bodyFor(spec, colliders);
+  body.first_collider = static_cast<int>(model_.colliders.size());
   if (spec.driven) body.motion = model_.driven_count++;
-  setExtent(spec, body);
   model_.bodies.push_back(std::move(body));
-  return static_cast<int>(model_.bodies.size()) - 1;
+  std::move(colliders.begin(), colliders.end(), std::back_inserter(model_.colliders));
+  return number;
 }
 
 int WorldBuilder::addPoint(const DrivenPointModel& point) {
@@ -322,7 +288,7 @@ void WorldBuilder::setPairMaterial(int a, int b, const Material& material) {
   checkMaterial(
       fmt::format("pair {} and {}", model_.bodies[static_cast<std::size_t>(a)].name, model_.bodies[static_cast<std::size_t>(b)].name),
       material);
-  model_.special_pairs.push_back({std::min(a, b), std::max(a, b), material});
+  model_.special_pairs.push_back({std::min(a, b), std::max(a, b), material, false});
 }
 
 int WorldBuilder::addJoint(const JointModel& joint) {
@@ -349,7 +315,8 @@ WorldModel WorldBuilder::build() const {
   WorldModel model = model_;
   sortSpecialPairs(model.special_pairs);
   groupJoints(model);
-  for (const BodyModel& body : model.bodies) model.bounces = model.bounces || body.material.restitution > 0;
+  model.shape_bits = shapeBits(model);
+  for (const ColliderModel& c : model.colliders) model.bounces = model.bounces || c.material.restitution > 0;
   for (const PairModel& pair : model.special_pairs) model.bounces = model.bounces || pair.material.restitution > 0;
   for (const DrivenPointModel& point : model.points) {
     const double h = model.options.h;

@@ -3,7 +3,8 @@
 
 namespace pincer::engine {
 
-// A power of two: contactId (scratch.h) has 15 bits for either number; beyond, contacts would share ids and take each other's memory.
-constexpr int kMostNumbered = 1 << 15;
+// contactId (contact.h) has so many bits for either number; beyond, contacts would share ids and take each other's memory.
+constexpr int kNumberBits = 15;
+constexpr int kMostNumbered = 1 << kNumberBits;
 
 }  // namespace pincer::engine

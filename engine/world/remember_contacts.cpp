@@ -48,9 +48,9 @@ bool sticks(const ContactMemory& m) { return m.active && !m.sliding; }
 // Or is as good as closed: then it takes its offset from its face.
 bool mayStick(const ContactMemory& m) { return sticks(m) || (m.open_ticks > 0 && m.open_ticks < kOpenTicks); }
 
-bool isStuckAlike(const ContactMemory& x, const ContactMemory& y) {
+bool isStuckAlike(int shape_bits, const ContactMemory& x, const ContactMemory& y) {
   constexpr double kSamePlane = 0.9999;  // cosine of the angle between the normals
-  return x.id >> 32 == y.id >> 32 && mayStick(y) && x.n_W.dot(y.n_W) > kSamePlane;
+  return isOfSameTwo(shape_bits, x.id, y.id) && mayStick(y) && x.n_W.dot(y.n_W) > kSamePlane;
 }
 
 // Makes the offsets of one face's contacts those of one rigid motion in its plane, d + theta n x rho: what no motion can undo would wedge
@@ -90,8 +90,8 @@ void alignOffsets(std::span<ContactMemory> face) {
   }
 }
 
-// Contacts of one pair follow each other, sorted by id; a face is a run of them that stick in one plane. Those that sleep stay as they are.
-void alignFaces(std::span<ContactMemory> contacts, std::span<const SleepingContact> sleeping) {
+// Contacts of two bodies follow each other, sorted by id; a face is a run of them that stick in one plane. Those that sleep stay as they are.
+void alignFaces(int shape_bits, std::span<ContactMemory> contacts, std::span<const SleepingContact> sleeping) {
   for (std::size_t first = 0; first < contacts.size();) {
     if (!sleeping.empty() && sleeping.front().place == static_cast<int>(first)) {
       sleeping = sleeping.subspan(1);
@@ -100,7 +100,7 @@ void alignFaces(std::span<ContactMemory> contacts, std::span<const SleepingConta
     }
     std::size_t end = first + 1;
     const bool stuck = mayStick(contacts[first]);
-    while (stuck && end < contacts.size() && isStuckAlike(contacts[first], contacts[end])) ++end;
+    while (stuck && end < contacts.size() && isStuckAlike(shape_bits, contacts[first], contacts[end])) ++end;
     if (end > first + 1) alignOffsets(contacts.subspan(first, end - first));
     first = end;
   }
@@ -157,7 +157,7 @@ void rememberContacts(const WorldModel& model, WorldScratch& scratch, WorldState
   if (!sleeping.empty()) place = putSleeping(sleeping, ~std::uint64_t{0}, first, place);
   state.contact_count = static_cast<int>(place - first);
   PINCER_ASSERT(isAscending(std::span<const ContactMemory>(first, place), &ContactMemory::id));
-  alignFaces({first, place}, scratch.sleep.contacts);
+  alignFaces(model.shape_bits, {first, place}, scratch.sleep.contacts);
   for (const KeptMemory& kept : scratch.kept) kept.contact->still = same(*kept.place, kept.memory);
 }
 

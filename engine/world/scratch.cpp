@@ -10,8 +10,8 @@ namespace {
 
 // A finger or body on a mesh needs some dozens of patches; a world without meshes none.
 int patchesFor(const WorldModel& model) {
-  const auto is_mesh = [](const BodyModel& body) { return std::holds_alternative<contact::Mesh>(body.shape); };
-  return std::any_of(model.bodies.begin(), model.bodies.end(), is_mesh) ? 1024 : 1;
+  const auto is_mesh = [](const ColliderModel& collider) { return std::holds_alternative<contact::Mesh>(collider.shape); };
+  return std::any_of(model.colliders.begin(), model.colliders.end(), is_mesh) ? 1024 : 1;
 }
 
 bool mayIslandsSleep(const WorldModel& model) {
@@ -95,6 +95,8 @@ ContactReport contactAt(const WorldScratch& scratch, int k) {
   report.id = c.id;
   (c.a.kind == SideKind::kPoint ? report.point : report.other_body) = c.a.index;
   report.body = c.b.index;
+  report.shape = c.b.shape;
+  report.other_shape = c.a.shape;
   report.p_W = c.p_W;
   report.n_W = c.n_W();
   report.gap = c.phi;
@@ -107,11 +109,16 @@ ContactReport contactAt(const WorldScratch& scratch, int k) {
   return report;
 }
 
-std::uint64_t contactId(int kind, int a, int b, std::uint32_t feature) {
-  PINCER_ASSERT(kind == 0 || kind == 1);
-  PINCER_ASSERT(isIndex(a, kMostNumbered) && isIndex(b, kMostNumbered));
-  return static_cast<std::uint64_t>(kind) << 62 | static_cast<std::uint64_t>(a & (kMostNumbered - 1)) << 47 |
-         static_cast<std::uint64_t>(b & (kMostNumbered - 1)) << 32 | feature;
+std::uint64_t contactId(int shape_bits, const Side& a, const Side& b, std::uint32_t feature) {
+  PINCER_ASSERT(isIndex(b.index, std::size_t{kMostNumbered} >> shape_bits) && isIndex(b.shape, std::size_t{1} << shape_bits));
+  const auto on_b = static_cast<std::uint64_t>(b.index) << shape_bits;
+  if (a.kind == SideKind::kPoint) {
+    PINCER_ASSERT(isIndex(a.index, kMostNumbered));
+    return std::uint64_t{1} << 62 | static_cast<std::uint64_t>(a.index) << (32 + kNumberBits) | (on_b | b.shape) << 32 | feature;
+  }
+  PINCER_ASSERT(isIndex(a.index, std::size_t{kMostNumbered} >> shape_bits) && isIndex(a.shape, std::size_t{1} << shape_bits));
+  const std::uint64_t shapes = static_cast<std::uint64_t>(a.shape) << shape_bits | b.shape;
+  return static_cast<std::uint64_t>(a.index) << (32 + kNumberBits + shape_bits) | (on_b << shape_bits | shapes) << 32 | feature;
 }
 
 Contact* addContact(WorldScratch& scratch, double phi) {

@@ -15,8 +15,6 @@ constexpr double kSamePlane = 0.9999;  // cosine of the angle between the normal
 using Vec6 = Eigen::Matrix<double, 6, 1>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 
-bool isOfSamePair(const Contact& x, const Contact& y) { return x.id >> 32 == y.id >> 32; }
-
 struct StuckSet {
   Vec3 centre = Vec3::Zero();  // mean of p_W [m]
   double spread = 0;           // sum of squared distances from it [m^2]
@@ -160,7 +158,7 @@ void alignStickBiases(double h, double offset_rate, WorldScratch& scratch) {
   const std::span<Contact> contacts = scratch.contacts;
   for (std::size_t first = 0; first < contacts.size();) {
     std::size_t end = first + 1;
-    while (end < contacts.size() && isOfSamePair(contacts[first], contacts[end])) ++end;
+    while (end < contacts.size() && isOfSameTwo(contacts[first], contacts[end])) ++end;
     if (end > first + 1) {
       const std::span<Contact> pair = contacts.subspan(first, end - first);
       isOfPoint(pair.front()) ? alignPoint(pair, static_cast<int>(first), h, offset_rate, scratch)

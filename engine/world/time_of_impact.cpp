@@ -7,6 +7,7 @@
 #include "pincer/engine/motion/driven_motion.h"
 #include "pincer/engine/motion/free_motion.h"
 #include "pincer/engine/world/budget.h"
+#include "pincer/engine/world/colliders.h"
 #include "pincer/engine/world/held_body.h"
 #include "pincer/engine/world/impact.h"
 
@@ -95,29 +96,38 @@ class ClosingPair {
   Next look(double t) {
     const BodyModel &A = model_.bodies[pair_.a], &B = model_.bodies[pair_.b];
     const Moment a = momentOf(model_, state_, scratch_, pair_.a, t), b = momentOf(model_, state_, scratch_, pair_.b, t);
-    contact::PairPoints found;
-    chargeQuery(A, B, scratch_);
-    contact::collideShapes(A.shape, a.X_WI * A.X_IB, B.shape, b.X_WI * B.X_IB, margin_, scratch_.patches, found, last_n_W_);
-    if (found.count > 0) last_n_W_ = found.points[0].n_W;
+    const bool are_lone = A.collider_count == 1 && B.collider_count == 1;
     const Vec3 acceleration_W = acceleration(pair_.a) - acceleration(pair_.b);
     Next next;
     double nearest = margin_;
-    for (int i = 0; i < found.count; ++i) {
-      const contact::PairPoint& point = found.points[i];
-      const Vec3 v_a = a.motion.v_W + a.motion.w_W.cross(point.p_W - a.X_WI.p),
-                 v_b = b.motion.v_W + b.motion.w_W.cross(point.p_W - b.X_WI.p);
-      const Approach approach{point.phi, point.n_W.dot(v_a - v_b), point.n_W.dot(acceleration_W)};
-      nearest = std::min(nearest, point.phi);
-      const double step = approach.timeLeft();
-      if (pair_.lands && isBystander(point, approach)) continue;
-      if (step < next.step) next = {step, point.phi, false};
-    }
+    const auto look_at = [&](const ColliderModel& ca, const Pose& X_WA, const ColliderModel& cb, const Pose& X_WB) {
+      contact::PairPoints found;
+      chargeQuery(ca, cb, scratch_);
+      contact::collideShapes(ca.shape, X_WA, cb.shape, X_WB, margin_, scratch_.patches, found, last_n_W_);
+      if (are_lone && found.count > 0) last_n_W_ = found.points[0].n_W;
+      for (int i = 0; i < found.count; ++i) {
+        const contact::PairPoint& point = found.points[i];
+        nearest = std::min(nearest, point.phi);
+        const Approach approach{point.phi, rateOf(a, b, point), point.n_W.dot(acceleration_W)};
+        const double step = approach.timeLeft();
+        if (pair_.lands && isBystander(ca, cb, point, approach)) continue;
+        if (step < next.step) next = {step, point.phi, false};
+      }
+    };
+    forEachNearShapes(model_, A, a.X_WI * A.X_IB, B, b.X_WI * B.X_IB, margin_, look_at);
     return limitTurn(a, b, nearest, next);
   }
 
+  // Of the gap at this point [m/s].
+  static double rateOf(const Moment& a, const Moment& b, const contact::PairPoint& point) {
+    const Vec3 v_a = a.motion.v_W + a.motion.w_W.cross(point.p_W - a.X_WI.p), v_b = b.motion.v_W + b.motion.w_W.cross(point.p_W - b.X_WI.p);
+    return point.n_W.dot(v_a - v_b);
+  }
+
   // Of a pair that touches already: what touches, and what closes slowly.
-  bool isBystander(const contact::PairPoint& point, const Approach& approach) const {
-    return approach.u > -kAlongWith * hardLanding(model_, scratch_) || pushedBefore(state_, contactId(0, pair_.a, pair_.b, point.feature));
+  bool isBystander(const ColliderModel& a, const ColliderModel& b, const contact::PairPoint& point, const Approach& approach) const {
+    return approach.u > -kAlongWith * hardLanding(model_, scratch_) ||
+           pushedBefore(state_, contactId(model_.shape_bits, sideOf(model_, a), sideOf(model_, b), point.feature));
   }
 
   Next limitTurn(const Moment& a, const Moment& b, double nearest, Next next) const {
@@ -140,7 +150,7 @@ class ClosingPair {
   WorldScratch& scratch_;
   ImpactPair pair_;
   double margin_;
-  Vec3 last_n_W_ = Vec3::Zero();  // of the last look: the next one begins there
+  Vec3 last_n_W_ = Vec3::Zero();  // of the last look: the next one begins there; of two bodies with one shape each
 };
 
 }  // namespace

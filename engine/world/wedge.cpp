@@ -57,7 +57,7 @@ void loosenWedges(WorldScratch& scratch) {
   std::vector<Contact>& contacts = scratch.contacts;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     if (!isPressedPoint(contacts[i])) continue;
-    for (std::size_t k = i + 1; k < contacts.size() && contacts[k].id >> 32 == contacts[i].id >> 32; ++k) {
+    for (std::size_t k = i + 1; k < contacts.size() && isOfSameTwo(contacts[k], contacts[i]); ++k) {
       if (isPressedPoint(contacts[k])) loosen(contacts[i], contacts[k]);
     }
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "pincer/contact/functions/invariants.h"
+#include "pincer/engine/world/colliders.h"
 #include "pincer/grasp/baseline/nearest_outside.h"
 #include "pincer/grasp/tick/finger_contacts.h"
 #include "pincer/grasp/tick/finger_tick.h"
@@ -17,7 +18,7 @@ constexpr double kResting = 1e-6;       // a proxy this near to a surface rests 
 
 // A surface near the finger, in W.
 struct NearSurface {
-  int body = 0;
+  int body = 0, collider = 0;
   Vec3 p_W, n_W;  // where, and the normal of the force
   Vec3 facet_W;   // the normal of what is really there: the same but for force shading
   double phi = 0;
@@ -67,22 +68,29 @@ class BaselineFinger {
   // Everything within `margin` of the finger at `p_W`.
   NearSurfaces look(const Vec3& p_W, double margin, bool afresh) {
     NearSurfaces near;
-    for (int body = 0; body < static_cast<int>(model_.world.bodies.size()); ++body) {
-      const Pose X_WB = engine::bodyPose(model_.world, state_.world, body);
-      const std::size_t pair = static_cast<std::size_t>(index_) * model_.world.bodies.size() + static_cast<std::size_t>(body);
-      if (afresh) state_.trackers[pair] = {};
-      const Vec3 p_BC = X_WB.q.conjugate() * (p_W - X_WB.p);
-      if (contact::lowerBoundOfGap(model_.world.bodies[static_cast<std::size_t>(body)].shape, p_BC, finger_.radius) > margin) continue;
-      const contact::FingerContacts found =
-          fingerOnBody(model_, state_, scratch_.world.patches, index_, body, X_WB, {input_.q_WF, p_W}, margin);
-      for (int i = 0; i < found.count; ++i) {
-        const contact::SurfaceContact& s = found.points[static_cast<std::size_t>(i)];
-        if (s.phi > margin) continue;
-        const Vec3 to_centre = finger_.shape ? s.n_B : Vec3(signOf(s.phi + finger_.radius) * (p_BC - s.p_BS).normalized());
-        near.add({body, X_WB * s.p_BS, X_WB.q * s.n_B, X_WB.q * to_centre, s.phi});
-      }
-    }
+    for (int i = 0; i < static_cast<int>(model_.world.colliders.size()); ++i) lookAt(i, p_W, margin, afresh, near);
     return near;
+  }
+
+  void lookAt(int collider, const Vec3& p_W, double margin, bool afresh, NearSurfaces& near) {
+    const engine::ColliderModel& c = model_.world.colliders[static_cast<std::size_t>(collider)];
+    if (afresh) state_.trackers[trackerOf(model_, index_, collider)] = {};
+    if (engine::isOnlySeen(c.bits)) return;
+    const Pose X_WS = engine::poseOf(c, engine::bodyPose(model_.world, state_.world, c.body));
+    const Vec3 p_SC = X_WS.q.conjugate() * (p_W - X_WS.p);
+    if (contact::lowerBoundOfGap(c.shape, p_SC, finger_.radius) > margin) return;
+    const contact::FingerContacts found =
+        fingerOnShape(model_, state_, scratch_.world.patches, index_, collider, X_WS, {input_.q_WF, p_W}, margin);
+    for (int i = 0; i < found.count; ++i) {
+      const contact::SurfaceContact& s = found.points[static_cast<std::size_t>(i)];
+      if (s.phi > margin) continue;
+      const Vec3 to_centre = finger_.shape ? s.n_B : Vec3(signOf(s.phi + finger_.radius) * (p_SC - s.p_BS).normalized());
+      near.add({c.body, collider, X_WS * s.p_BS, X_WS.q * s.n_B, X_WS.q * to_centre, s.phi});
+    }
+  }
+
+  const engine::Material& materialOf(const NearSurface& s) const {
+    return model_.world.colliders[static_cast<std::size_t>(s.collider)].material;
   }
 
   Vec3 surfaceVelocity(const NearSurface& s) const {
@@ -97,7 +105,7 @@ class BaselineFinger {
       const NearSurface& s = near.all[static_cast<std::size_t>(i)];
       const Vec3 v = input_.v_WF - surfaceVelocity(s), v_t = v - v.dot(s.n_W) * s.n_W;
       const double f_n = std::max(-k_ * s.phi - d * v.dot(s.n_W), 0.0), speed = v_t.norm();
-      const double mu = model_.world.bodies[static_cast<std::size_t>(s.body)].material.mu_d;
+      const double mu = materialOf(s).mu_d;
       Vec3 f = f_n * s.n_W;
       if (speed > 0) f -= mu * f_n * std::min(1.0, speed / kSmoothedSlip) / speed * v_t;
       push(s, f, f_n);
@@ -117,7 +125,7 @@ class BaselineFinger {
     const double pressed = -way.dot(resting->n_W);
     if (pressed <= 0) return input_.p_WF;
     const Vec3 along = way + pressed * resting->n_W;
-    const engine::Material& material = model_.world.bodies[static_cast<std::size_t>(resting->body)].material;
+    const engine::Material& material = materialOf(*resting);
     const double length = along.norm(), held = material.mu_s * pressed;
     report_.sliding = length > held;
     const double kept = report_.sliding ? 1 - material.mu_d * pressed / length : 0;

@@ -4,6 +4,8 @@
 #include <type_traits>
 
 #include "pincer/contact/functions/invariants.h"
+#include "pincer/engine/world/colliders.h"
+#include "pincer/engine/world/thin_contacts.h"
 
 namespace pincer::grasp {
 namespace {
@@ -28,25 +30,14 @@ class FingerLook {
   void at(int body) {
     const engine::BodyModel& b = model_.world.bodies[body];
     const engine::BodyScratch& mid = scratch_.world.bodies[body];
-    const Vec3& p_WC = point_.p_mid_W;
-    const Vec3 p_BC = mid.R_WB_mid.transpose() * (p_WC - mid.X_WB_mid.p);
-    const std::size_t pair = static_cast<std::size_t>(finger_) * model_.world.bodies.size() + static_cast<std::size_t>(body);
-    if (!isWithinReach(b, mid)) {
-      const double bound = b.bounding_radius < kEndless ? (p_WC - mid.X_WI_mid.p).norm() - b.bounding_radius - f_.radius
-                                                        : contact::lowerBoundOfGap(b.shape, p_BC, f_.radius);
-      if (bound > f_.reach && isBeyondMargin(bound, mid)) {
-        report_.gap = std::min(report_.gap, bound);
-        if (std::holds_alternative<contact::Mesh>(b.shape)) state_.trackers[pair] = {};  // closed forms don't use it
-        if (f_.shape) state_.tips[pair] = {};
-        return;
-      }
+    if (const engine::ColliderModel* const lone = engine::loneCollider(model_.world, b))
+      return at({*lone, mid, mid.X_WB_mid.p, mid.R_WB_mid}, mid.X_WI_mid.p, b.bounding_radius);
+    const std::size_t first = scratch_.world.contacts.size();
+    for (const engine::ColliderModel& c : engine::collidersOf(model_.world, b)) {
+      const Vec3 p_WS = mid.X_WB_mid.p + mid.R_WB_mid * c.X_BS.p;
+      at({c, mid, p_WS, mid.R_WB_mid * c.X_BS.q.toRotationMatrix()}, p_WS, c.bounding_radius);
     }
-    const double margin = marginTo(mid);
-    if (f_.shape) {
-      const Pose X_WF{scratch_.q_mid_WF[finger_], p_WC};
-      return take(fingerOnBody(model_, state_, scratch_.world.patches, finger_, body, mid.X_WB_mid, X_WF, margin), body, margin);
-    }
-    take(contact::querySphere(b.shape, p_BC, f_.radius, margin, state_.trackers[pair], scratch_.world.patches), body, margin);
+    engine::thinContacts(first, scratch_.world);
   }
 
   // Distance of the finger's centre from a body's box, which holds the body's own way in the tick, beyond which it needn't be looked at [m].
@@ -56,10 +47,45 @@ class FingerLook {
   }
 
  private:
+  // A body's shape in the middle of the tick.
+  struct Place {
+    const engine::ColliderModel& collider;
+    const engine::BodyScratch& mid;  // of its body
+    Vec3 p_WS;
+    Mat3 R_WS;
+  };
+
+  // Its bounds are a sphere about `centre_W`.
+  void at(const Place& place, const Vec3& centre_W, double bounding_radius) {
+    if (engine::isOnlySeen(place.collider.bits)) return;
+    const contact::Shape& shape = place.collider.shape;
+    const Vec3& p_WC = point_.p_mid_W;
+    const Vec3 p_SC = place.R_WS.transpose() * (p_WC - place.p_WS);
+    const int number = static_cast<int>(&place.collider - model_.world.colliders.data());
+    const std::size_t pair = trackerOf(model_, finger_, number);
+    if (!isWithinReach(centre_W, bounding_radius)) {
+      const double bound = bounding_radius < kEndless ? (p_WC - centre_W).norm() - bounding_radius - f_.radius
+                                                      : contact::lowerBoundOfGap(shape, p_SC, f_.radius);
+      if (bound > f_.reach && isBeyondMargin(bound, place.mid)) {
+        report_.gap = std::min(report_.gap, bound);
+        if (std::holds_alternative<contact::Mesh>(shape)) state_.trackers[pair] = {};  // closed forms don't use it
+        if (f_.shape) state_.tips[pair] = {};
+        return;
+      }
+    }
+    const double margin = marginTo(place.mid);
+    if (f_.shape) {
+      const Pose X_WF{scratch_.q_mid_WF[finger_], p_WC};
+      const Pose X_WS = engine::poseOf(place.collider, place.mid.X_WB_mid);
+      return take(fingerOnShape(model_, state_, scratch_.world.patches, finger_, number, X_WS, X_WF, margin), place, margin);
+    }
+    take(contact::querySphere(shape, p_SC, f_.radius, margin, state_.trackers[pair], scratch_.world.patches), place, margin);
+  }
+
   // Without a root: of what fingers hold, as a rule, the bounding sphere is.
-  bool isWithinReach(const engine::BodyModel& b, const engine::BodyScratch& mid) const {
-    const double distance = f_.reach + b.bounding_radius + f_.radius;
-    return distance < kEndless && (point_.p_mid_W - mid.X_WI_mid.p).squaredNorm() <= distance * distance;
+  bool isWithinReach(const Vec3& centre_W, double bounding_radius) const {
+    const double distance = f_.reach + bounding_radius + f_.radius;
+    return distance < kEndless && (point_.p_mid_W - centre_W).squaredNorm() <= distance * distance;
   }
 
   // What closes within the tick must be seen at its middle.
@@ -73,17 +99,16 @@ class FingerLook {
 
   // The nearest point for the pad, and the contacts for the solve.
   template <class Found>
-  void take(const Found& found, int body, double margin) {
-    const engine::BodyModel& b = model_.world.bodies[body];
-    const engine::BodyScratch& mid = scratch_.world.bodies[body];
+  void take(const Found& found, const Place& place, double margin) {
+    const engine::BodyModel& b = model_.world.bodies[place.collider.body];
     const contact::SurfaceContact& main = found.main();
     // Static supports don't pre-position the tactor: what the hand looks for is an object.
     if (b.dynamic && main.phi < report_.gap) {
       report_.gap = main.phi;
-      const Vec3 to_tip_W = mid.X_WB_mid.p + mid.R_WB_mid * main.p_BS - point_.p_mid_W;
+      const Vec3 to_tip_W = place.p_WS + place.R_WS * main.p_BS - point_.p_mid_W;
       Vec3& nearest_n_W = scratch_.nearest_n_W[finger_];
       if constexpr (std::is_same_v<Found, contact::FingerContacts>) {
-        nearest_n_W = mid.R_WB_mid * main.n_B;
+        nearest_n_W = place.R_WS * main.n_B;
         scratch_.nearest_d_W[finger_] = to_tip_W + main.phi * nearest_n_W;
       } else {
         nearest_n_W = -to_tip_W;  // where the facet is, whatever its shading says
@@ -91,22 +116,22 @@ class FingerLook {
     }
     if (!b.dynamic && !moves_) return;
     for (int i = 0; i < found.count; ++i) {
-      if (found.points[i].phi < margin) add(found.points[i], body, b.material, mid);
+      if (found.points[i].phi < margin) add(found.points[i], place);
     }
   }
 
   // The two touch midway between the body's surface and the fingertip's, on the normal n_W but for meshes with force shading.
-  void add(const contact::SurfaceContact& found, int body, const engine::Material& material, const engine::BodyScratch& mid) {
+  void add(const contact::SurfaceContact& found, const Place& place) {
     engine::Contact* const c = engine::addContact(scratch_.world, found.phi);
     if (!c) return;
-    const Vec3 n_W = mid.R_WB_mid * found.n_B;
+    const Vec3 n_W = place.R_WS * found.n_B;
     PINCER_ASSERT(isUnitIfFinite(n_W));
-    c->id = engine::contactId(1, finger_, body, found.feature);
-    c->a = {SideKind::kPoint, finger_};
-    c->b = {SideKind::kBody, body};
+    c->a = {SideKind::kPoint, 0, finger_};
+    c->b = engine::sideOf(model_.world, place.collider);
+    c->id = engine::contactId(model_.world.shape_bits, c->a, c->b, found.feature);
     c->R_WC.col(2) = n_W;
-    c->p_W = mid.X_WB_mid.p + mid.R_WB_mid * found.p_BS + 0.5 * found.phi * n_W;
-    c->material = material;
+    c->p_W = place.p_WS + place.R_WS * found.p_BS + 0.5 * found.phi * n_W;
+    c->material = place.collider.material;
     if (f_.pad.isSoft()) c->material.torsion_radius = torsionRadius(f_.pad, f_.radius, state_.fingers[finger_].normal_force);
   }
 
@@ -122,13 +147,17 @@ class FingerLook {
 
 }  // namespace
 
-contact::FingerContacts fingerOnBody(const GraspModel& model, GraspState& state, contact::PatchCache& patches, int finger, int body,
-                                     const Pose& X_WB, const Pose& X_WF, double margin) {
-  PINCER_ASSERT(isIndex(finger, model.fingers.size()) && isIndex(body, model.world.bodies.size()));
+std::size_t trackerOf(const GraspModel& model, int finger, int collider) {
+  return static_cast<std::size_t>(finger) * model.world.colliders.size() + static_cast<std::size_t>(collider);
+}
+
+contact::FingerContacts fingerOnShape(const GraspModel& model, GraspState& state, contact::PatchCache& patches, int finger, int collider,
+                                      const Pose& X_WS, const Pose& X_WF, double margin) {
+  PINCER_ASSERT(isIndex(finger, model.fingers.size()) && isIndex(collider, model.world.colliders.size()));
   const FingerModel& f = model.fingers[finger];
-  const contact::Shape& shape = model.world.bodies[body].shape;
-  const std::size_t pair = static_cast<std::size_t>(finger) * model.world.bodies.size() + static_cast<std::size_t>(body);
-  const Pose X_BF = X_WB.inverse() * X_WF;
+  const contact::Shape& shape = model.world.colliders[collider].shape;
+  const std::size_t pair = trackerOf(model, finger, collider);
+  const Pose X_BF = X_WS.inverse() * X_WF;
   PINCER_ASSERT(!f.shape || state.tips.size() == state.trackers.size());
   if (f.shape) return contact::queryFinger(shape, *f.shape, X_BF, margin, state.tips[pair], patches);
   const contact::SurfaceContacts found = contact::querySphere(shape, X_BF.p, f.radius, margin, state.trackers[pair], patches);

@@ -4,12 +4,15 @@
 
 namespace pincer::grasp {
 
-// Adds a contact (finger's proxy on body) to scratch.world for every body within the contact margin, and writes the finger's gap to its
+// Adds a contact (finger's proxy on body) to scratch.world for every shape of a body within the contact margin, and writes the finger's gap to its
 // nearest body and the direction of it. Geometry at the predicted middle of the tick. Advances the finger's trackers in `state`.
 void findFingerContacts(const GraspModel& model, int finger, GraspState& state, GraspScratch& scratch);
 
-// Contacts of one finger at X_WF with one body at X_WB, in the body's frame; p_BT its own points there.
-contact::FingerContacts fingerOnBody(const GraspModel& model, GraspState& state, contact::PatchCache& patches, int finger, int body,
-                                     const Pose& X_WB, const Pose& X_WF, double margin);
+// The place of a finger and a shape (of model.world.colliders) in state.trackers, and in state.tips where there are some.
+std::size_t trackerOf(const GraspModel& model, int finger, int collider);
+
+// Contacts of one finger at X_WF with one shape at X_WS, in the shape's frame; p_BT its own points there.
+contact::FingerContacts fingerOnShape(const GraspModel& model, GraspState& state, contact::PatchCache& patches, int finger, int collider,
+                                      const Pose& X_WS, const Pose& X_WF, double margin);
 
 }  // namespace pincer::grasp

@@ -1,5 +1,7 @@
 // finger_tick: a tick's work on one finger, before and after the world's step.
 #pragma once
+#include <span>
+
 #include "pincer/engine/world/stages.h"
 #include "pincer/grasp/tick/scratch.h"
 
@@ -10,6 +12,12 @@ void setInputs(const GraspModel& model, const GraspState& state, std::span<const
 
 // Fills scratch.fingers[finger] from the contacts of the tick.
 void reportFinger(const GraspModel& model, const GraspState& state, int finger, GraspScratch& scratch);
+
+// The finger's contacts, which follow each other, sorted by id.
+std::span<const engine::Contact> contactsOf(const GraspScratch& scratch, int finger);
+
+// Fills FingerReport::pressure of a finger that has taxels, from its report and its contacts.
+void mapPressure(const GraspModel& model, int finger, GraspScratch& scratch);
 
 // Notes in `state` what the next tick needs to know of scratch.fingers[finger], and in that the touch of the tick before.
 void rememberFinger(const GraspModel& model, const FingerInput& input, int finger, GraspState& state, GraspScratch& scratch);

@@ -28,12 +28,28 @@ void checkCoupling(const FingerModel& finger) {
   }
 }
 
+void checkTaxels(const FingerModel& finger) {
+  constexpr int kFewest = 2, kMost = 64;
+  const PressureGrid& grid = finger.taxels;
+  if (grid.rows == 0 && grid.columns == 0) return;
+  for (const int n : {grid.rows, grid.columns}) {
+    if (n >= kFewest && n <= kMost) continue;
+    throw InputError(
+        fmt::format("finger \"{}\": taxels in {} rows and {} columns are out of range {} .. {} each. A fingerpad's sensor has 8 x 6.",
+                    finger.name, grid.rows, grid.columns, kFewest, kMost));
+  }
+  if (grid.pitch > 0 && grid.pitch <= 0.1) return;
+  throw InputError(fmt::format("finger \"{}\": pitch of the taxels = {} is out of range (0, 0.1]. It is in metres; 0.002 is usual.",
+                               finger.name, grid.pitch));
+}
+
 void check(const FingerModel& finger) {
   if (finger.shape) {
     const std::string problem = contact::problemWith(*finger.shape);
     if (!problem.empty()) throw InputError(fmt::format("finger \"{}\": {}", finger.name, problem));
   }
   checkCoupling(finger);
+  checkTaxels(finger);
   if (!(finger.radius > 0 && finger.radius <= 1)) {
     throw InputError(fmt::format("finger \"{}\": radius = {} is out of range (0, 1]. It is in metres; a fingertip has about 0.008.",
                                  finger.name, finger.radius));

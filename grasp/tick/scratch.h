@@ -12,11 +12,12 @@ struct GraspScratch {
   explicit GraspScratch(const GraspModel& model);
   engine::WorldScratch world;
   std::vector<engine::PointInput> inputs;
-  std::vector<Quat> q_mid_WF;         // of the fingers in the middle of the tick
-  std::vector<Vec3> nearest_n_W;      // per finger, towards it from the nearest body, of any length; zero: none is near
-  std::vector<Vec3> nearest_d_W;      // per finger, from its centre to its own point nearest to the nearest body [m]
-  std::vector<FingerReport> fingers;  // of the last tick that was computed
-  std::vector<Quat> orientations;     // of the fingers at its end
+  std::vector<Quat> q_mid_WF;              // of the fingers in the middle of the tick
+  std::vector<Vec3> nearest_n_W;           // per finger, towards it from the nearest body, of any length; zero: none is near
+  std::vector<Vec3> nearest_d_W;           // per finger, from its centre to its own point nearest to the nearest body [m]
+  std::vector<FingerReport> fingers;       // of the last tick that was computed
+  std::vector<Quat> orientations;          // of the fingers at its end
+  std::vector<std::vector<Taxel>> taxels;  // per finger, of the last tick that was computed; empty where no map is asked for
 };
 
 }  // namespace pincer::grasp

@@ -38,16 +38,17 @@ void setInputs(const GraspModel& model, const GraspState& state, std::span<const
   }
 }
 
-namespace {
-
-// The contacts of one finger: they follow each other, sorted by id. Of thousands of fingers each would else look at all contacts.
+// Of thousands of fingers each would else look at all contacts.
 std::span<const engine::Contact> contactsOf(const GraspScratch& scratch, int finger) {
   const std::vector<engine::Contact>& all = scratch.world.contacts;
   const auto less = [](const engine::Contact& c, std::uint64_t id) { return c.id < id; };
-  const auto first = std::lower_bound(all.begin(), all.end(), engine::contactId(1, finger, 0, 0), less);
+  const std::uint64_t first_id = engine::contactId(0, {engine::SideKind::kPoint, 0, finger}, {}, 0);  // whatever it touches
+  const auto first = std::lower_bound(all.begin(), all.end(), first_id, less);
   const auto is_other = [&](const engine::Contact& c) { return c.a.kind != engine::SideKind::kPoint || c.a.index != finger; };
   return {first, std::find_if(first, all.end(), is_other)};
 }
+
+namespace {
 
 // Angular impulse about the normal at the mean place that the contacts' forces make by being apart.
 double momentOfPoints(const GraspScratch& scratch, int finger, const FingerReport& report) {
@@ -133,6 +134,7 @@ void reportFinger(const GraspModel& model, const GraspState& state, int finger, 
   report.f_user_W = report.f_contact_W + scratch.inputs[finger].f_W;
   const double mass = model.fingers[finger].coupling.mass;
   if (mass > 0) report.f_user_W -= mass / tick * (state.world.points[finger].v_W - point.v_tick_W);
+  mapPressure(model, finger, scratch);
 }
 
 void rememberFinger(const GraspModel& model, const FingerInput& input, int finger, GraspState& state, GraspScratch& scratch) {
@@ -183,7 +185,13 @@ GraspScratch::GraspScratch(const GraspModel& model)
       nearest_n_W(model.fingers.size()),
       nearest_d_W(model.fingers.size()),
       fingers(model.fingers.size()),
-      orientations(model.fingers.size()) {}
+      orientations(model.fingers.size()),
+      taxels(model.fingers.size()) {
+  for (std::size_t i = 0; i < taxels.size(); ++i) {
+    const PressureGrid& grid = model.fingers[i].taxels;
+    taxels[i].resize(static_cast<std::size_t>(grid.rows * grid.columns));
+  }
+}
 
 void DeleteScratch::operator()(GraspScratch* scratch) const { delete scratch; }
 ScratchHandle makeScratch(const GraspModel& model) { return ScratchHandle(new GraspScratch(model)); }
@@ -194,7 +202,7 @@ const engine::WorldScratch& worldOf(const GraspScratch& scratch) { return scratc
 
 GraspState makeState(const GraspModel& model, const std::vector<engine::BodyStart>& starts, const std::vector<Vec3>& fingers) {
   GraspState state{engine::makeState(model.world, starts, fingers), {}, {}, {}};
-  state.trackers.resize(model.fingers.size() * model.world.bodies.size());
+  state.trackers.resize(model.fingers.size() * model.world.colliders.size());
   const auto has_shape = [](const FingerModel& f) { return f.shape.has_value(); };
   if (std::any_of(model.fingers.begin(), model.fingers.end(), has_shape)) state.tips.resize(state.trackers.size());
   state.fingers.resize(model.fingers.size());
@@ -204,8 +212,9 @@ GraspState makeState(const GraspModel& model, const std::vector<engine::BodyStar
 GraspReport step(const GraspModel& model, GraspState& state, GraspScratch& scratch, std::span<const FingerInput> inputs,
                  std::span<const engine::MotionInput> motions, const engine::AppliedForces& applied) {
   PINCER_DEMAND(inputs.size() == model.fingers.size(), "step: one input per finger");
-  PINCER_DEMAND(state.fingers.size() == model.fingers.size() && state.trackers.size() == model.fingers.size() * model.world.bodies.size(),
-                "step: the state is one of this model (makeState)");
+  PINCER_DEMAND(
+      state.fingers.size() == model.fingers.size() && state.trackers.size() == model.fingers.size() * model.world.colliders.size(),
+      "step: the state is one of this model (makeState)");
   PINCER_DEMAND(scratch.fingers.size() == model.fingers.size(), "step: the scratch is one of this model");
   setInputs(model, state, inputs, scratch);
   FingerContacts contacts(model, state, scratch, inputs);

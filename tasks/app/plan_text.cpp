@@ -3,14 +3,15 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <iterator>
+
 #include "pincer/contact/io/counted.h"
 #include "pincer/contact/polytope.h"
 #include "pincer/contact/smooth_mesh.h"
 
 namespace pincer::tasks {
 namespace {
-
-using Bodies = std::vector<engine::BodyModel>;
 
 struct ShapeName {
   std::string operator()(const contact::Sphere& s) const { return fmt::format("sphere r {:g} mm", 1e3 * s.radius); }
@@ -36,8 +37,8 @@ struct ShapeName {
   }
 };
 
-bool isMesh(const engine::BodyModel& body) { return std::holds_alternative<contact::Mesh>(body.shape); }
-bool isSphere(const engine::BodyModel& body) { return std::holds_alternative<contact::Sphere>(body.shape); }
+bool isMesh(const engine::ColliderModel& c) { return std::holds_alternative<contact::Mesh>(c.shape); }
+bool isSphere(const engine::ColliderModel& c) { return std::holds_alternative<contact::Sphere>(c.shape); }
 
 std::string rotationForm(const engine::BodyModel& body) {
   switch (body.rotation.kind) {
@@ -51,8 +52,19 @@ std::string rotationForm(const engine::BodyModel& body) {
   return "";
 }
 
-std::string bodyForm(const engine::BodyModel& body) {
-  const std::string shape = nameOf(body.shape);
+std::string shapesForm(const engine::WorldModel& world, const engine::BodyModel& body) {
+  std::vector<std::string> names;
+  for (const engine::ColliderModel& c : engine::collidersOf(world, body)) names.push_back(nameOf(c.shape));
+  if (names.size() == 1) return names.front();
+  constexpr std::size_t kMost = 4;
+  const std::string further = names.size() > kMost ? fmt::format(", and {} more", names.size() - kMost) : "";
+  const std::size_t count = names.size();
+  names.resize(std::min(count, kMost));
+  return fmt::format("{} shapes: {}{}", count, fmt::join(names, ", "), further);
+}
+
+std::string bodyForm(const engine::WorldModel& world, const engine::BodyModel& body) {
+  const std::string shape = shapesForm(world, body);
   if (!body.dynamic) return fmt::format("{}; static, costs nothing by itself", shape);
   const std::string touch = body.may_touch ? "" : "; touches nothing: moves in closed form alone";
   return fmt::format("{}, {:.4g} g; {}{}", shape, 1e3 * body.mass, rotationForm(body), touch);
@@ -65,12 +77,17 @@ std::string rowsText(const engine::Material& m) {
   return text;
 }
 
-std::string pairForm(const Bodies& bodies, const engine::PairModel& pair) {
-  const engine::BodyModel &a = bodies[static_cast<std::size_t>(pair.a)], &b = bodies[static_cast<std::size_t>(pair.b)];
-  const bool mesh = isMesh(a) || isMesh(b);
-  const bool sphere = isSphere(a) || isSphere(b);
+std::string frictionText(const engine::Material& m) { return fmt::format("{}, mu_s {:g}, mu_d {:g}", rowsText(m), m.mu_s, m.mu_d); }
+
+std::string pairForm(const engine::WorldModel& world, const engine::PairModel& pair) {
+  const auto shapes_a = engine::collidersOf(world, world.bodies[static_cast<std::size_t>(pair.a)]),
+             shapes_b = engine::collidersOf(world, world.bodies[static_cast<std::size_t>(pair.b)]);
+  if (pair.is_of_many)
+    return fmt::format("{} by {}, those whose spheres meet; materials combined where two touch", counted(std::ssize(shapes_a), "shape"),
+                       std::ssize(shapes_b));
+  const bool mesh = isMesh(shapes_a[0]) || isMesh(shapes_b[0]), sphere = isSphere(shapes_a[0]) || isSphere(shapes_b[0]);
   const char* form = !mesh ? "closed form" : sphere ? "sphere on the smooth surface" : "corners of the mesh's convex hull";
-  return fmt::format("{}; {}, mu_s {:g}, mu_d {:g}", form, rowsText(pair.material), pair.material.mu_s, pair.material.mu_d);
+  return fmt::format("{}; {}", form, frictionText(pair.material));
 }
 
 std::string couplingForm(const engine::DrivenPointModel& coupling, const std::array<engine::AxisForm, 3>& forms) {
@@ -88,9 +105,9 @@ std::string surfaceForm(const contact::Shape& shape) {
   return fmt::format("mesh with shading {}, warm-started search", contact::kSurfaceVariantNames[static_cast<std::size_t>(variant)]);
 }
 
-std::string touchForm(const engine::BodyModel& body) {
-  return fmt::format("{}; {}, mu_s {:g}, mu_d {:g}", surfaceForm(body.shape), rowsText(body.material), body.material.mu_s,
-                     body.material.mu_d);
+std::string touchForm(const engine::ColliderModel& collider) {
+  if (engine::isOnlySeen(collider.bits)) return "only seen";
+  return fmt::format("{}; {}", surfaceForm(collider.shape), frictionText(collider.material));
 }
 
 // What the coupling asks of an arm, by Colgate and Schenkel's bound, and whether its arm has it.
@@ -119,13 +136,23 @@ std::string tipForm(const grasp::FingerModel& f, grasp::FingerMethod method) {
   return text;
 }
 
+// One line per body, or per shape where they differ.
+void describeTouch(const engine::WorldModel& world, const std::string& finger, const engine::BodyModel& body,
+                   std::vector<PlanLine>& lines) {
+  const auto shapes = engine::collidersOf(world, body);
+  const std::string first = touchForm(shapes.front());
+  const auto is_alike = [&](const engine::ColliderModel& c) { return touchForm(c) == first; };
+  if (std::all_of(shapes.begin(), shapes.end(), is_alike))
+    return lines.push_back({"touch", fmt::format("{} - {}", finger, body.name), first});
+  for (const engine::ColliderModel& c : shapes)
+    lines.push_back({"touch", fmt::format("{} - {}.{}", finger, body.name, c.name), touchForm(c)});
+}
+
 void describeFinger(const grasp::GraspModel& model, std::size_t finger, grasp::FingerMethod method, std::vector<PlanLine>& lines) {
   const grasp::FingerModel& f = model.fingers[finger];
   lines.push_back({"finger", f.name, fmt::format("{}, {}", tipForm(f, method), couplingForm(f.coupling, model.world.point_forms[finger]))});
   lines.push_back({"arm", f.name, armForm(f, model.world.options.h)});
-  for (const engine::BodyModel& body : model.world.bodies) {
-    lines.push_back({"touch", fmt::format("{} - {}", f.name, body.name), touchForm(body)});
-  }
+  for (const engine::BodyModel& body : model.world.bodies) describeTouch(model.world, f.name, body, lines);
 }
 
 void describeMany(const grasp::GraspModel& model, std::vector<PlanLine>& lines) {
@@ -153,12 +180,12 @@ std::string nameOf(const contact::Shape& shape) { return std::visit(ShapeName{},
 
 std::vector<PlanLine> describePlan(const grasp::GraspModel& model, const std::vector<grasp::FingerMethod>& methods) {
   std::vector<PlanLine> lines;
-  const Bodies& bodies = model.world.bodies;
-  for (const engine::BodyModel& body : bodies) lines.push_back({"body", body.name, bodyForm(body)});
+  const std::vector<engine::BodyModel>& bodies = model.world.bodies;
+  for (const engine::BodyModel& body : bodies) lines.push_back({"body", body.name, bodyForm(model.world, body)});
   for (const engine::PairModel& pair : model.world.pairs) {
     const std::string name =
         fmt::format("{} - {}", bodies[static_cast<std::size_t>(pair.a)].name, bodies[static_cast<std::size_t>(pair.b)].name);
-    lines.push_back({"pair", name, pairForm(bodies, pair)});
+    lines.push_back({"pair", name, pairForm(model.world, pair)});
   }
   for (std::size_t i = 0; i < model.fingers.size(); ++i) describeFinger(model, i, methods[i], lines);
   describeMany(model, lines);

@@ -160,7 +160,7 @@ struct ResponseRecord {
   std::int64_t index = 0;     // place within the run
   std::string stimulus;       // what was shown, where that has a name: "cone", "place 2"; else empty
   double level = 0;           // what was shown, as a number, in SI units: angle, backlash, delay, place; NaN if it has none
-  std::int64_t interval = 0;  // 1 or 2: in which of two intervals it was; 0 where there is one only
+  std::int64_t interval = 0;  // 1 or 2: the interval asked for; 0 where there is one only
   std::string answer;         // in words: "2", "cylinder", "0.0014"
   double answer_value = 0;    // the same as a number, or how sure of it (shapes) [-]; NaN if it has none
   std::int64_t correct = 0;   // 1 right, 0 wrong

@@ -29,14 +29,12 @@ bool isGround(const contact::Shape& shape) {
   return std::holds_alternative<contact::HalfSpace>(shape) || std::holds_alternative<contact::Dish>(shape);
 }
 
-Paint paintOfBody(const engine::BodyModel& body, std::size_t& next_colour) {
-  Paint paint;
-  if (std::holds_alternative<contact::Dish>(body.shape)) return {.colour = kPorcelain, .gloss = 0.75f};
-  if (std::holds_alternative<contact::HalfSpace>(body.shape)) return {.colour = kFloor, .gloss = 0.1f};
-  if (!body.dynamic) return {.colour = Vec3f(0.55f, 0.55f, 0.57f), .gloss = 0.2f};
-  paint.colour = kBodyColours[next_colour++ % kBodyColours.size()];
-  paint.gloss = 0.6f;
-  if (std::holds_alternative<contact::Sphere>(body.shape)) paint.octants = 0.13f;
+Paint paintOf(const contact::Shape& shape, bool dynamic, const Vec3f& colour) {
+  if (std::holds_alternative<contact::Dish>(shape)) return {.colour = kPorcelain, .gloss = 0.75f};
+  if (std::holds_alternative<contact::HalfSpace>(shape)) return {.colour = kFloor, .gloss = 0.1f};
+  if (!dynamic) return {.colour = Vec3f(0.55f, 0.55f, 0.57f), .gloss = 0.2f};
+  Paint paint{.colour = colour, .gloss = 0.6f};
+  if (std::holds_alternative<contact::Sphere>(shape)) paint.octants = 0.13f;
   return paint;
 }
 
@@ -70,39 +68,54 @@ SceneDrawing::SceneDrawing(const grasp::GraspModel& model, const Snapshot& start
       pad_(renderer.add(padMesh(kPadAngle))),
       nail_(renderer.add(nailMesh())) {
   for (const grasp::FingerModel& finger : fingers_) tips_.push_back(finger.shape ? renderer.add(tipMesh(*finger.shape)) : -1);
-  for (const engine::BodyModel& body : model.world.bodies) bodies_.push_back(bodyLook(body));
-  const double reach = radius(start);
-  std::size_t next_colour = 0;
   double smallest = kInfinity;
-  for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    const engine::BodyModel& body = model.world.bodies[i];
-    addMeshes(body, reach, renderer, bodies_[i]);
-    bodies_[i].paint = paintOfBody(body, next_colour);
-    if (bodies_[i].layer == Layer::kGround) bodies_[i].paint.fade = static_cast<float>(kGroundExtent * reach);
+  for (const engine::BodyModel& body : model.world.bodies) {
+    bodies_.push_back(bodyLook(model.world, body));
     if (body.dynamic) smallest = std::min(smallest, body.bounding_radius);
   }
+  addShapes(model.world, radius(start), renderer);
   for (const grasp::FingerModel& finger : model.fingers) smallest = std::min(smallest, 3 * finger.radius);
   if (smallest < kInfinity) size_ = smallest;
   for (std::size_t i = 0; i < start.fingers.size(); ++i) plain_q_WF_.push_back(plainOrientation(start, i));
 }
 
-SceneDrawing::BodyLook SceneDrawing::bodyLook(const engine::BodyModel& body) {
+SceneDrawing::BodyLook SceneDrawing::bodyLook(const engine::WorldModel& model, const engine::BodyModel& body) {
+  const auto shapes = engine::collidersOf(model, body);
+  const bool is_ground = std::any_of(shapes.begin(), shapes.end(), [](const engine::ColliderModel& c) { return isGround(c.shape); });
   BodyLook look;
   look.dynamic = body.dynamic;
   look.moves = body.dynamic || body.driven;
-  look.is_mesh = std::holds_alternative<contact::Mesh>(body.shape);
-  look.layer = std::holds_alternative<contact::HalfSpace>(body.shape) ? Layer::kGround : Layer::kSolid;
-  look.matters = look.moves || (!isGround(body.shape) && body.bounding_radius < kLargestThing);
+  look.matters = look.moves || (!is_ground && body.bounding_radius < kLargestThing);
   look.p_BC = body.X_BI.p;
   look.radius = body.bounding_radius;
   return look;
 }
 
-void SceneDrawing::addMeshes(const engine::BodyModel& body, double reach, Renderer& renderer, BodyLook& look) {
-  const auto* dish = std::get_if<contact::Dish>(&body.shape);
+SceneDrawing::ShapeLook SceneDrawing::shapeLook(const engine::ColliderModel& collider, double reach, Renderer& renderer) {
+  ShapeLook look;
+  look.body = static_cast<std::size_t>(collider.body);
+  look.X_BS = collider.X_BS;
+  look.is_mesh = std::holds_alternative<contact::Mesh>(collider.shape);
+  look.layer = std::holds_alternative<contact::HalfSpace>(collider.shape) ? Layer::kGround : Layer::kSolid;
+  const auto* dish = std::get_if<contact::Dish>(&collider.shape);
   const double extent = dish ? std::min(0.55 * dish->radius, std::max(1.2 * reach, 0.3 * dish->radius)) : kGroundExtent * reach;
-  look.smooth = look.facets = renderer.add(shapeMesh(body.shape, MeshLook::kSmooth, extent));
-  if (look.is_mesh) look.facets = renderer.add(shapeMesh(body.shape, MeshLook::kFacets, extent));
+  look.smooth = look.facets = renderer.add(shapeMesh(collider.shape, MeshLook::kSmooth, extent));
+  if (look.is_mesh) look.facets = renderer.add(shapeMesh(collider.shape, MeshLook::kFacets, extent));
+  return look;
+}
+
+// Bodies that move differ in colour, a body's shapes don't.
+void SceneDrawing::addShapes(const engine::WorldModel& model, double reach, Renderer& renderer) {
+  std::size_t next_colour = 0;
+  for (const engine::BodyModel& body : model.bodies) {
+    const Vec3f& colour = kBodyColours[next_colour % kBodyColours.size()];
+    if (body.dynamic) ++next_colour;
+    for (const engine::ColliderModel& collider : engine::collidersOf(model, body)) {
+      ShapeLook& look = shapes_.emplace_back(shapeLook(collider, reach, renderer));
+      look.paint = paintOf(collider.shape, body.dynamic, colour);
+      if (look.layer == Layer::kGround) look.paint.fade = static_cast<float>(kGroundExtent * reach);
+    }
+  }
 }
 
 DrawList SceneDrawing::compose(const Snapshot& snapshot, const ViewChoice& choice) const {
@@ -119,12 +132,12 @@ DrawList SceneDrawing::compose(const Snapshot& snapshot, const ViewChoice& choic
 }
 
 void SceneDrawing::addBodies(const Snapshot& snapshot, const ViewChoice& choice, DrawList& list) const {
-  for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    const BodyLook& look = bodies_[i];
-    if (snapshot.trial.blind && look.moves) continue;
-    DrawItem item{choice.facets ? look.facets : look.smooth, placed(snapshot.X_WB[i]), look.paint, look.layer};
+  for (const ShapeLook& look : shapes_) {
+    const bool moves = bodies_[look.body].moves;
+    if (snapshot.trial.blind && moves) continue;
+    DrawItem item{choice.facets ? look.facets : look.smooth, placed(snapshot.X_WB[look.body] * look.X_BS), look.paint, look.layer};
     if (look.is_mesh && choice.edges) item.paint.edges = choice.facets ? 0.7f : 0.3f;
-    if (look.moves && choice.transparent) item.paint.alpha = 0.4f;
+    if (moves && choice.transparent) item.paint.alpha = 0.4f;
     list.push_back(item);
   }
 }

@@ -52,18 +52,24 @@ class SceneDrawing {
   double metresPerNewton(const Snapshot& snapshot) const;  // of the arrows
 
  private:
-  struct BodyLook {
+  struct ShapeLook {
+    std::size_t body = 0;
+    Pose X_BS;
     int smooth = 0, facets = 0;
     Paint paint;
     Layer layer = Layer::kSolid;
-    bool dynamic = false, moves = false, is_mesh = false;
+    bool is_mesh = false;
+  };
+  struct BodyLook {
+    bool dynamic = false, moves = false;
     bool matters = false;      // is to be in the picture
     Vec3 p_BC = Vec3::Zero();  // its centre of mass [m]
     double radius = 0;         // about it [m]
   };
 
-  static BodyLook bodyLook(const engine::BodyModel& body);
-  static void addMeshes(const engine::BodyModel& body, double reach, Renderer& renderer, BodyLook& look);
+  static BodyLook bodyLook(const engine::WorldModel& model, const engine::BodyModel& body);
+  static ShapeLook shapeLook(const engine::ColliderModel& collider, double reach, Renderer& renderer);
+  void addShapes(const engine::WorldModel& model, double reach, Renderer& renderer);
   void addBodies(const Snapshot& snapshot, const ViewChoice& choice, DrawList& list) const;
   void addFinger(const Snapshot& snapshot, std::size_t finger, DrawList& list) const;
   void addDevice(const FingerSnapshot& seen, std::size_t finger, DrawList& list) const;
@@ -73,6 +79,7 @@ class SceneDrawing {
   std::vector<grasp::FingerModel> fingers_;
   std::vector<int> tips_;  // per finger: its own geometry, -1 of spheres, which are drawn as human fingers
   std::vector<BodyLook> bodies_;
+  std::vector<ShapeLook> shapes_;
   std::vector<Quat> plain_q_WF_;  // of fingers whose device says nothing of their orientation
   int ball_, rod_, cone_, head_, finger_, pad_, nail_;
   double size_ = 0.05;  // of marks: that of the things that move [m]

@@ -63,6 +63,8 @@ void harmMesh(Case& c) {
       {"mesh", "convert", name, "out" + c.anyOf(std::vector<std::string>{".obj", ".stl", ".ply", ".off"}), "--units", "cm"},
       {"mesh", "convert", name, "out.obj", "--units", "cm", "--repair", "--weld", "0.01", "--fill-holes", "1000"},
       {"mesh", "round-edges", name, "out.ply", "--units", "cm"},
+      {"mesh", "simplify", name, "out.ply", "--units", "cm"},
+      {"mesh", "subdivide", name, "out.obj", "--units", "cm"},
       {"run", "sphere-pickup", "--object", name, "--units", "cm", "--repetitions", "1", "--friction", "0.9", "--no-report", "--out",
        "out"}};
   Launch launch = shortly(c.pincer(c.chance(0.05) ? ways.back() : ways[static_cast<std::size_t>(c.below(ways.size() - 1))]));

@@ -8,7 +8,7 @@ const std::vector<Row>& rows() {
       {"scenes", "scene files: bytes, tokens, numbers, keys, nesting, NUL, huge names; sim, plan", 700, harmScene},
       {"studies", "study files of six experiments, likewise", 400, harmStudy},
       {"trajectories", "trajectory tables", 250, harmTrajectory},
-      {"meshes", "OBJ, STL, PLY, OFF, text and binary; info, check, convert --repair, round-edges", 700, harmMesh},
+      {"meshes", "OBJ, STL, PLY, OFF, text and binary; info, check, convert --repair, round-edges, simplify, subdivide", 700, harmMesh},
       {"device-files", "recordings and calibrations", 100, harmDeviceFile},
       {"special-files", "devices, pipes, folders, loops, 300 MB in place of each input", 320, useSpecialFile, allSpecialFiles},
       {"session-columns", "every column of every table: other types, ranges, texts; report, export, replay, --resume", 100, damageColumn,

@@ -21,12 +21,19 @@
 namespace pincer::tasks {
 namespace {
 
-std::vector<Measurement> selected(const std::vector<Measurement>& all, const std::string& pattern) {
+// In the order of `all`, each once.
+std::vector<Measurement> selected(const std::vector<Measurement>& all, const std::vector<std::string>& patterns) {
+  if (patterns.empty()) return all;
+  for (const std::string& pattern : patterns) {
+    if (std::any_of(all.begin(), all.end(), [&](const Measurement& m) { return matches(m.name, pattern); })) continue;
+    refuseUsage(fmt::format("--only {}: no measurement has a name like this. --list shows all {} of them; * stands for any text.", pattern,
+                            all.size()));
+  }
   std::vector<Measurement> chosen;
-  std::copy_if(all.begin(), all.end(), std::back_inserter(chosen), [&](const Measurement& m) { return matches(m.name, pattern); });
-  if (!chosen.empty()) return chosen;
-  refuseUsage(fmt::format("--only {}: no measurement has a name like this. --list shows all {} of them; * stands for any text.", pattern,
-                          all.size()));
+  std::copy_if(all.begin(), all.end(), std::back_inserter(chosen), [&](const Measurement& m) {
+    return std::any_of(patterns.begin(), patterns.end(), [&](const std::string& pattern) { return matches(m.name, pattern); });
+  });
+  return chosen;
 }
 
 void printNames(const std::vector<Measurement>& measurements, bool as_json) {
@@ -62,7 +69,7 @@ void runOne(const Measurement& measurement, MeasureContext& context, std::vector
 void addMeasureOptions(CLI::App& command, MeasureOptions& options) {
   command.add_flag("--json", options.json, "Print the records as JSON");
   command.add_flag("--list", options.list, "Print the measurements' names and run none");
-  command.add_option("--only", options.only, "Only measurements whose name holds this; * stands for any text");
+  command.add_option("--only", options.only, "Only measurements whose name holds one of these; * stands for any text");
 }
 
 int runMeasurements(const std::vector<Measurement>& measurements, const MeasureOptions& options, const std::string& title) {

@@ -1,6 +1,7 @@
 // What `pincer mesh info` and `pincer mesh check` find out, and how findings are shown.
 #include <fmt/format.h>
 
+#include "pincer/contact/io/counted.h"
 #include "pincer/contact/smooth_mesh.h"
 #include "pincer/contact/surface/self_crossings.h"
 #include "pincer/tasks/app/commands/mesh_commands.h"
@@ -39,19 +40,38 @@ contact::MeshFinding crossingFinding(const contact::TriangleMesh& mesh, const co
               found.is_all ? "" : "at least ", found.pairs, found.first + 1, p.x(), p.y(), p.z(), found.other + 1)};
 }
 
+constexpr int kManyTriangles = 20'000;  // beyond these the patches that a finger needs leave the processor's cache
+
+contact::MeshFinding manyTrianglesFinding(int triangles) {
+  return {"many-triangles", false, triangles,
+          fmt::format("{} triangles are more than a finger feels: ticks take longer, now and then more than 1 ms. `pincer mesh simplify` "
+                      "makes them fewer and keeps the surface.",
+                      triangles)};
+}
+
+contact::MeshFinding badFaceFinding(const FaultyMesh& read) {
+  return {"bad-faces", true, read.left_out,
+          fmt::format("{} can't be used, the first: {} `pincer mesh convert --repair` leaves them out; check the result for the holes that "
+                      "they leave.",
+                      counted(read.left_out, "face"), read.first_bad)};
+}
+
 bool hasSmoothSurface(const contact::MeshReport& report) {
   return report.triangles > 0 && report.nonmanifold_edges == 0 && report.nonmanifold_vertices == 0 && report.zero_area_triangles == 0;
 }
 
 }  // namespace
 
-MeshCheck checkMesh(const contact::TriangleMesh& mesh, double metres_per_unit, double finger_radius) {
+MeshCheck checkMesh(const FaultyMesh& read, double metres_per_unit, double finger_radius) {
+  const contact::TriangleMesh& mesh = read.mesh;
   MeshCheck check;
   check.report = contact::inspect(mesh, {.metres_per_unit = metres_per_unit});
+  if (read.left_out > 0) check.report.findings.insert(check.report.findings.begin(), badFaceFinding(read));
   const contact::SelfCrossings crossings = contact::findSelfCrossings(mesh);
   if (crossings.pairs > 0) check.report.findings.push_back(crossingFinding(mesh, crossings));
   check.has_surface = hasSmoothSurface(check.report);
   if (!check.has_surface) return check;
+  if (check.report.triangles > kManyTriangles) check.report.findings.push_back(manyTrianglesFinding(check.report.triangles));
   const auto surface = contact::SmoothMesh::build(mesh);
   check.folded_triangles = static_cast<int>(surface->foldedTriangles().size());
   check.concave_radius = surface->tightestConcaveRadius();

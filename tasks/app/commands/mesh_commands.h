@@ -19,6 +19,8 @@ void addMeshInfo(CLI::App& mesh, int& exit_code);
 void addMeshCheck(CLI::App& mesh, int& exit_code);
 void addMeshConvert(CLI::App& mesh, int& exit_code);
 void addMeshRoundEdges(CLI::App& mesh, int& exit_code);
+void addMeshSimplify(CLI::App& mesh, int& exit_code);
+void addMeshSubdivide(CLI::App& mesh, int& exit_code);
 
 constexpr double kMetresPerMillimetre = 1e-3;
 constexpr double kTypicalFinger = 8;  // radius of a fingertip [mm]
@@ -32,7 +34,14 @@ CLI::Option* addUnits(CLI::App& command, const std::string& name, std::string& u
 void addMeshFile(CLI::App& command, MeshInput& input);
 
 // Reads with a bar on standard error where that is a terminal. Throws InputError.
-contact::TriangleMesh readWithProgress(const MeshInput& input, contact::Degenerate degenerate);
+contact::TriangleMesh readWithProgress(const MeshInput& input);
+// The same for what looks at faults or mends them: keeps triangles without area, and leaves out polygons that can't be used.
+struct FaultyMesh {
+  contact::TriangleMesh mesh;
+  int left_out = 0;       // polygons
+  std::string first_bad;  // of them, with its place in the file
+};
+FaultyMesh readFaulty(const MeshInput& input);
 // Writes in the format of the name's ending and prints what was written and what of the mesh the format can't hold.
 void writeAndSay(const MeshInput& input, const std::string& out, const contact::TriangleMesh& mesh, const std::string& units);
 
@@ -43,7 +52,7 @@ struct MeshCheck {
   int folded_triangles = 0;
   double concave_radius = 0;  // [m], infinity where nothing is concave
 };
-MeshCheck checkMesh(const contact::TriangleMesh& mesh, double metres_per_unit, double finger_radius);  // [m]
+MeshCheck checkMesh(const FaultyMesh& read, double metres_per_unit, double finger_radius);  // [m]
 
 // "! name: text" per finding; "!" for those that make a mesh unfit for grasping, "-" for the others.
 std::string findingsText(const std::vector<contact::MeshFinding>& findings);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "pincer/contact/io/counted.h"
 #include "pincer/contact/io/printable.h"
 #include "pincer/contact/mesh_repair.h"
 #include "pincer/tasks/app/app.h"
@@ -40,6 +41,13 @@ void scaleToSize(double size, contact::TriangleMesh& mesh) {
   for (Vec3& vertex : mesh.vertices) vertex *= size / largest;
 }
 
+contact::TriangleMesh readForRepair(const MeshInput& input) {
+  FaultyMesh read = readFaulty(input);
+  if (read.left_out > 0)
+    print("  * left-out-faces: left out {}; the first: {}\n", counted(read.left_out, "face"), printable(read.first_bad));
+  return std::move(read.mesh);
+}
+
 contact::TriangleMesh repaired(contact::TriangleMesh mesh, const ConvertArguments& arguments) {
   contact::RepairedMesh result =
       contact::repair(std::move(mesh), {.weld = kMetresPerMillimetre * arguments.weld, .fill_holes = arguments.fill_holes});
@@ -51,8 +59,7 @@ contact::TriangleMesh repaired(contact::TriangleMesh mesh, const ConvertArgument
 // False if a repair was asked for and something is left that makes the mesh unfit.
 bool convert(const ConvertArguments& arguments) {
   print("{}\n", printable(arguments.input.file));
-  contact::TriangleMesh mesh =
-      readWithProgress(arguments.input, arguments.repair ? contact::Degenerate::keep : contact::Degenerate::reject);
+  contact::TriangleMesh mesh = arguments.repair ? readForRepair(arguments.input) : readWithProgress(arguments.input);
   if (arguments.size > 0) scaleToSize(arguments.size, mesh);
   if (arguments.repair) mesh = repaired(std::move(mesh), arguments);
   const std::string units = arguments.to_units.empty() ? arguments.input.units : arguments.to_units;

@@ -24,17 +24,32 @@ void addMeshFile(CLI::App& command, MeshInput& input) {
   addUnits(command, "--units", input.units, "Length unit of the file's coordinates")->capture_default_str();
 }
 
-contact::TriangleMesh readWithProgress(const MeshInput& input, contact::Degenerate degenerate) {
+namespace {
+
+contact::TriangleMesh readAs(contact::ReadOptions options, const MeshInput& input) {
   constexpr std::int64_t kSteps = 1000;
   Progress progress("reading", kSteps);
-  contact::ReadOptions options;
   options.metres_per_unit = contact::metresPerUnit(input.units);
-  options.degenerate = degenerate;
   options.progress = [&](double fraction) {
     throwIf(interruptFlag());
     progress.update(static_cast<std::int64_t>(fraction * kSteps));
   };
   return contact::readMesh(input.file, options);
+}
+
+}  // namespace
+
+contact::TriangleMesh readWithProgress(const MeshInput& input) { return readAs({}, input); }
+
+FaultyMesh readFaulty(const MeshInput& input) {
+  FaultyMesh faulty;
+  contact::ReadOptions options;
+  options.degenerate = contact::Degenerate::keep;
+  options.left_out = [&](const std::string& what) {
+    if (faulty.left_out++ == 0) faulty.first_bad = what;
+  };
+  faulty.mesh = readAs(std::move(options), input);
+  return faulty;
 }
 
 void writeAndSay(const MeshInput& input, const std::string& out, const contact::TriangleMesh& mesh, const std::string& units) {

@@ -47,9 +47,10 @@ struct MeshFacts {
 };
 
 MeshFacts examine(const MeshArguments& arguments) {
-  const contact::TriangleMesh mesh = readWithProgress(arguments.input, contact::Degenerate::keep);
+  const FaultyMesh read = readFaulty(arguments.input);
+  const contact::TriangleMesh& mesh = read.mesh;
   MeshFacts facts;
-  facts.check = checkMesh(mesh, contact::metresPerUnit(arguments.input.units), kMetresPerMillimetre * arguments.finger_radius);
+  facts.check = checkMesh(read, contact::metresPerUnit(arguments.input.units), kMetresPerMillimetre * arguments.finger_radius);
   const contact::MeshReport& report = facts.check.report;
   if (!(report.closed && report.volume > 0)) {
     facts.no_mass = "the surface encloses no volume";

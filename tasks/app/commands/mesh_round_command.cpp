@@ -33,7 +33,7 @@ struct RoundArguments {
 };
 
 void roundFile(const RoundArguments& arguments) {
-  const contact::TriangleMesh mesh = readWithProgress(arguments.input, contact::Degenerate::reject);
+  const contact::TriangleMesh mesh = readWithProgress(arguments.input);
   const contact::RoundedMesh rounded = contact::roundEdges(mesh, {.radius = kMetresPerMillimetre * arguments.radius,
                                                                   .crease_angle = arguments.crease_angle * M_PI / 180,
                                                                   .use_file_normals = !arguments.ignore_normals,

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <sstream>
 
 #include "pincer/contact/error.h"
 #include "pincer/contact/io/atomic_file.h"
@@ -35,6 +36,8 @@ struct FindingsArguments {
   FindingsOptions options;
   StudyRuns studies;
   RunOptions run;
+  std::string part;
+  bool markdown = false;
 };
 
 FindingsResult runManipulationFindings(const FindingsOptions& options, const std::string& directory) {
@@ -45,29 +48,42 @@ FindingsResult runManipulationFindings(const FindingsOptions& options, const std
   });
 }
 
-PublishedFindings runStudyFindings(StudyRuns studies, const FindingsOptions& options, const std::string& directory) {
-  studies.participants = options.participants;
+ClaimTable runStudyFindings(StudyRuns studies, const FindingsOptions& options, const std::string& directory) {
   studies.seed = options.seed;
   studies.threads = options.threads;
   studies.only = options.only;
   studies.directory = directory;
   std::unique_ptr<Progress> line;
-  const auto sessions = runPublishedStudies(studies, interruptFlag(), [&](std::int64_t done, std::int64_t total) {
+  const StudySessions sessions = runPublishedStudies(studies, interruptFlag(), [&](std::int64_t done, std::int64_t total) {
     if (!line) line = std::make_unique<Progress>("studies", total);
     line->update(done);
   });
-  PublishedFindings findings;
-  for (const StudySessions& study : sessions) judgeStudy(study.paths, findings);
-  return findings;
+  return judgeClaims(sessions.studies, sessions.controls);
 }
 
-int runFindingsCommand(const FindingsArguments& arguments) {
+bool isEmpty(const ClaimTable& table) { return table.participants.empty(); }
+
+// "2/5": the second of five parts.
+void readPart(const std::string& text, StudyRuns& studies) {
+  int part = 0, parts = 0;
+  char slash = 0, more = 0;
+  std::istringstream in(text);
+  if (text.empty()) return;
+  const bool read = static_cast<bool>(in >> part >> slash >> parts) && !(in >> more);
+  if (!read || slash != '/' || part < 1 || parts < part || parts > 1000)
+    refuseUsage(fmt::format("findings: --part {} isn't of the form K/N with 1 <= K <= N <= 1000. Take for example 2/5.", printable(text)));
+  studies.part = part;
+  studies.parts = parts;
+}
+
+int runFindingsCommand(FindingsArguments arguments) {
   asUsage([&] { validate(arguments.options); });
+  readPart(arguments.part, arguments.studies);
   const std::string directory = outputDirectory(arguments.run, "findings");
-  const PublishedFindings studies = runStudyFindings(arguments.studies, arguments.options, directory + "/sessions");
+  const ClaimTable claims = runStudyFindings(arguments.studies, arguments.options, directory + "/sessions");
   const FindingsResult result = runManipulationFindings(arguments.options, directory + "/sessions");
   const bool interrupted = interruptFlag();
-  if (result.variants.empty() && studies.figures.empty()) {
+  if (result.variants.empty() && isEmpty(claims)) {
     if (!interrupted) refuseUsage(fmt::format("findings: no variant's or study's name holds one of \"{}\".", arguments.options.only));
     print(stderr, "pincer: interrupted before an experiment was whole. The same command with --out {} goes on.\n",
           printablePath(directory));
@@ -77,10 +93,10 @@ int runFindingsCommand(const FindingsArguments& arguments) {
     print(stderr, "pincer: interrupted; these are the experiments that were whole. The same command with --out {} goes on.\n",
           printablePath(directory));
   if (!result.variants.empty()) print("{}", findingsText(result));
-  if (!studies.figures.empty()) print("{}", publishedText(studies));
+  print("{}", arguments.markdown ? claimTableMarkdown(claims) : claimTableText(claims));
   if (arguments.run.report) {
     makeDirectory(directory);
-    writeFindingsPage(result, studies, directory + "/report.html");
+    writeFindingsPage(result, claims, directory + "/report.html");
     print("Report: {}/report.html\n", printablePath(directory));
   }
   return interrupted ? kExitInterrupted : kExitOk;
@@ -97,7 +113,14 @@ void addFindingsTask(CLI::App& run, int& exit_code) {
   command->add_option("--study-experiments", arguments->studies.experiments, "Of every study with one finger")
       ->check(wholeWithin(0, 1000))
       ->capture_default_str();
-  command->add_option("--participants", options.participants, "In an experiment")->capture_default_str();
+  command->add_option("--study-controls", arguments->studies.controls, "Likewise with the tactor parked: what follows must vanish")
+      ->check(wholeWithin(0, 1000))
+      ->capture_default_str();
+  command->add_option("--study-participants", arguments->studies.participants, "In each of them (default: as published)")
+      ->check(wholeWithin(2, 1000));
+  command->add_option("--part", arguments->part, "K/N: run only the K-th of N parts of the studies; the table shows all that --out holds");
+  command->add_flag("--markdown", arguments->markdown, "Print the table of claims as Markdown");
+  command->add_option("--participants", options.participants, "In an experiment of the manipulation tasks")->capture_default_str();
   command->add_option("--pickups", options.pickups, "Of every friction, per participant and condition")->capture_default_str();
   command->add_option("--alignments", options.alignments, "Per participant and condition")->capture_default_str();
   command->add_option("--threads", options.threads, "That work at once")->capture_default_str();

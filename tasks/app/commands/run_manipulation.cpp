@@ -68,9 +68,6 @@ contact::SurfaceVariant variantOf(const std::string& name) {
 }
 
 ObjectFile objectOf(const ManipulationArguments& arguments) {
-  if (arguments.size && !arguments.units.empty()) {
-    refuseUsage("run: --size and --units contradict each other: --size scales the mesh whatever its unit. Give one of them.");
-  }
   return {arguments.object, arguments.units.empty() ? "mm" : arguments.units, arguments.size, variantOf(arguments.shading)};
 }
 

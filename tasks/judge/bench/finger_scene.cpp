@@ -37,7 +37,7 @@ const grasp::FingerReport& FingerScene::tick(const Vec3& p_WF) {
 
 bool FingerScene::isLocked() const {
   const engine::WorldScratch& world = grasp::worldOf(*scratch_);
-  const double mu_s = model_.world.bodies.front().material.mu_s;
+  const double mu_s = model_.world.colliders.front().material.mu_s;
   for (int i = 0; i < engine::contactCount(world); ++i) {
     const engine::ContactReport x = engine::contactAt(world, i);
     for (int j = 0; j < i; ++j) {

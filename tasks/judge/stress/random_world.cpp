@@ -86,6 +86,15 @@ class Draft {
         return drawSlivers();
       case StressClass::kHeap:
         return drawFalling(6 + static_cast<int>(random_.below(7)), 10, 0.05);
+      case StressClass::kWalls:
+        return drawWall(logUniform(random_, 1, 1e3));
+      case StressClass::kHulls:
+        return drawHulls();
+      case StressClass::kHit:
+        drawWall(1);
+        return drawHit();
+      case StressClass::kCompounds:
+        return drawCompounds();
       default:
         return drawHeld();
     }
@@ -167,6 +176,24 @@ class Draft {
     }
   }
 
+  // Shapes about a body's origin, which overlap or leave gaps; they reach 0.95 sizes from it at most.
+  std::vector<engine::ColliderSpec> anyParts(double size) {
+    std::vector<engine::ColliderSpec> parts;
+    const int count = 2 + static_cast<int>(random_.below(4));
+    for (int i = 0; i < count; ++i) {
+      const Quat q = anyRotation(random_);
+      const Vec3 p = 0.25 * size * anyVector(random_, -1, 1);
+      parts.push_back({fmt::format("part{}", i), anyShape(random_, size * random_.uniform(0.2, 0.6)), Pose{q, p}});
+    }
+    return parts;
+  }
+
+  void drawCompounds() {
+    constexpr double kSize = 0.06;
+    drawFalling(3 + static_cast<int>(random_.below(4)), 10, kSize);
+    for (std::size_t i = 1; i < bodies.size(); ++i) bodies[i].shapes = anyParts(0.75 * kSize);  // so that no two overlap at the start
+  }
+
   void drawSlivers() {
     double z = 0;
     for (int i = 0; i < 2; ++i) {
@@ -179,6 +206,64 @@ class Draft {
       engine::BodyStart& start = add(contact::Box{Vec3(length, a, b) / 2}, mass, {q, Vec3(0, 0, z + 1.1 * reach)});
       z += 2.2 * reach;
       start.w_W = anySpin(50);
+    }
+  }
+
+  // Up to five bricks by eight, each row shifted.
+  void drawWall(double mass_ratio) {
+    options.max_contacts = 0;  // as many as there may be
+    material.mu_s = material.mu_d = random_.uniform(0.3, 0.9);
+    material.torsion_radius = 0;
+    bodies.front().material = material;
+    const int columns = 1 + static_cast<int>(random_.below(5)), rows = 1 + static_cast<int>(random_.below(8));
+    const double height = logUniform(random_, 5e-3, 0.1), jitter = random_.below(3) == 0 ? 0 : logUniform(random_, 1e-7, 1e-4);
+    heading_ = quatFromRotationVector(random_.uniform(0, M_PI) * Vec3::UnitZ());
+    for (int row = 0; row < rows; ++row) {
+      double x = height * random_.uniform(0, 0.5);
+      for (int column = 0; column < columns; ++column) {
+        const double length = height * random_.uniform(1.5, 2.5);
+        const Vec3 off = jitter * anyVector(random_, 0, 1);
+        const double mass = 1e3 * height * height * length * math::pow(mass_ratio, random_.uniform(-0.5, 0.5));
+        add(contact::Box{0.5 * Vec3(length, height, height)}, mass,
+            {heading_, heading_ * (Vec3(x + 0.5 * length, 0, (row + 0.5) * height) + off)});
+        x += length + 0.02 * height;
+      }
+    }
+    allowed_lift = liftOutOf(2 * jitter);
+    wall_ = {.length = 2 * columns * height, .height = rows * height, .brick = height};
+  }
+
+  // What pushing out an overlap of so much under every body may add, all of them on top of each other [J].
+  double liftOutOf(double depth) const {
+    double lift = 0, mass = 0;
+    for (std::size_t i = bodies.size(); i-- > 1;) {
+      mass += bodies[i].mass;
+      lift += mass * options.gravity_W.norm() * depth;
+    }
+    return lift;
+  }
+
+  void drawHit() {
+    const double radius = wall_.brick * random_.uniform(0.5, 1.5), mass = 4e3 * radius * radius * radius * logUniform(random_, 1, 100);
+    const double x = wall_.length * random_.uniform(0, 1), z = std::max(radius, wall_.height * random_.uniform(0, 1));
+    const Vec3 from(x, -radius - wall_.brick, z), way(0, logUniform(random_, 0.1, 10), 0);
+    add(contact::Sphere{radius}, mass, {heading_, heading_ * from}).v_W = heading_ * way;
+  }
+
+  void drawHulls() {
+    constexpr int kCorners = 14;
+    options.max_contacts = 0;
+    const double size = logUniform(random_, 5e-3, 0.05);
+    for (const Vec3& n : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0)})
+      addPlane({Quat::FromTwoVectors(Vec3::UnitZ(), n), -2.5 * size * n});
+    const int count = 5 + static_cast<int>(random_.below(8));
+    for (int i = 0; i < count; ++i) {
+      std::vector<Vec3> corners;
+      const Vec3 half = size * anyVector(random_, 0.6, 1);
+      for (int k = 0; k < kCorners; ++k) corners.push_back(random_.normal3().normalized().cwiseProduct(half));
+      const Quat q = anyRotation(random_);
+      const double x = size * (i % 2 == 0 ? 1.1 : -1.1), y = size * (i / 2 % 2 == 0 ? 1.1 : -1.1), z = size * (1.1 + 2.2 * (i / 4));
+      add(contact::Convex{contact::Polytope::hullOf(corners, "hull")}, 4e3 * half.prod(), {q, Vec3(x, y, z)});
     }
   }
 
@@ -209,8 +294,14 @@ class Draft {
     }
   }
 
+  struct Wall {
+    double length, height, brick;  // [m]
+  };
+
   StressClass kind_;
   Random& random_;
+  Quat heading_ = Quat::Identity();
+  Wall wall_{};
 };
 
 }  // namespace

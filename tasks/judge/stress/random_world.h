@@ -24,9 +24,14 @@ enum class StressClass {
   kTeleport,   // fingers jump by up to 50 mm now and then
   kNoise,      // fingers tremble by up to 1 mm from tick to tick
   kPads,       // two to four flat pads of 5 to 40 mm close on an object, 10 to 1e4 N/m
+  kWalls,      // bricks of mixed lengths laid 0 to 0.1 mm off, in any heading, friction 0.3 to 0.9, masses up to 1e3 : 1
+  kHulls,      // five to twelve hulls fall into a crate
+  kHit,        // such a wall, of like masses, hit by a ball at up to 10 m/s
+  kCompounds,  // three to six bodies of two to five shapes each fall on a heap
 };
-constexpr std::string_view kStressClassNames[] = {"mass-ratio", "redundant", "overlap",  "spin",  "tick", "inertia",
-                                                  "heap",       "stiffness", "teleport", "noise", "pads"};
+constexpr std::string_view kStressClassNames[] = {"mass-ratio", "redundant", "overlap",   "spin",     "tick",
+                                                  "inertia",    "heap",      "stiffness", "teleport", "noise",
+                                                  "pads",       "walls",     "hulls",     "hit",      "compounds"};
 
 struct StressWorld {
   // `threads` solve it (engine::WorldOptions).

@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "pincer/contact/error.h"
 #include "pincer/contact/io/printable.h"
 #include "pincer/tasks/lab/experiments/study_parameters.h"
 #include "pincer/tasks/lab/participants/random.h"
+#include "pincer/tasks/lab/study/arc_segments.h"
 #include "pincer/tasks/lab/study/counterbalance.h"
 
 namespace pincer::tasks {
@@ -18,7 +18,6 @@ namespace {
 
 using contact::SurfaceVariant;
 
-constexpr double kBeyond = 0.15;                            // of the arc's ends over the strokes' [rad]
 constexpr double kLargestTurn = 0.5;                        // of a polygon that still covers the strokes [rad]
 constexpr double kBladeFlank = 0.03;                        // length of its sides [m]
 constexpr double kBladeTurn = 0.1;                          // from segment to segment of its tip [rad]
@@ -65,6 +64,12 @@ std::shared_ptr<const contact::Curve> sharedCurve(const contact::Polyline& polyl
   return std::make_shared<const contact::Curve>(polyline, variant);
 }
 
+StrokeQuestion questionOf(ArcQuantity quantity, const ArcCondition& condition) {
+  if (quantity == ArcQuantity::kTurn) return StrokeQuestion::kRougher;
+  if (quantity == ArcQuantity::kBacklash) return StrokeQuestion::kLooser;
+  return condition.travel_share < 1 ? StrokeQuestion::kOnset : StrokeQuestion::kLater;
+}
+
 // What a condition's levels may be.
 void validate(const ArcStudy& study, std::size_t index) {
   const ArcCondition& c = study.conditions[index];
@@ -87,23 +92,23 @@ void validate(const ArcStudy& study, std::size_t index) {
 }  // namespace
 
 ArcStudy smoothnessStudy() {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   ArcStudy study;
   study.task = "smoothness-discrimination";
   const StaircaseRule rule = smoothnessRule();
   const auto smooth = SurfaceVariant::smooth, facet = SurfaceVariant::facet, force = SurfaceVariant::force;
-  study.conditions = {{"C1", "facets, force only", facet, {}, false, 1, rule, 0.5 * kDegree},
-                      {"C2", "force shading, force only", force, {}, false, 1, rule, 3.4 * kDegree},
-                      {"C3", "force shading + facets on the tactor", force, facet, false, 1, rule, 0.2 * kDegree},
-                      {"C4", "force and tactile shading", force, smooth, false, 1, rule, 3.5 * kDegree},
-                      {"P1", "2D algorithm, force only (pilot)", smooth, {}, false, 1, rule, 14.8 * kDegree},
-                      {"P2", "2D algorithm, force and tactor (pilot)", smooth, smooth, false, 1, rule, kNone}};
+  study.conditions = {{"C1", "facets, force only", facet, {}, false, 1, rule, 104.1},
+                      {"C2", "force shading, force only", force, {}, false, 1, rule, 16.3},
+                      {"C3", "facets in force and on the tactor", facet, facet, false, 1, rule, 257.3},
+                      {"C4", "facets in force, 2D algorithm on the tactor", facet, smooth, false, 1, rule, 15.6},
+                      {"P1", "2D algorithm in both (pilot)", smooth, smooth, false, 1, rule, segmentsOf(14.8 * kDegree), true},
+                      {"P2", "force shading, facets on the tactor (pilot)", force, facet, false, 1, rule, segmentsOf(0.2 * kDegree), true}};
   return study;
 }
 
 ArcStudy backlashStudy() {
   ArcStudy study;
   study.task = "backlash-discrimination";
+  study.participants = 20;
   study.quantity = ArcQuantity::kBacklash;
   study.finger_radius = 0.013;
   study.arc_radius = 0.095;
@@ -119,7 +124,7 @@ ArcStudy delayStudy() {
   study.quantity = ArcQuantity::kDelay;
   const auto smooth = SurfaceVariant::smooth;
   study.conditions = {{"whole", "whole travel", smooth, smooth, false, 1, delayRule(), 0.061},
-                      {"front-end", "tactor held at two thirds of its travel", smooth, smooth, false, 2. / 3, delayRule(), 0.132}};
+                      {"front-end", "tactor frozen after two thirds of a sweep", smooth, smooth, false, 2. / 3, delayRule(), 0.132}};
   return study;
 }
 
@@ -139,17 +144,21 @@ void validate(const ArcStudy& study) {
 
 ArcExperiment::ArcExperiment(const ArcStudy& study, const ServoOptions& servo, int stride) : study_(study), servo_(servo), stride_(stride) {
   validate(study);
+  arc_ = sharedCurve(contact::arcPolygon(study.arc_radius, study.reference_turn, sweep()), SurfaceVariant::smooth);
+  blade_ = sharedCurve(blade(), SurfaceVariant::smooth);
 }
 
 std::vector<StudyRun> ArcExperiment::runs() const {
   std::vector<StudyRun> runs;
-  const auto rows = carryOverSquare(static_cast<int>(study_.conditions.size()));
+  std::vector<const ArcCondition*> ordered, pilots;
+  for (const ArcCondition& c : study_.conditions) (c.pilot ? pilots : ordered).push_back(&c);
+  const auto rows = reducedLatinSquare(std::max(1, static_cast<int>(ordered.size())));
   for (int p = 0; p < study_.participants; ++p) {
     std::int64_t place = 0;
-    for (const int c : rows[static_cast<std::size_t>(p) % rows.size()]) {
-      const ArcCondition& condition = study_.conditions[static_cast<std::size_t>(c)];
-      runs.push_back({p, place++, condition.name, condition.staircase, {}});
-    }
+    const auto add = [&](const ArcCondition& c) { runs.push_back({p, place++, c.name, c.staircase, {}}); };
+    if (!ordered.empty())
+      for (const int c : rows[static_cast<std::size_t>(p) % rows.size()]) add(*ordered[static_cast<std::size_t>(c)]);
+    for (const ArcCondition* c : pilots) add(*c);
   }
   return runs;
 }
@@ -159,17 +168,19 @@ std::optional<ResponseRecord> ArcExperiment::present(const StudyTrial& trial, St
   const int comparison = 1 + static_cast<int>(Random(seedFor(trial.seed, kWhichInterval)).below(2));
   StrokeObserver observer(trial.person_seed);
   observer.begin(cuesOf(trial));
-  ArcTrial cycle(setupOf(trial, comparison), observer, sink);
+  ArcTrial cycle(setupOf(trial, comparison, observer.roll()), observer, sink);
   const ServoReport report = runServo(servo_, cycle, interrupted);
   served.add(report);
   if (report.interrupted) return std::nullopt;
   ResponseRecord response;
   response.level = trial.stimulus.level;
-  response.interval = comparison;
-  const int answer = cycle.answered() ? observer.answer() : 0;
+  const bool asks_smooth = study_.quantity == ArcQuantity::kTurn;
+  const int asked = asks_smooth ? 3 - comparison : comparison;
+  const int answer = cycle.answered() ? (asks_smooth ? 3 - observer.answer() : observer.answer()) : 0;
+  response.interval = asked;
   response.answer = std::to_string(answer);
   response.answer_value = answer;
-  response.correct = answer == comparison;
+  response.correct = answer == asked;
   cycle.measure(response);
   return response;
 }
@@ -192,16 +203,19 @@ StrokeCues ArcExperiment::cuesOf(const StudyTrial& trial) const {
   cues.p_WD = X_WD.p;
   cues.half_angle = study_.tactor_reach / study_.finger_radius;
   cues.strokes = study_.strokes;
-  cues.question = study_.quantity == ArcQuantity::kTurn ? StrokeQuestion::kRougher : StrokeQuestion::kLater;
+  cues.tactor_gain = study_.finger_radius / cues.radius;
+  cues.rolls = study_.quantity != ArcQuantity::kTurn && !conditionOf(trial).edge;
+  cues.question = questionOf(study_.quantity, conditionOf(trial));
   return cues;
 }
 
-ArcTrialSetup ArcExperiment::setupOf(const StudyTrial& trial, int comparison) const {
+ArcTrialSetup ArcExperiment::setupOf(const StudyTrial& trial, int comparison, double roll) const {
   const ArcCondition& condition = conditionOf(trial);
   ArcTrialSetup setup;
   setup.finger_radius = study_.finger_radius;
   setup.path_radius = pathRadius(condition);
-  setup.start_angle = -study_.tactor_reach / study_.finger_radius;
+  setup.start_angle = -study_.tactor_reach / study_.finger_radius / (1 + roll);
+  setup.freeze_share = condition.travel_share;
   setup.stiffness = study_.stiffness;
   for (int i = 1; i <= 2; ++i) setup.intervals.push_back(intervalOf(condition, i == comparison ? trial.stimulus.level : 0));
   setup.trial = trial.trial;
@@ -211,14 +225,16 @@ ArcTrialSetup ArcExperiment::setupOf(const StudyTrial& trial, int comparison) co
 
 // `level` 0: the reference.
 ArcInterval ArcExperiment::intervalOf(const ArcCondition& condition, double level) const {
-  const bool turned = study_.quantity == ArcQuantity::kTurn && level > 0;
-  const double sweep = 2 * (study_.tactor_reach / study_.finger_radius + kBeyond);
-  const contact::Polyline polyline =
-      condition.edge ? blade() : contact::arcPolygon(study_.arc_radius, turned ? level : study_.reference_turn, sweep);
   ArcInterval interval;
-  interval.shown.force = sharedCurve(polyline, turned ? condition.force : SurfaceVariant::smooth);
-  if (condition.tactile) interval.shown.tactile = sharedCurve(polyline, turned ? *condition.tactile : SurfaceVariant::smooth);
-  interval.shown.largest_place = condition.travel_share * study_.tactor_reach;
+  const auto& reference = condition.edge ? blade_ : arc_;
+  const bool turned = study_.quantity == ArcQuantity::kTurn && level > 0 && !condition.edge;
+  const auto shown = [&](SurfaceVariant variant) {
+    return turned ? sharedCurve(contact::arcPolygon(study_.arc_radius, level, sweep()), variant) : reference;
+  };
+  interval.shown.force = shown(condition.force);
+  if (condition.tactile && !study_.frozen_tactor)
+    interval.shown.tactile = *condition.tactile == condition.force ? interval.shown.force : shown(*condition.tactile);
+  interval.shown.largest_place = study_.tactor_reach;
   if (study_.quantity == ArcQuantity::kBacklash) interval.transmission.backlash = level;
   if (study_.quantity == ArcQuantity::kDelay) interval.transmission.delay = static_cast<int>(std::lround(1000 * level));
   return interval;

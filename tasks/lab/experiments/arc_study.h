@@ -1,17 +1,27 @@
 // arc_study: the three experiments in which a finger strokes a curve twice and says which time was the comparison, level by staircase.
 //
-//   smoothness-discrimination  a polygon of `level` radians from segment to segment, against the smooth circle: which was rougher?
-//   backlash-discrimination    `level` metres of backlash added to the display's own: when did the tactor come later?
-//   delay-discrimination       `level` seconds of delay added: likewise
+//   smoothness-discrimination  a polygon of `level` radians from segment to segment, against the exact arc: which was the smooth one?
+//   backlash-discrimination    `level` metres of backlash added to the display's own: which had more backlash?
+//   delay-discrimination       `level` seconds of delay added: which had more delay?
 //
-// Source of the designs: A. J. Doxon, doctoral dissertation, University of Utah (2014), ch. 2 and 3; what they leave open is ours:
-//   - C1 .. C4, P1, P2 are read as: C1 facets by force alone; C2 force shading alone; C3 force shading with the tactor on the facets; C4 the
-//     same with the tactor on the smooth curve; P1 and P2 the 2D algorithm for the force, without and with the tactor;
-//   - the reference of the first is the 2D algorithm on a polygon of a quarter of a degree, 0.24 um off the circle;
+// Strokes go along the finger (fore-aft). Source of the designs: A. J. Doxon, doctoral dissertation, University of Utah (2014), ch. 2 and 3. Smoothness:
+//
+//        force                        tactor
+//   C1   facets                       none: held at the middle of the thimble, in both intervals
+//   C2   force shading                none
+//   C3   facets                       facets
+//   C4   facets                       2D algorithm
+//   P1   2D algorithm                 2D algorithm       pilots: after C1 .. C4, whose order is a reduced Latin square
+//   P2   force shading                facets
+//
+// Thresholds are counted in segments of the published arc (tasks/lab/study/arc_segments.h). What the text leaves open is ours:
+//   - the exact arc is the 2D algorithm on a polygon of a quarter of a degree: smooth, 0.24 um off the circle; polygons' vertices lie on it;
 //   - the 2-degree edge is a blade of 2 degrees, its tip rounded with a radius of 0.5 mm: the finger goes round it, so that the tactor moves as
 //     fast as the finger;
-//   - "front end": the place shown is held at two thirds of the tactor's travel, so that its end, where finger and tactor stop, isn't felt;
-//   - staircases start well above the published thresholds; smoothness takes steps by ratios; the last 10 reversals of 14 are averaged.
+//   - "front end": a sweep begins from rest on one side; where the tactor has come two thirds of its travel from there it freezes until the finger is
+//     10 mm up, so that the onset is felt and the end never;
+//   - in the two on the base cylinder the finger may roll, as people do; on the edge and in smoothness it doesn't;
+//   - staircases start well above the published thresholds; smoothness takes steps by ratios of the angle.
 #pragma once
 #include <memory>
 
@@ -27,9 +37,10 @@ struct ArcCondition {
   contact::SurfaceVariant force = contact::SurfaceVariant::smooth;
   std::optional<contact::SurfaceVariant> tactile = contact::SurfaceVariant::smooth;  // absent: the tactor is parked
   bool edge = false;                                                                 // the blade in place of the arc
-  double travel_share = 1;                                                           // of the tactor's travel that is shown [-]
+  double travel_share = 1;  // of a sweep's travel after which the tactor freezes [-]
   StaircaseRule staircase;
-  double published = 0;  // threshold, beside which ours is shown; NaN if there is none
+  double published = 0;  // threshold, beside which ours is shown [segments, m or s]; NaN if there is none
+  bool pilot = false;    // done by everybody, after the others
 };
 
 struct ArcStudy {
@@ -42,9 +53,10 @@ struct ArcStudy {
   double edge_angle = 0.0349066;       // of the blade [rad]
   double edge_radius = 0.5e-3;         // of its tip [m]
   double tactor_reach = 8e-3;          // either way [m]
-  double reference_turn = 0.00436332;  // from segment to segment of the smooth circle's polygon [rad]
+  double reference_turn = 0.00436332;  // from segment to segment of the exact arc's polygon [rad]
   double stiffness = 1000;             // of the surface [N/m]
   int strokes = 4;                     // per interval
+  bool frozen_tactor = false;          // a control: the tactor is parked in every condition
   std::vector<ArcCondition> conditions;
 };
 
@@ -64,16 +76,20 @@ class ArcExperiment final : public Experiment {
                                         ServoReport& served) override;
 
  private:
+  static constexpr double kBeyond = 0.15;  // of the arc's ends over the strokes' [rad]
+
   const ArcCondition& conditionOf(const StudyTrial& trial) const;
   double pathRadius(const ArcCondition& condition) const;
   StrokeCues cuesOf(const StudyTrial& trial) const;
-  ArcTrialSetup setupOf(const StudyTrial& trial, int comparison) const;
+  ArcTrialSetup setupOf(const StudyTrial& trial, int comparison, double roll) const;
   ArcInterval intervalOf(const ArcCondition& condition, double level) const;
   contact::Polyline blade() const;
+  double sweep() const { return 2 * (study_.tactor_reach / study_.finger_radius + kBeyond); }
 
   ArcStudy study_;
   ServoOptions servo_;
   int stride_;
+  std::shared_ptr<const contact::Curve> arc_, blade_;  // the references
 };
 
 }  // namespace pincer::tasks

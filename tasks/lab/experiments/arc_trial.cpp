@@ -10,12 +10,13 @@ namespace {
 constexpr double kArcPause = 0.5;          // between the intervals [s]
 constexpr double kFingerMoves = 5e-3;      // slower, it rests [m/s]
 constexpr double kTactorMoves = 1e-3;      // likewise [m/s]
+constexpr double kFreesTactor = 0.010;     // so far up the finger frees a frozen tactor [m]
 constexpr std::int64_t kTactorTicks = 20;  // over which its speed is taken: one count of the encoder is then 0.04 mm/s
 
 devices::SimArmSettings arcArm(const ArcTrialSetup& setup) {
   devices::SimArmSettings settings;
   settings.serial = "index";
-  const Vec3 start_W = (setup.path_radius + 0.01) * Vec3(math::sin(setup.start_angle), 0, math::cos(setup.start_angle));
+  const Vec3 start_W = (setup.path_radius + 0.01) * Vec3(0, math::sin(setup.start_angle), math::cos(setup.start_angle));
   settings.start_D = arcArmBase(setup.path_radius).inverse() * start_W;
   return settings;
 }
@@ -38,6 +39,7 @@ Pose arcArmBase(double path_radius) {
 
 ArcTrial::ArcTrial(const ArcTrialSetup& setup, OneFingerObserver& observer, StudySink& sink)
     : setup_(setup), observer_(observer), sink_(sink), arm_(arcArm(setup)), display_(arcDisplay(setup)) {
+  entered_places_.reserve(setup.intervals.size());
   model_.X_WD = arcArmBase(setup.path_radius);
   model_.finger_radius = setup.finger_radius;
   model_.stiffness = setup.stiffness;
@@ -60,12 +62,15 @@ bool ArcTrial::tick(double now) {
   const devices::ArmSample arm = arm_.sample();
   const devices::TactileSample tactile = display_.sample();
   out_ = planarTick(model_, interval().shown, state_, arm, now, dt);
+  freezeFrontEnd();
   arm_.commandForce(out_.f_D);
   display_.command(out_.tactile);
   const double took = steadySeconds() - start;
   if (stage_ == Stage::kInterval) count(tactile, dt);
   const OneFingerAction action = observer_.act({arm, out_.f_D, tactile}, now, cue_);
   arm_.setHand(action.pull);
+  if (action.enters && entered_places_.size() < setup_.intervals.size()) entered_places_.push_back(display_.trueRoller());
+  if (action.pitch != 0) arm_.setGimbal(model_.X_WD.q.conjugate() * Quat(Eigen::AngleAxisd(action.pitch, Vec3::UnitX())));
   advance(action, now);
   if (ticks_++ % setup_.stride == 0) record(tactile, now, took);
   return stage_ != Stage::kOver;
@@ -92,6 +97,18 @@ void ArcTrial::advance(const OneFingerAction& action, double now) {
     answered_after_ = now - entered_;
     end("answered");
   }
+}
+
+// Holds the place wanted, which the display's FIFO delays: so the place displayed freezes at the same place, that much later.
+void ArcTrial::freezeFrontEnd() {
+  if (setup_.freeze_share >= 1) return;
+  const double reach = interval().shown.largest_place, place = out_.tactile.place_L.x();
+  if (out_.contact.phi > kFreesTactor) side_ = 0;
+  if (side_ == 0) frozen_ = false;
+  if (side_ == 0 && out_.contact.phi <= 0) side_ = place < 0 ? -1 : 1;
+  const double held = side_ * reach * (1 - 2 * setup_.freeze_share);
+  frozen_ = frozen_ || (side_ != 0 && side_ * (place - held) <= 0);
+  if (frozen_) out_.tactile.place_L.x() = held;
 }
 
 void ArcTrial::end(const char* outcome) {
@@ -127,8 +144,8 @@ void ArcTrial::record(const devices::TactileSample& tactile, double now, double 
   sample.tick_us = 1e6 * took;
   sample.q_WB = {1, 0, 0, 0};
   FingerRecord& finger = sample.fingers[0];
-  const Vec3 n_W(out_.contact.n_B.x(), 0, out_.contact.n_B.y());
-  const Vec3 p_WP(out_.contact.p_BS.x(), 0, out_.contact.p_BS.y());
+  const Vec3 n_W(0, out_.contact.n_B.x(), out_.contact.n_B.y());
+  const Vec3 p_WP(0, out_.contact.p_BS.x(), out_.contact.p_BS.y());
   finger.p_WF = {state_.p_WF.x(), state_.p_WF.y(), state_.p_WF.z()};
   const Vec3 proxy_W = p_WP + setup_.finger_radius * n_W;
   finger.p_WP = {proxy_W.x(), proxy_W.y(), proxy_W.z()};

@@ -5,8 +5,8 @@
 //   interval  tone, strokes, reading; then the next
 //   answer
 //
-// The set-up: an arm whose base frame D has x right, y up and z towards the operator (W: x right, y away, z up), the fingertip's pad down, a
-// 1-DOF contact location display on it whose roller moves to the right for contacts on the right of the pad.
+// The set-up: an arm whose base frame D has x right, y up and z towards the operator (W: x right, y away, z up), the finger pointing away with its
+// pad down, strokes along it (fore-aft), a 1-DOF contact location display whose roller moves distally for contacts on the distal side.
 #pragma once
 #include <optional>
 #include <vector>
@@ -26,11 +26,13 @@ struct ArcInterval {
 };
 
 struct ArcTrialSetup {
-  double finger_radius = 0.02;         // [m]
-  double path_radius = 0.12;           // of the circle about B's origin on which the fingertip's centre goes [m]
-  double start_angle = -0.4;           // where on it the finger waits, from +z [rad]
-  double stiffness = 1000;             // of the surface [N/m]
-  double timeout = 120;                // of a trial [s]
+  double finger_radius = 0.02;  // [m]
+  double path_radius = 0.12;    // of the circle about B's origin on which the fingertip's centre goes [m]
+  double start_angle = -0.4;    // where on it the finger waits, from +z towards +y [rad]
+  double stiffness = 1000;      // of the surface [N/m]
+  double timeout = 120;         // of a trial [s]
+  // Of the tactor's travel from the side where a sweep began; there it freezes until the finger is over 10 mm up. 1: never.
+  double freeze_share = 1;
   std::vector<ArcInterval> intervals;  // one or two
   std::int64_t trial = 0;
   int stride = 50;  // every stride-th tick is recorded
@@ -49,6 +51,8 @@ class ArcTrial final : public ServoCycle {
 
   // Once the servo has returned.
   bool answered() const { return answered_; }  // false after a fault or a time-out
+  // The tactor's true place wherever Enter was pressed [m of arc].
+  const std::vector<double>& enteredPlaces() const { return entered_places_; }
   // Outcome, duration, response time, share of contact and speeds.
   void measure(ResponseRecord& response) const;
 
@@ -56,6 +60,7 @@ class ArcTrial final : public ServoCycle {
   enum class Stage : std::uint8_t { kPrepare, kPause, kInterval, kAnswer, kOver };
 
   void advance(const OneFingerAction& action, double now);
+  void freezeFrontEnd();
   void count(const devices::TactileSample& tactile, double dt);
   void record(const devices::TactileSample& tactile, double now, double took);
   void end(const char* outcome);
@@ -80,6 +85,9 @@ class ArcTrial final : public ServoCycle {
   double tactor_way_ = 0, tactor_time_ = 0;   // while it moved [m], [s]
   std::optional<double> tactor_mark_;         // its place some ticks ago [m]
   std::int64_t ticks_ = 0;
+  int side_ = 0;                        // where the sweep began: -1, +1; 0: the finger is up
+  bool frozen_ = false;                 // the tactor, of a front end
+  std::vector<double> entered_places_;  // room for one per interval
   const char* outcome_ = "interrupted";
   std::atomic<bool> cut_{false};
 };

@@ -7,23 +7,39 @@
 #include "pincer/contact/error.h"
 #include "pincer/tasks/lab/experiments/arc_trial.h"
 #include "pincer/tasks/lab/experiments/study_parameters.h"
-#include "pincer/tasks/lab/participants/place_observer.h"
 #include "pincer/tasks/lab/study/counterbalance.h"
 
 namespace pincer::tasks {
 namespace {
 
-constexpr double kReference = 4e-3;    // turn of the cylinder's polygon from segment to segment [rad]: 2e-6 of its radius
-constexpr double kTactorReach = 8e-3;  // either way [m]
+constexpr double kReference = 4e-3;       // turn of the cylinder's polygon from segment to segment [rad]: 2e-6 of its radius
+constexpr double kTactorReach = 8e-3;     // either way [m]
+constexpr double kFarthestCentre = 0.05;  // of a cylinder from where it began [m]
+constexpr double kArcBeyond = 0.3;        // of the arc over what the tactor can show [rad]
 constexpr std::uint64_t kCylinder = 1, kFeeling = 2, kListOrder = 3;  // parts of seeds
 
 std::string placeName(int place) { return fmt::format("place {}", place + 1); }
 
-// Where the tactor comes from: at least `least` away, on the roomier side, within its reach.
+// A place at least `least` away, on the roomier side, within the tactor's reach.
 double startPlace(double target, double least, Random& random) {
   const double side = target > 0 || (target == 0 && random.uniform() < 0.5) ? -1 : 1;
   const double room = kTactorReach - side * target;  // on that side
   return target + side * random.uniform(least, room);
+}
+
+// The cylinder `radius` whose top is as high as the first one's, under a finger at `finger_y` that touches it with `place`.
+PlacePath secondPath(double finger_y, double base_radius, double radius, double place, double finger_radius) {
+  PlacePath path;
+  path.radius = radius + finger_radius;
+  path.from = -place / finger_radius;
+  path.centre_W = {0, finger_y - path.radius * math::sin(path.from), base_radius - radius};
+  return path;
+}
+
+contact::Polyline movedArc(double radius, double sweep, const Vec3& centre_W) {
+  contact::Polyline arc = contact::arcPolygon(radius, kReference, sweep);
+  for (Vec2& p : arc.vertices) p += Vec2(centre_W.y(), centre_W.z());
+  return arc;
 }
 
 }  // namespace
@@ -57,28 +73,21 @@ std::vector<StudyRun> LocalisationExperiment::runs() const {
 
 std::optional<ResponseRecord> LocalisationExperiment::present(const StudyTrial& trial, StudySink& sink,
                                                               const std::atomic<bool>& interrupted, ServoReport& served) {
-  Random random(seedFor(trial.seed, kCylinder));
-  const double target = trial.stimulus.level, radius = random.uniform(study_.radius_min, study_.radius_max);
-  const double start = startPlace(target, study_.least_travel, random);
-  PlaceCues cues;
-  cues.seed = seedFor(trial.seed, kFeeling);
-  cues.radius = radius + study_.finger_radius;
-  const Pose X_WD = arcArmBase(cues.radius);
-  cues.q_WD = X_WD.q;
-  cues.p_WD = X_WD.p;
-  cues.from = -start / study_.finger_radius;  // to the right of the top the contact is on the left of the pad
-  cues.to = -target / study_.finger_radius;
+  const double target = trial.stimulus.level;
+  const PlaceCues cues = cuesOf(trial);
   ArcTrialSetup setup;
   setup.finger_radius = study_.finger_radius;
-  setup.path_radius = cues.radius;
-  setup.start_angle = cues.from;
+  setup.path_radius = cues.paths[0].radius;
+  setup.start_angle = cues.paths[0].from;
   setup.stiffness = study_.stiffness;
   setup.trial = trial.trial;
   setup.stride = stride_;
-  const double sweep = 2 * kTactorReach / study_.finger_radius + 0.3;
-  const auto curve =
-      std::make_shared<const contact::Curve>(contact::arcPolygon(radius, kReference, sweep), contact::SurfaceVariant::smooth);
-  setup.intervals = {{{curve, curve, kTactorReach}, {}}};
+  const double sweep = 2 * kTactorReach / study_.finger_radius + kArcBeyond;
+  for (const PlacePath& path : cues.paths) {
+    const auto curve = std::make_shared<const contact::Curve>(movedArc(path.radius - study_.finger_radius, sweep, path.centre_W),
+                                                              contact::SurfaceVariant::smooth);
+    setup.intervals.push_back({{curve, curve, kTactorReach}, {}});
+  }
   PlaceObserver observer(trial.person_seed);
   observer.begin(cues);
   ArcTrial cycle(setup, observer, sink);
@@ -88,11 +97,35 @@ std::optional<ResponseRecord> LocalisationExperiment::present(const StudyTrial& 
   ResponseRecord response;
   response.stimulus = trial.stimulus.name;
   response.level = target;
-  response.answer_value = cycle.answered() ? observer.answer() : std::nan("");
+  const std::vector<double>& places = cycle.enteredPlaces();
+  response.answer_value = cycle.answered() && places.size() == 2 ? target + places[1] - places[0] : std::nan("");
   response.answer = fmt::format("{:.1f} mm", 1e3 * response.answer_value);
   response.correct = std::abs(response.answer_value - target) < 0.5 * study_.spacing;
   cycle.measure(response);
   return response;
+}
+
+PlaceCues LocalisationExperiment::cuesOf(const StudyTrial& trial) const {
+  constexpr int kMostDraws = 1000;
+  Random random(seedFor(trial.seed, kCylinder));
+  PlaceCues cues;
+  cues.seed = seedFor(trial.seed, kFeeling);
+  cues.target = trial.stimulus.level;
+  cues.finger_radius = study_.finger_radius;
+  cues.reach = kTactorReach;
+  cues.paths[0].radius = study_.base_radius + study_.finger_radius;
+  cues.paths[0].from = -startPlace(cues.target, study_.least_travel, random) / study_.finger_radius;
+  const Pose X_WD = arcArmBase(cues.paths[0].radius);
+  cues.q_WD = X_WD.q;
+  cues.p_WD = X_WD.p;
+  const double finger_y = cues.paths[0].radius * math::sin(-cues.target / study_.finger_radius);
+  for (int k = 0; k < kMostDraws; ++k) {
+    const double radius = random.uniform(study_.radius_min, study_.radius_max);
+    const double place = startPlace(cues.target, study_.least_travel, random);
+    cues.paths[1] = secondPath(finger_y, study_.base_radius, radius, place, study_.finger_radius);
+    if (std::abs(cues.paths[1].centre_W.y()) <= kFarthestCentre) break;
+  }
+  return cues;
 }
 
 }  // namespace pincer::tasks

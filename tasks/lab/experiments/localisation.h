@@ -1,24 +1,29 @@
-// localisation: where on the fingerpad is the tactor? It goes to one of a few places, and the participant names the place felt.
+// localisation: how well is a touched place found again? A matching task.
 //
-// The finger rests on a cylinder whose radius changes from trial to trial, so that the hand's posture doesn't tell the place; the contact runs
-// from a place at least `least_travel` away to the target, as the finger rolls over the cylinder.
-// Source: A. J. Doxon, doctoral dissertation, University of Utah (2014), ch. 3: 5 places 2.8 mm apart, 10 times each, cylinders of 50 to
-// 140 mm, a travel of at least 4 mm; mean absolute error 1.3 mm, bias towards the centre. Participants name the place on a continuous scale
-// (ours). The simulated participant's limit is taken from this very experiment: the study shows what display and protocol add to it.
+//   1  a screen shows the tactor and a target; the finger rolls over a cylinder until the tactor is within 0.25 mm, holds still, memorises; Enter
+//   2  the finger is raised; the cylinder's radius and fore-aft place change, so that the tactor has at least 4 mm to travel and the cylinder's centre
+//      stays within 50 mm of where it began
+//   3  the finger rolls until it feels the same; Enter.   error = match - reference, of the true tactor
+//
+// Source: A. J. Doxon, doctoral dissertation, University of Utah (2014), ch. 3: 5 places 2.8 mm apart, 10 times each, cylinders of 50 to 140 mm, first
+// one of 95, a finger of 13 mm; mean absolute error 1.3 mm. `answer` counts from the nominal place: nominal + error. The distributions of radius and
+// place are ours, and that the finger, which lands on the new cylinder, is led along it.
 #pragma once
 #include "pincer/tasks/lab/experiments/study.h"
+#include "pincer/tasks/lab/participants/place_observer.h"
 
 namespace pincer::tasks {
 
 struct LocalisationStudy {
-  int participants = 12;
+  int participants = 20;
   std::uint64_t seed = 1;
   int places = 5;
   double spacing = 2.8e-3;                      // [m]
   int repetitions = 10;                         // of each place
   double least_travel = 4e-3;                   // of the tactor [m]
   double radius_min = 0.05, radius_max = 0.14;  // of the cylinders [m]
-  double finger_radius = 0.02;                  // [m]
+  double base_radius = 0.095;                   // of the first cylinder [m]
+  double finger_radius = 0.013;                 // [m]
   double stiffness = 1000;                      // [N/m]
   double published_error = 1.3e-3;              // mean absolute [m]
 };
@@ -33,6 +38,8 @@ class LocalisationExperiment final : public Experiment {
                                         ServoReport& served) override;
 
  private:
+  PlaceCues cuesOf(const StudyTrial& trial) const;
+
   LocalisationStudy study_;
   ServoOptions servo_;
   int stride_;

@@ -24,9 +24,9 @@ HandScene makePickupScene(const SpherePickupOptions& options, const PickupObject
 }
 
 double clearanceOverDish(const HandScene& scene, const Pose& X_WB, contact::PatchCache& patches) {
-  const auto& bodies = scene.model.grasp.world.bodies;
+  const auto& shapes = scene.model.grasp.world.colliders;  // one per body
   contact::PairPoints points;
-  contact::collideShapes(bodies[kObjectBody].shape, X_WB, bodies[kDishBody].shape, Pose(), kFarthest, patches, points);
+  contact::collideShapes(shapes[kObjectBody].shape, X_WB, shapes[kDishBody].shape, Pose(), kFarthest, patches, points);
   double clearance = kFarthest;
   for (int i = 0; i < points.count; ++i) clearance = std::min(clearance, points.points[static_cast<std::size_t>(i)].phi);
   return clearance;

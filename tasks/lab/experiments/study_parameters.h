@@ -53,9 +53,12 @@ void visitParameters(Condition& c, Visit&& visit) {
   visit("force", c.force, Parameter{"how the force feels the polygon", {}, kCurveVariantNames});
   visit("tactile", c.tactile, Parameter{"how the tactor does; null: it is parked", {}, kCurveVariantNames});
   visit("edge", c.edge, Parameter{"true: the edge in place of the arc"});
-  visit("travel_share", c.travel_share, Parameter{"of the tactor's travel that is shown", {0, 1, true}});
+  visit("travel_share", c.travel_share, Parameter{"of a sweep's travel, after which the tactor freezes; 1: never", {0, 1, true}});
   visit("staircase", c.staircase, Parameter{"that chooses the levels"});
-  visit("published", c.published, Parameter{"threshold, beside which the measured one is shown; null: none", kLevel, {}, true});
+  visit("published", c.published,
+        Parameter{
+            "threshold, beside which the measured one is shown [segments, m or s]; null: none", {0, 1e6, false, kAsPublished}, {}, true});
+  visit("pilot", c.pilot, Parameter{"true: done after the other conditions"});
 }
 
 template <FieldsOf<ArcStudy> Study, class Visit>
@@ -70,6 +73,7 @@ void visitParameters(Study& s, Visit&& visit) {
   visit("reference_turn", s.reference_turn, Parameter{"from segment to segment of the reference [rad]", {1e-4, 0.1, false, kAsPublished}});
   visit("stiffness", s.stiffness, Parameter{"of the surface [N/m]", {0, 3500, true, kAsPublished}});
   visit("strokes", s.strokes, Parameter{"per interval, an even number", {2, 100, false, kAsPublished}});
+  visit("frozen_tactor", s.frozen_tactor, Parameter{"true: the tactor is parked in every condition (a control)"});
   visit("conditions", s.conditions, Parameter{"a list replaces all of them"});
 }
 
@@ -81,8 +85,9 @@ void visitParameters(Study& s, Visit&& visit) {
   visit("spacing", s.spacing, Parameter{"from one to the next [m]; all within 0.016", {0, 0.016, true, kAsPublished}});
   visit("repetitions", s.repetitions, Parameter{"of each place", {1, 1000, false, kAsPublished}});
   visit("least_travel", s.least_travel, Parameter{"of the tactor to its place [m]", {0, 7.9e-3, false, kAsPublished}});
-  visit("radius_min", s.radius_min, Parameter{"of the cylinders [m]; at most `radius_max`", {0.02, 0.2, false, kAsPublished}});
+  visit("radius_min", s.radius_min, Parameter{"of the second cylinder [m]; at most `radius_max`", {0.02, 0.2, false, kAsPublished}});
   visit("radius_max", s.radius_max, Parameter{"[m]", {0.02, 0.2, false, kAsPublished}});
+  visit("base_radius", s.base_radius, Parameter{"of the first cylinder [m]", {0.02, 0.2, false, kAsPublished}});
   visit("finger_radius", s.finger_radius, Parameter{"[m]", {8e-3, 0.05, false, kAsPublished}});
   visit("stiffness", s.stiffness, Parameter{"of the surface [N/m]", {0, 3500, true, kAsPublished}});
   visit("published_error", s.published_error,

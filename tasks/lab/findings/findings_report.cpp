@@ -149,15 +149,15 @@ std::string findingsCsv(const FindingsResult& result) {
   return table.take();
 }
 
-void writeFindingsPage(const FindingsResult& result, const PublishedFindings& studies, const std::string& path) {
+void writeFindingsPage(const FindingsResult& result, const ClaimTable& claims, const std::string& path) {
   std::vector<Picture> pictures;
-  const bool manipulation = !result.variants.empty(), one_finger = !studies.figures.empty();
-  if (manipulation) pictures.push_back({forestFigure(result), "", ""});
-  if (one_finger) pictures.push_back({publishedForest(studies), "", ""});
+  if (!result.variants.empty()) pictures.push_back({forestFigure(result), "", ""});
   ReportFiles files;
   const std::string figures = plotAndWrite(pictures, path, {}, files);
-  std::string html = htmlHead("Do the published findings follow?", "");
-  if (manipulation) {
+  std::string html = htmlHead("Do the published findings follow?", "") + claimTableHtml(claims);
+  makeDirectory(files.figures_directory);
+  writeAtomically(files.figures_directory + "/claims.csv", claimTableCsv(claims));
+  if (!result.variants.empty()) {
     writeAtomically(files.figures_directory + "/table.csv", findingsCsv(result));
     html += fmt::format("<p>{}</p>\n<p>{}</p>\n<p class=\"note\">{}</p>\n", escaped(designOf(result)), escaped(runCost(result)),
                         escaped(kReading));
@@ -165,11 +165,6 @@ void writeFindingsPage(const FindingsResult& result, const PublishedFindings& st
   for (std::size_t v = 0; v < result.variants.size(); ++v) {
     html += variantTable(result.variants[v]);
     if (v == 0) html += htmlFigure(pictures[0], figures);
-  }
-  if (one_finger) {
-    writeAtomically(files.figures_directory + "/published_table.csv", publishedCsv(studies));
-    writeAtomically(files.figures_directory + "/published_orders.csv", publishedOrdersCsv(studies));
-    html += publishedHtml(studies) + htmlFigure(pictures.back(), figures);
   }
   SessionInfo info;
   info.protocol_json = studyFile(result.study);

@@ -16,18 +16,22 @@ double keptOf(double frequency) { return math::exp(-2 * std::numbers::pi * frequ
 BandPass::BandPass(double low, double high) : keep_low_(keptOf(low)), keep_high_(keptOf(high)) {}
 
 double BandPass::pass(double input) {
-  if (!begun_) slow_ = input;
+  if (!begun_) slow_[0] = input;
   begun_ = true;
-  slow_ = input + keep_low_ * (slow_ - input);
-  first_ = (input - slow_) + keep_high_ * (first_ - (input - slow_));
+  double passed = input;
+  for (double& slow : slow_) {
+    slow = passed + keep_low_ * (slow - passed);
+    passed -= slow;
+  }
+  first_ = passed + keep_high_ * (first_ - passed);
   second_ = first_ + keep_high_ * (second_ - first_);
   return second_;
 }
 
-void BandPower::add(const Vec2& u, bool counts) {
-  const double x = filters_[0].pass(u.x()), y = filters_[1].pass(u.y());
+void BandPower::add(double u, bool counts) {
+  const double x = filter_.pass(u);
   if (!counts) return;
-  sum_ += x * x + y * y;
+  sum_ += x * x;
   ++count_;
 }
 

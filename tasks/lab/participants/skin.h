@@ -3,14 +3,15 @@
 // The arm's push reaches the skin through the arm's own mass, which rests on the skin as on a spring; a tactor moves the skin directly:
 //
 //   push    u'' = w^2 (f / k - u) - 2 zeta w u',   w^2 = k / m         tactor   u = place
-//   band    u -> high-pass at f1 -> low-pass at f2;   a = root mean square of the band over the reading
+//   band    u -> high-pass at f1, three times -> low-pass at f2;   a = root mean square of the band over the reading
 //   felt    a + sigma n,   sigma = sqrt(a0^2 + (c a)^2) / 0.954,   n standard normal, one per reading
 //
 //   u  motion of the skin [m];  f  push [N];  k, m, zeta  stiffness [N/m], arm's apparent mass [kg], damping ratio;  a0  absolute threshold,
 //   c  difference threshold, each of 75 % right answers in two intervals: there a difference of 0.674 sqrt(2) sigma = 0.954 sigma is felt.
 // Sources of the limits, from memory and to be checked against the papers: absolute thresholds of the non-Pacinian and Pacinian channels,
 // S. J. Bolanowski, G. A. Gescheider, R. T. Verrillo, C. M. Checkosky, J. Acoust. Soc. Am. 84(5), 1988 (rounded); difference threshold, J. C.
-// Craig, J. Exp. Psychol. 95(1), 1972 (0.2). What is marked (choice) is ours.
+// Craig, J. Exp. Psychol. 95(1), 1972 (0.2). The high-pass is of third order (choice): of a stroke's own motion, millimetres at half a hertz, one of
+// first order leaves 0.1, one of third 0.001 in the slow band, less than the threshold. What is marked (choice) is ours.
 #pragma once
 #include <array>
 
@@ -28,7 +29,8 @@ struct SkinLimits {
   double difference = 0.2;        // c [-] (Craig 1972)
 };
 
-// A first-order high-pass followed by a second-order low-pass, each exact over a step of 1 ms for an input that stays.
+// A third-order high-pass followed by a second-order low-pass, each a row of equal first-order ones, exact over a step of 1 ms for an input that
+// stays.
 class BandPass {
  public:
   BandPass(double low, double high);  // corner frequencies [Hz]
@@ -36,20 +38,21 @@ class BandPass {
 
  private:
   double keep_low_, keep_high_;
-  double slow_ = 0, first_ = 0, second_ = 0;
+  std::array<double, 3> slow_{};
+  double first_ = 0, second_ = 0;
   bool begun_ = false;
 };
 
-// One band of the motion of the skin along two axes.
+// One band of the motion of the skin along one axis.
 class BandPower {
  public:
-  BandPower(double low, double high) : filters_{BandPass(low, high), BandPass(low, high)} {}
-  void add(const Vec2& u, bool counts);  // every millisecond; `counts`: belongs to the reading
-  double rms() const;                    // [m], 0 of nothing
-  void clear();                          // forgets the reading, not the skin
+  BandPower(double low, double high) : filter_(low, high) {}
+  void add(double u, bool counts);  // every millisecond [m]; `counts`: belongs to the reading
+  double rms() const;               // [m], 0 of nothing
+  void clear();                     // forgets the reading, not the skin
 
  private:
-  std::array<BandPass, 2> filters_;
+  BandPass filter_;
   double sum_ = 0;
   int count_ = 0;
 };

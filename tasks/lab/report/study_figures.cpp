@@ -55,7 +55,7 @@ Figure headlineFigure(const StudySummary& s) {
   figure.data = {{"headline.csv", means.take()}, {"headline_people.csv", people.take()}};
   const bool wide_range = s.info.task == "smoothness-discrimination";
   figure.script = figurePrelude(figure.name) + conditionTics(s) +
-                  (wide_range ? "set logscale y\nset yrange [0.02:50]\n" : "set yrange [0:*]\nset offsets 0, 0, graph 0.05, 0\n") +
+                  (wide_range ? "set logscale y\nset yrange [1:5000]\n" : "set yrange [0:*]\nset offsets 0, 0, graph 0.05, 0\n") +
                   fmt::format("set ylabel {}\n", gnuplotString(fmt::format("{} [{}]", s.headline.name, s.headline.unit))) +
                   fmt::format(
                       "plot 'headline_people.csv' skip 1 using 3:4 with points pt 7 ps 1.4 lc rgb '#90{}' title 'participant', "
@@ -73,7 +73,7 @@ Figure staircaseFigure(const StudySummary& s, const std::vector<ResponseRecord>&
       if (r.condition == s.conditions[k].name) people[r.participant].push_back(&r);
     for (const auto& [person, trials] : people) {
       for (const ResponseRecord* r : trials)
-        table.row(r->condition, k, person, r->index + 1, s.headline.scale * r->level, r->correct, r->reversal);
+        table.row(r->condition, k, person, r->index + 1, s.headline.level_scale * r->level, r->correct, r->reversal);
       table.endRow();  // an empty line breaks gnuplot's from one participant to the next
     }
   }
@@ -94,15 +94,15 @@ Figure staircaseFigure(const StudySummary& s, const std::vector<ResponseRecord>&
     const StudyCondition& c = s.conditions[k];
     if (c.trials == 0) continue;  // gnuplot refuses a plot of nothing
     figure.script += fmt::format("set title {} offset 0,-0.5\nset xlabel 'trial'\nset ylabel '{} [{}]'\n", gnuplotString(c.name), "level",
-                                 s.headline.unit);
+                                 s.headline.level_unit);
     figure.script += fmt::format(
         "plot data skip 1 using ($2=={0} ? $4 : NaN):5 with lines lw 0.7 lc rgb '#80{1}', "
         "data skip 1 using ($2=={0} && $7==1 ? $4 : NaN):5 with points pt 7 ps 0.5 lc rgb '{2}'",
         k, palette::kBlue + 1, palette::kBlue);
     if (c.headline.n > 0)
-      figure.script += fmt::format(", {} with lines dt 2 lw 1.2 lc rgb '{}'", s.headline.scale * c.headline.mean, palette::kInk);
+      figure.script += fmt::format(", {} with lines dt 2 lw 1.2 lc rgb '{}'", levelShown(s, c.headline.mean), palette::kInk);
     if (std::isfinite(c.published))
-      figure.script += fmt::format(", {} with lines dt 3 lw 1.6 lc rgb '{}'", s.headline.scale * c.published, palette::kVermillion);
+      figure.script += fmt::format(", {} with lines dt 3 lw 1.6 lc rgb '{}'", levelShown(s, c.published), palette::kVermillion);
     figure.script += "\n";
   }
   figure.script += "unset multiplot\n";

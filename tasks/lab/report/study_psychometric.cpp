@@ -51,7 +51,7 @@ void addCurve(PlotTable& curve, const std::string& name, std::size_t k, const Ps
 
 std::string levelPanel(const StudySummary& s, std::size_t k, const std::optional<PsychometricFit>& fit, const LevelAxis& axis) {
   std::string script = fmt::format("set title {} offset 0,-0.5\nset xlabel 'level [{}]'\nset ylabel 'right answers [-]'\n",
-                                   gnuplotString(s.conditions[k].name), s.headline.unit);
+                                   gnuplotString(s.conditions[k].name), s.headline.level_unit);
   script +=
       fmt::format("plot data skip 1 using ($2=={0} ? $3 : NaN):4:(0.15 + 0.25 * sqrt($5)) with points pt 7 ps variable lc rgb '#90{1}'", k,
                   palette::kBlue + 1);
@@ -59,7 +59,7 @@ std::string levelPanel(const StudySummary& s, std::size_t k, const std::optional
     script += fmt::format(", 'psychometric_curves.csv' skip 1 using ($2=={} ? $3 : NaN):4 with lines lw 2 lc rgb '{}'", k, palette::kBlue);
     script += fmt::format(", {} with lines dt 2 lw 1.2 lc rgb '{}'", kStaircasePoint, palette::kInk);
     script += fmt::format(", '+' using ({}):({}) every ::::0 with points pt 2 ps 2 lw 2 lc rgb '{}'",
-                          s.headline.scale * axis.level(fit->threshold), kStaircasePoint, palette::kInk);
+                          s.headline.level_scale * axis.level(fit->threshold), kStaircasePoint, palette::kInk);
   }
   return script + "\n";
 }
@@ -78,14 +78,14 @@ Figure psychometricFigure(const StudySummary& s, const std::vector<ResponseRecor
     const std::vector<LevelCount> counts = countsOf(s.conditions[k], responses, axis);
     if (counts.empty()) continue;  // gnuplot refuses a plot of nothing
     for (const LevelCount& c : counts)
-      points.row(s.conditions[k].name, k, s.headline.scale * axis.level(c.level), static_cast<double>(c.right) / c.trials, c.trials);
+      points.row(s.conditions[k].name, k, s.headline.level_scale * axis.level(c.level), static_cast<double>(c.right) / c.trials, c.trials);
     std::optional<PsychometricFit> fit;
     if (counts.size() >= 2) fit = fitPsychometric(counts, Sigmoid::kNormal, kGuess, kStaircasePoint);
     if (fit) {
-      const auto shown = [&](double x) { return s.headline.scale * axis.level(x); };
+      const auto shown = [&](double x) { return s.headline.level_scale * axis.level(x); };
       fits.row(s.conditions[k].name, shown(fit->threshold), shown(fit->interval.low), shown(fit->interval.high), fit->function.beta,
                fit->function.lambda);
-      addCurve(curves, s.conditions[k].name, k, *fit, counts, axis, s.headline.scale);
+      addCurve(curves, s.conditions[k].name, k, *fit, counts, axis, s.headline.level_scale);
       words += fmt::format("{}{}: {:.3g} [{:.3g}, {:.3g}]", words.empty() ? "" : "; ", s.conditions[k].name, shown(fit->threshold),
                            shown(fit->interval.low), shown(fit->interval.high));
     }
@@ -100,7 +100,7 @@ Figure psychometricFigure(const StudySummary& s, const std::vector<ResponseRecor
       "likelihood, with guesses of 50 % and lapses up to 6 %. Cross: its point of 70.7 % [{}] with the profile likelihood's 95 % interval, "
       "which "
       "takes all answers for one person's: {}.",
-      s.headline.unit, words);
+      s.headline.level_unit, words);
   figure.data = {{"psychometric.csv", points.take()}, {"psychometric_curves.csv", curves.take()}, {"psychometric_fits.csv", fits.take()}};
   figure.script = figurePrelude(figure.name) + "unset key\nset tics font ',15'\nset yrange [0:1.05]\n" +
                   (axis.logarithmic ? "set logscale x\n" : "") + fmt::format("set multiplot layout {},{}\n", rows, columns) + panels +

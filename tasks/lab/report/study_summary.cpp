@@ -10,6 +10,7 @@
 
 #include "pincer/contact/io/counted.h"
 #include "pincer/contact/io/printable.h"
+#include "pincer/tasks/lab/study/arc_segments.h"
 #include "pincer/tasks/run/files/json_writer.h"
 #include "pincer/tasks/run/files/strict_json.h"
 
@@ -19,15 +20,19 @@ namespace {
 constexpr double kSettled = 0.62;  // share of right answers [-]
 constexpr double kNoFigure = std::numeric_limits<double>::quiet_NaN();
 
+constexpr const char* kCountedInSegments = "smoothness-discrimination";
+
 struct StudyKind {
   const char *task, *name, *unit;
   double scale;
+  const char* level_unit;
+  double level_scale;
 };
-constexpr std::array<StudyKind, 5> kStudyKinds{{{"smoothness-discrimination", "threshold", "°", 180 / M_PI},
-                                                {"backlash-discrimination", "threshold", "mm", 1e3},
-                                                {"delay-discrimination", "threshold", "ms", 1e3},
-                                                {"repeated-localisation", "mean absolute error", "mm", 1e3},
-                                                {"shape-identification", "right answers", "%", 100}}};
+constexpr std::array<StudyKind, 5> kStudyKinds{{{kCountedInSegments, "threshold", "segments", 1, "°", 180 / M_PI},
+                                                {"backlash-discrimination", "threshold", "mm", 1e3, "mm", 1e3},
+                                                {"delay-discrimination", "threshold", "ms", 1e3, "ms", 1e3},
+                                                {"repeated-localisation", "mean absolute error", "mm", 1e3, "mm", 1e3},
+                                                {"shape-identification", "right answers", "%", 100, "%", 100}}};
 
 const StudyKind* kindOf(const std::string& task) {
   const auto found = std::find_if(kStudyKinds.begin(), kStudyKinds.end(), [&](const StudyKind& k) { return task == k.task; });
@@ -100,10 +105,10 @@ Estimate overPeople(const People& people, double (*of)(const ResponseRecord&)) {
   return estimateMean(values);
 }
 
-double thresholdOf(const std::vector<const ResponseRecord*>& trials, int averaged) {
+double thresholdOf(const std::string& task, const std::vector<const ResponseRecord*>& trials, int averaged) {
   std::vector<double> reversals;
   for (const ResponseRecord* r : trials)
-    if (r->reversal) reversals.push_back(r->level);
+    if (r->reversal) reversals.push_back(task == kCountedInSegments ? segmentsOf(r->level) : r->level);
   if (static_cast<int>(reversals.size()) < averaged) return kNoFigure;
   double sum = 0;
   for (auto level = reversals.end() - averaged; level != reversals.end(); ++level) sum += *level;
@@ -111,7 +116,7 @@ double thresholdOf(const std::vector<const ResponseRecord*>& trials, int average
 }
 
 double headlineOf(const std::string& task, const StudyCondition& condition, const std::vector<const ResponseRecord*>& trials) {
-  if (condition.averaged > 0) return thresholdOf(trials, condition.averaged);
+  if (condition.averaged > 0) return thresholdOf(task, trials, condition.averaged);
   if (task == "repeated-localisation") return meanOf(trials, [](const ResponseRecord& r) { return std::abs(r.answer_value - r.level); });
   return meanOf(trials, [](const ResponseRecord& r) { return static_cast<double>(r.correct); });
 }
@@ -167,13 +172,17 @@ std::size_t characters(const std::string& text) {
 
 bool isUnsettled(const StudyCondition& c) { return c.averaged > 0 && c.right.n > 0 && c.right.mean < kSettled; }
 
+double levelShown(const StudySummary& s, double headline) {
+  return s.headline.level_scale * (s.info.task == kCountedInSegments ? turnOf(headline) : headline);
+}
+
 bool isStudy(const std::string& task) { return kindOf(task) != nullptr; }
 
 StudySummary summariseStudy(const SessionInfo& info, const std::string& name, const std::vector<ResponseRecord>& responses) {
   StudySummary s{name, info, "", "", "", info.participants_hash, 0, 0, {}, {}};
   const StudyKind* kind = kindOf(info.task);
   if (!kind) throw InputError(fmt::format("{}: a session of {}, which isn't a psychophysical study.", name, info.task));
-  s.headline = {kind->name, kind->unit, kind->scale};
+  s.headline = {kind->name, kind->unit, kind->scale, kind->level_unit, kind->level_scale};
   const JsonValue protocol = parseJson(info.protocol_json, name + ": protocol");
   std::set<std::int64_t> people;
   for (const ResponseRecord& r : responses) people.insert(r.participant);
@@ -203,8 +212,12 @@ std::vector<std::string> studyTableHeads(const StudySummary& s) {
 
 std::vector<std::string> studyTableRow(const StudySummary& s, const StudyCondition& c) {
   const int digits = s.headline.unit == "ms" || s.headline.unit == "%" ? 1 : 2;
+  std::string headline = estimateText(c.headline, s.headline.scale, digits);
+  const bool counted = s.info.task == kCountedInSegments && c.headline.n > 0;
+  if (isUnsettled(c)) headline = (counted ? "≤ " : "≥ ") + headline;
+  if (counted) headline += fmt::format(" ({:.2g}°)", levelShown(s, c.headline.mean));
   return {c.name == c.label ? c.name : c.name + ": " + c.label,
-          (isUnsettled(c) ? "≥ " : "") + estimateText(c.headline, s.headline.scale, digits),
+          headline,
           std::isnan(c.published) ? "–" : fmt::format("{:.3g}", s.headline.scale * c.published),
           followsText(c),
           std::to_string(c.people.size()),
@@ -232,7 +245,8 @@ std::string studyNote(const StudySummary& s) {
   }
   if (std::any_of(s.conditions.begin(), s.conditions.end(), isUnsettled)) {
     note += fmt::format(
-        " ≥ marks conditions with fewer than {:.0f} % right answers: their staircases ended before they had risen to a threshold.",
+        " ≥ (of segments ≤) marks conditions with fewer than {:.0f} % right answers: their staircases ended before they had risen to a "
+        "threshold.",
         100 * kSettled);
   }
   if (lost > 0) note += fmt::format(" {} found no threshold and {} left out.", counted(lost, "staircase"), lost == 1 ? "is" : "are");

@@ -2,7 +2,8 @@
 //
 // Each task has one headline figure, taken per participant and then averaged with its 95 % interval over the participants (statistics.h):
 //
-//   discriminations        threshold: mean of the last reversals of the staircase
+//   discriminations        threshold: mean of the last reversals of the staircase; of the polygons in segments, a person's mean of n, never the n
+//                          of a mean of angles (tasks/lab/study/arc_segments.h)
 //   repeated-localisation  mean absolute error of the places named
 //   shape-identification   share of right answers
 // All other figures are participants' means likewise. Trials that weren't answered count as trials and for nothing else.
@@ -19,6 +20,8 @@ namespace pincer::tasks {
 struct HeadlineQuantity {
   std::string name, unit;
   double scale = 1;
+  std::string level_unit{};  // of the staircases' levels
+  double level_scale = 1;
 };
 
 struct StudyPerson {
@@ -52,6 +55,9 @@ struct StudySummary {
   HeadlineQuantity headline;
   std::vector<StudyCondition> conditions;  // in the protocol's order
 };
+
+// The level, shown, at which a threshold lies; the same unless thresholds are counted in segments.
+double levelShown(const StudySummary& summary, double headline);
 
 // Whether the session is of a task that this summary is for.
 bool isStudy(const std::string& task);

@@ -47,17 +47,33 @@ void visitFields(const SkinLimits& l, Visit&& visit) {
 }
 
 template <class Visit>
+void visitFields(const LagLimits& l, Visit&& visit) {
+  visit("way_sd", l.way_sd);
+  visit("place_sd", l.place_sd);
+  visit("time_sd", l.time_sd);
+  visit("difference", l.difference);
+  visit("masking", l.masking);
+  visit("tactor_moves", l.tactor_moves);
+}
+
+template <class Visit>
 void visitFields(const StrokeLimits& l, Visit&& visit) {
   visit("skin", l.skin);
   visit("common", l.common);
-  visit("lag_sigma", l.lag_sigma);
-  visit("lag_difference", l.lag_difference);
+  visit("tactor_weight", l.tactor_weight);
+  visit("lag", l.lag);
   visit("sensitivity_spread", l.sensitivity_spread);
   visit("press", l.press);
   visit("press_time", l.press_time);
   visit("lower_time", l.lower_time);
   visit("raise_time", l.raise_time);
   visit("lift", l.lift);
+  visit("ramp_time", l.ramp_time);
+  visit("rest_time", l.rest_time);
+  visit("probe_min", l.probe_min);
+  visit("probe_max", l.probe_max);
+  visit("roll_min", l.roll_min);
+  visit("roll_max", l.roll_max);
 }
 
 template <class Visit>
@@ -74,6 +90,11 @@ void visitFields(const ShapeLimits& l, Visit&& visit) {
 template <class Visit>
 void visitFields(const PlaceLimits& l, Visit&& visit) {
   visit("common", l.common);
+  visit("reading_sd", l.reading_sd);
+  visit("memory_draw", l.memory_draw);
+  visit("match_tolerance", l.match_tolerance);
+  visit("correction_time", l.correction_time);
+  visit("hold_time", l.hold_time);
   visit("press", l.press);
   visit("lower_time", l.lower_time);
   visit("raise_time", l.raise_time);

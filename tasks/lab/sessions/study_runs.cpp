@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "pincer/contact/io/atomic_file.h"
+#include "pincer/tasks/lab/findings/claims.h"
 #include "pincer/tasks/lab/findings/findings.h"
 #include "pincer/tasks/lab/participants/random.h"
 #include "pincer/tasks/lab/sessions/session_runs.h"
@@ -17,33 +18,45 @@ namespace {
 
 constexpr int kNoSamples = std::numeric_limits<int>::max();  // hours of strokes: the answers are what counts
 
-template <class MakeExperiment, class Study>
-SessionRun runOfExperiment(const std::string& task, Study study, const StudyRuns& runs, int experiment, const MakeExperiment& make,
+template <class Study>
+void parkTactor(Study& study) {
+  if constexpr (requires { study.frozen_tactor; }) study.frozen_tactor = true;
+}
+
+std::string pathOf(const StudyRuns& runs, const std::string& task, int experiment, bool control) {
+  return fmt::format("{}/{}{}-{}.db", runs.directory, task, control ? "-frozen" : "", experiment);
+}
+
+template <class Experiment, class Study>
+SessionRun runOfExperiment(const std::string& task, Study study, const StudyRuns& runs, int experiment, bool control,
                            const std::atomic<bool>& interrupted) {
-  study.participants = runs.participants;
+  if (runs.participants > 0) study.participants = runs.participants;
   study.seed = seedFor(runs.seed, static_cast<std::uint64_t>(experiment)) >> 1;
+  if (control) parkTactor(study);
   validate(study);
   StudySession session;
-  session.path = fmt::format("{}/{}-{}.db", runs.directory, task, experiment);
+  session.path = pathOf(runs, task, experiment, control);
   session.info = studySessionInfo(task, study.seed, studyJson(study), participantsJson(study), {}, 0);
+  session.info.scene_json = fmt::format("{{\"claims\": \"{}\"}}", claimsHash());
   return {session.path, session.info, [=, &interrupted](bool resume, const ShareDone& share) {
             StudySession now = session;
             now.resume = resume;
-            auto presented = make(study);
+            Experiment presented(study, {}, kNoSamples);
             runStudySession(presented, now, interrupted, [&](const StudyProgress& p) { share(p.share); });
           }};
 }
 
 struct PublishedStudy {
   std::string task;
-  std::function<SessionRun(const StudyRuns& runs, int experiment, const std::atomic<bool>& interrupted)> experiment;
+  bool has_control;
+  std::function<SessionRun(const StudyRuns& runs, int experiment, bool control, const std::atomic<bool>& interrupted)> experiment;
 };
 
 template <class Experiment, class Study>
 PublishedStudy publishedStudy(const std::string& task, const Study& study) {
-  return {task, [=](const StudyRuns& runs, int experiment, const std::atomic<bool>& interrupted) {
-            const auto make = [](const Study& s) { return Experiment(s, {}, kNoSamples); };
-            return runOfExperiment(task, study, runs, experiment, make, interrupted);
+  constexpr bool kHasControl = requires { study.frozen_tactor; };
+  return {task, kHasControl, [=](const StudyRuns& runs, int experiment, bool control, const std::atomic<bool>& interrupted) {
+            return runOfExperiment<Experiment>(task, study, runs, experiment, control, interrupted);
           }};
 }
 
@@ -61,24 +74,40 @@ std::vector<PublishedStudy> publishedStudies(const std::string& only) {
   return studies;
 }
 
-}  // namespace
-
-std::vector<StudySessions> runPublishedStudies(const StudyRuns& runs, const std::atomic<bool>& interrupted,
-                                               const std::function<void(std::int64_t, std::int64_t)>& progress) {
-  const std::vector<PublishedStudy> studies = publishedStudies(runs.only);
-  if (studies.empty() || runs.experiments == 0) return {};
-  makeDirectory(runs.directory);
-  std::vector<SessionRun> sessions;
-  for (int e = 0; e < runs.experiments; ++e) {
-    for (const PublishedStudy& study : studies) sessions.push_back(study.experiment(runs, e, interrupted));
+// The part's own share of `count` experiments of each.
+void addRuns(const std::vector<PublishedStudy>& studies, const StudyRuns& runs, int count, bool control,
+             const std::atomic<bool>& interrupted, std::vector<SessionRun>& sessions) {
+  for (int e = runs.part - 1; e < count; e += runs.parts) {
+    for (const PublishedStudy& study : studies) {
+      if (study.has_control || !control) sessions.push_back(study.experiment(runs, e, control, interrupted));
+    }
   }
-  runSessions(sessions, runs.threads, interrupted, progress);
-  std::vector<StudySessions> found;
-  for (const PublishedStudy& study : studies) found.push_back({study.task, {}});
-  for (std::size_t k = 0; k < sessions.size(); ++k) {
-    if (std::filesystem::exists(sessions[k].path)) found[k % studies.size()].paths.push_back(sessions[k].path);
+}
+
+std::map<std::string, std::vector<std::string>> filesOf(const std::vector<PublishedStudy>& studies, const StudyRuns& runs, int count,
+                                                        bool control) {
+  std::map<std::string, std::vector<std::string>> found;
+  for (const PublishedStudy& study : studies) {
+    for (int e = 0; e < count; ++e) {
+      const std::string path = pathOf(runs, study.task, e, control);
+      if (std::filesystem::exists(path)) found[study.task].push_back(path);
+    }
   }
   return found;
+}
+
+}  // namespace
+
+StudySessions runPublishedStudies(const StudyRuns& runs, const std::atomic<bool>& interrupted,
+                                  const std::function<void(std::int64_t, std::int64_t)>& progress) {
+  const std::vector<PublishedStudy> studies = publishedStudies(runs.only);
+  if (studies.empty() || runs.experiments + runs.controls == 0) return {};
+  makeDirectory(runs.directory);
+  std::vector<SessionRun> sessions;
+  addRuns(studies, runs, runs.experiments, false, interrupted, sessions);
+  addRuns(studies, runs, runs.controls, true, interrupted, sessions);
+  runSessions(sessions, runs.threads, interrupted, progress);
+  return {filesOf(studies, runs, runs.experiments, false), filesOf(studies, runs, runs.controls, true)};
 }
 
 }  // namespace pincer::tasks

@@ -24,4 +24,13 @@ std::vector<Order> carryOverSquare(int n) {
   return rows;
 }
 
+std::vector<Order> reducedLatinSquare(int n) {
+  PINCER_ASSERT(n >= 1);
+  std::vector<Order> rows(static_cast<std::size_t>(n), Order(static_cast<std::size_t>(n)));
+  for (int k = 0; k < n; ++k) {
+    for (int place = 0; place < n; ++place) rows[static_cast<std::size_t>(k)][static_cast<std::size_t>(place)] = (k + place) % n;
+  }
+  return rows;
+}
+
 }  // namespace pincer::tasks

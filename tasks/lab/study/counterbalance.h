@@ -21,6 +21,9 @@ using Order = std::vector<int>;  // of 0 .. n-1
 // n >= 1.
 std::vector<Order> carryOverSquare(int n);
 
+// The cyclic reduced Latin square, n >= 1: row k is k, k+1, ... modulo n, so that first row and first column are in the natural order.
+std::vector<Order> reducedLatinSquare(int n);
+
 // Each value once, every order equally likely (R. Durstenfeld, Comm. ACM 7(7), 1964, algorithm 235).
 template <class T>
 void shuffle(std::vector<T>& values, Random& random) {

@@ -9,6 +9,9 @@
 namespace pincer::tasks {
 namespace {
 
+// Of a rotation about the x axis.
+double pitchOf(const Quat& q_WF) { return 2 * math::atan2(q_WF.x(), q_WF.w()); }
+
 // A sample that can't be used leaves the finger where it was; the gate trips on it.
 void locatePlanarFinger(const PlanarTickModel& model, PlanarTickState& state, const devices::ArmSample& sample) {
   if (!sample.valid || !devices::isFinite(sample)) return;
@@ -19,15 +22,17 @@ void locatePlanarFinger(const PlanarTickModel& model, PlanarTickState& state, co
     state.v_WF += share * ((p_WF - state.p_WF) / dt - state.v_WF);
   }
   state.p_WF = p_WF;
+  state.pitch = sample.q_DF ? pitchOf(model.X_WD.q * *sample.q_DF) : 0;
   state.sample_time = sample.time;
   state.seen = true;
 }
 
-devices::TactileCommand tactorPlace(const PlanarTickModel& model, const PlanarStimulus& stimulus, PlanarTickState& state,
-                                    const Vec2& p_BC) {
+devices::TactileCommand tactorPlace(const PlanarTickModel& model, const PlanarStimulus& stimulus, PlanarTickState& state, const Vec2& p_BC,
+                                    double felt_angle) {
   if (!stimulus.tactile) return {true, Vec2::Zero()};
-  const double angle = stimulus.tactile->queryCircle(p_BC, model.finger_radius, state.tactile_tracker).finger_angle;
-  return {false, {std::clamp(model.finger_radius * angle, -stimulus.largest_place, stimulus.largest_place), 0}};
+  const bool same = stimulus.tactile == stimulus.force;
+  const double angle = same ? felt_angle : stimulus.tactile->queryCircle(p_BC, model.finger_radius, state.tactile_tracker).finger_angle;
+  return {false, {std::clamp(model.finger_radius * (angle - state.pitch), -stimulus.largest_place, stimulus.largest_place), 0}};
 }
 
 Vec3 gatedPlanarForce(const PlanarTickModel& model, PlanarTickState& state, const devices::ArmSample& sample, const PlanarTickOutput& out,
@@ -49,13 +54,13 @@ PlanarTickOutput planarTick(const PlanarTickModel& model, const PlanarStimulus& 
   PINCER_DEMAND(stimulus.force, "planarTick: the stimulus has a curve to feel");
   PINCER_DEMAND(dt > 0, "planarTick: the tick's length is positive");
   locatePlanarFinger(model, state, sample);
-  const Vec2 p_BC(state.p_WF.x(), state.p_WF.z());
+  const Vec2 p_BC(state.p_WF.y(), state.p_WF.z());
   PlanarTickOutput out;
   out.contact = stimulus.force->queryCircle(p_BC, model.finger_radius, state.force_tracker);
   out.normal_force = model.stiffness * std::max(0.0, -out.contact.phi);
-  out.f_W = out.normal_force * Vec3(out.contact.n_B.x(), 0, out.contact.n_B.y());
+  out.f_W = out.normal_force * Vec3(0, out.contact.n_B.x(), out.contact.n_B.y());
   out.ok = out.f_W.allFinite();
-  out.tactile = tactorPlace(model, stimulus, state, p_BC);
+  out.tactile = tactorPlace(model, stimulus, state, p_BC, out.contact.finger_angle);
   out.f_D = gatedPlanarForce(model, state, sample, out, now, dt);
   return out;
 }

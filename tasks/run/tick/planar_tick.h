@@ -1,9 +1,9 @@
 // planar_tick: the tick of the experiments in the plane: one round fingertip on a curve. A pure function, as tasks/run/tick/tick.h.
 //
 //   arm's sample -> p_BC -> contact with the force curve -> f_W = k max(0, -phi) n -> last gate -> force for the arm
-//                        -> contact with the tactile curve -> place s = r a, |s| <= largest place -> tactor
+//                        -> contact with the tactile curve -> place s = r (a - pitch), |s| <= largest place -> tactor
 //
-//   B    the plane y = 0 of W, (x, z), its origin the curve's;  C  the fingertip's centre;  r  its radius [m];  k  stiffness [N/m]
+//   B    the plane x = 0 of W along the finger, (y, z), its origin the curve's;  C  the fingertip's centre;  r  its radius [m];  k  stiffness [N/m]
 //   phi  gap [m];  n  outward normal;  a  angle of the contact on the fingertip [rad];  s  place on the pad [m of arc, distal positive]
 // Force and place may follow two different curves (contact/curve/curve.h): shading is a property of what is shown, per sense. The surface
 // has no friction. The place is shown before contact too: on an open curve the nearest point is where contact will begin.
@@ -36,6 +36,7 @@ struct PlanarTickModel {
 struct PlanarTickState {
   bool seen = false;  // a valid sample has come
   Vec3 p_WF = Vec3::Zero(), v_WF = Vec3::Zero();
+  double pitch = 0;  // of the finger about W's x axis, tip up, by the gimbal [rad]; 0 where the arm tells none
   double sample_time = 0;
   contact::CurveTracker force_tracker, tactile_tracker;
   devices::GateState gate;

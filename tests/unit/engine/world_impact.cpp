@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "pincer/engine/step.h"
 #include "pincer/tests/support/allocation_guard.h"
@@ -114,6 +115,42 @@ TEST(Impact, BallsSwapTheirSpeeds) {
 }
 
 // 10 m/s are 10 mm per tick; the ball has 5 mm, the plate 1 mm. Every phase of the tick.
+// Five balls of 10 mm in a row without friction, `apart` [m], the first of which comes at 1 m/s.
+std::vector<double> speedsOfCradle(double apart) {
+  constexpr double kRadius = 0.01;
+  WorldOptions options;
+  options.gravity_W.setZero();
+  WorldBuilder builder(options);
+  std::vector<BodyStart> starts;
+  for (int i = 0; i < 5; ++i) {
+    builder.addBody({"ball", contact::Sphere{kRadius}, true, 0.1, Material{0, 0, 1, 0}});
+    starts.push_back(startAt(Vec3(i == 0 ? -kRadius : i * (2 * kRadius + apart), 0, 0)));
+  }
+  starts.front().v_W = Vec3(1, 0, 0);
+  const WorldModel model = builder.build();
+  WorldState state = makeState(model, starts, {});
+  WorldScratch scratch(model);
+  for (int n = 0; n < 100; ++n) EXPECT_EQ(step(model, state, scratch).status, kStepOk);
+  std::vector<double> speeds;
+  for (const BodyState& body : state.bodies) speeds.push_back(body.v_W.x());
+  return speeds;
+}
+
+// By sequential impacts, as equal balls swap their speeds.
+TEST(Impact, OfACradleWithGapsPassesFromBallToBall) {
+  for (const double apart : {1e-6, 1e-5, 1e-4}) {
+    const std::vector<double> speeds = speedsOfCradle(apart);
+    for (std::size_t i = 0; i < speeds.size(); ++i) EXPECT_NEAR(speeds[i], i + 1 == speeds.size() ? 1 : 0, 1e-9) << apart << ", " << i;
+  }
+}
+
+// Newton's law at all contacts at once: docs/accuracy.md tells it. Of n equal balls the first keeps 1 - 2 (n - 1) / n.
+TEST(Impact, OfACradleThatTouchesIsOneHit) {
+  const std::vector<double> speeds = speedsOfCradle(0);
+  EXPECT_NEAR(speeds[0], -0.6, 1e-9);
+  for (std::size_t i = 1; i < speeds.size(); ++i) EXPECT_NEAR(speeds[i], 0.4, 1e-9) << i;
+}
+
 TEST(Impact, FastBallDoesNotTunnelThroughAPlate) {
   for (bool plate_is_free : {false, true}) {
     for (int phase = 0; phase < 20; ++phase) {

@@ -94,9 +94,9 @@ class JumpingPush final : public ContactSource {
     const double phi = tip.z() - centre.z() - 0.018;
     if (phi > 0.05) return;
     Contact* const c = addContact(scratch, phi);
-    c->id = contactId(1, 0, 1, 0);
-    c->a = {SideKind::kPoint, 0};
-    c->b = {SideKind::kBody, 1};
+    c->a = {SideKind::kPoint, 0, 0};
+    c->b = {SideKind::kBody, 0, 1};
+    c->id = contactId(0, c->a, c->b, 0);
     c->R_WC.col(2) = Vec3::UnitZ();
     c->p_W = centre + Vec3(0, 0, 0.01 + 0.5 * phi);
     c->material = {0, 0, 0, 0};

@@ -157,9 +157,9 @@ class FaultyContacts final : public engine::ContactSource {
     engine::Contact* all[2] = {engine::addContact(scratch, 0), engine::addContact(scratch, 0)};
     for (int i = 0; i < 2; ++i) {
       engine::Contact& c = *all[i];
-      c.id = engine::contactId(0, 0, 1, 100 + static_cast<std::uint32_t>(i));
-      c.a = {engine::SideKind::kBody, 0};
-      c.b = {engine::SideKind::kBody, 1};
+      c.a = {engine::SideKind::kBody, 0, 0};
+      c.b = {engine::SideKind::kBody, 0, 1};
+      c.id = engine::contactId(0, c.a, c.b, 100 + static_cast<std::uint32_t>(i));
       c.p_W = Vec3(0.001 * i, 0, 0.01);
       c.R_WC.col(2) = -Vec3::UnitZ();
     }

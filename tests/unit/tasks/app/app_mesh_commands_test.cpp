@@ -148,6 +148,35 @@ TEST(MeshRoundEdgesCommand, WritesNormalsThatMakeItSmooth) {
   EXPECT_TRUE(contains(large.error, "--radius 19.8")) << large.error;
 }
 
+TEST(MeshSimplifyCommand, MakesAPartOfAScan) {
+  const tests::TemporaryDirectory directory;
+  const std::string scan = directory / "scan.obj", part = directory / "part.obj", fine = directory / "fine.obj";
+  contact::writeMesh(scan, contact::gridBox(Vec3::Constant(0.02), 50), {.metres_per_unit = kMillimetre});  // 30,000 triangles
+  const AppResult check = runPincer({"mesh", "check", scan, "--units", "mm"});
+  EXPECT_TRUE(contains(check.out, "many-triangles") && contains(check.out, "`pincer mesh simplify`")) << check.out;
+  const AppResult result = runPincer({"mesh", "simplify", scan, part, "--units", "mm"});
+  ASSERT_EQ(result.exit_code, kExitOk) << result.error;
+  EXPECT_TRUE(contains(result.out, ": 12 of 30000 triangles")) << result.out;
+  ASSERT_EQ(runPincer({"mesh", "subdivide", part, fine, "--units", "mm", "--levels", "2"}).exit_code, kExitOk);
+  const contact::MeshReport report = contact::inspect(contact::readMesh(fine, {.metres_per_unit = kMillimetre}));
+  EXPECT_EQ(report.triangles, 12 * 16);
+  EXPECT_EQ(report.crease_edges, 12 * 4);
+}
+
+TEST(MeshConvertCommand, OneBadPolygonIsLeftOutUnderRepair) {
+  const tests::TemporaryDirectory directory;
+  writeSamples(directory / "open.obj", directory / "whole.obj");
+  const std::string bad = directory / "bad.obj", out = directory / "out.obj";
+  std::ofstream(bad) << tests::readFile(directory / "whole.obj") << "f 1 2 99\n";
+  EXPECT_EQ(runPincer({"mesh", "convert", bad, out, "--units", "mm"}).exit_code, kExitBadInput);
+  const AppResult check = runPincer({"mesh", "check", bad, "--units", "mm"});
+  EXPECT_EQ(check.exit_code, kExitCheckFailed);
+  EXPECT_TRUE(contains(check.out, "! bad-faces: 1 face can't be used") && contains(check.out, "uses vertex 99")) << check.out;
+  const AppResult repaired = runPincer({"mesh", "convert", bad, out, "--units", "mm", "--repair"});
+  EXPECT_EQ(repaired.exit_code, kExitOk) << repaired.out;
+  EXPECT_TRUE(contains(repaired.out, "left-out-faces: left out 1 face")) << repaired.out;
+}
+
 std::vector<std::string> commandsOf(const std::string& page) {
   std::istringstream in(tests::readFile(page));
   std::vector<std::string> commands;
@@ -188,7 +217,7 @@ std::set<std::string> findingNames() {
 
 TEST(MeshesPage, ExplainsEveryFinding) {
   const std::string page = tests::readFile(PINCER_SOURCE_DIR "/docs/meshes.md");
-  EXPECT_EQ(findingNames().size(), 19u);
+  EXPECT_EQ(findingNames().size(), 23u);
   for (const std::string& name : findingNames()) EXPECT_TRUE(contains(page, "| `" + name + "` |")) << name;
 }
 

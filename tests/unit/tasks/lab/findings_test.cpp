@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "pincer/tasks/lab/findings/published_figures.h"
+#include <set>
+
+#include "pincer/tasks/lab/findings/claim_judge.h"
 #include "pincer/tasks/lab/sessions/session_runs.h"
 #include "pincer/tasks/lab/sessions/study_file.h"
 #include "pincer/tests/support/error_of.h"
@@ -49,46 +51,124 @@ std::string writeDelays(const std::string& path, const Thresholds& of) {
   return path;
 }
 
-PublishedFindings findingsOf(const TemporaryDirectory& dir, const Thresholds& thresholds, int experiments) {
+ClaimTable tableOf(const TemporaryDirectory& dir, const Thresholds& thresholds, int studies) {
   std::vector<std::string> paths;
-  for (int e = 0; e < experiments; ++e) paths.push_back(writeDelays(dir / fmt::format("{}.db", e), thresholds));
-  PublishedFindings findings;
-  judgeStudy(paths, findings);
-  return findings;
+  for (int e = 0; e < studies; ++e) paths.push_back(writeDelays(dir / fmt::format("{}.db", e), thresholds));
+  return judgeClaims({{"delay-discrimination", paths}}, {});
 }
 
-// Published: 61 ms whole, 132 ms front end. 61 +- 24.8 ms holds the one, 264 +- 24.8 ms is twice the other.
-TEST(PublishedFigures, FollowWhereTheIntervalOverPeopleHoldsThePublishedOne) {
+const ClaimRow& rowOf(const ClaimTable& table, const std::string& id) {
+  return *std::find_if(table.rows.begin(), table.rows.end(), [&](const ClaimRow& row) { return row.claim->id == id; });
+}
+
+std::string verdictOn(const ClaimTable& table, const std::string& id) {
+  const ClaimRow& row = rowOf(table, id);
+  return verdictOn(*row.claim, row.evidence);
+}
+
+// Published: 61 +- 15 ms whole, 132 +- 15 ms front end. 61 +- 24.8 ms hits the one and is narrow enough (24.8 < 30), 264 +- 24.8 ms is twice the other.
+TEST(Claims, AFigureFollowsWhereStudiesHitIt) {
   const TemporaryDirectory dir;
-  const PublishedFindings findings = findingsOf(dir, {{51, 61, 71}, {274, 254, 264}}, 4);
-  ASSERT_EQ(findings.figures.size(), 2u);
-  const PublishedFigure &whole = findings.figures[0], &front_end = findings.figures[1];
-  EXPECT_NEAR(whole.mean.mean, 61, 1e-9);
-  EXPECT_NEAR(whole.mean.half_width, 0, 1e-9);  // the same in every experiment
-  EXPECT_EQ(whole.within, 4);
-  EXPECT_EQ(verdictOn(whole), "follows");
-  EXPECT_EQ(front_end.within, 0);
-  EXPECT_EQ(verdictOn(front_end), "no: 2 times");
+  const ClaimTable table = tableOf(dir, {{51, 61, 71}, {274, 254, 264}}, 4);
+  const ClaimEvidence& whole = rowOf(table, "F35").evidence;
+  EXPECT_NEAR(whole.mean_a, 61, 1e-9);
+  EXPECT_NEAR(whole.own_half, 24.84, 0.01);  // t of two degrees of freedom, 4.303, times 10 / sqrt 3
+  EXPECT_EQ(whole.hits, 4);
+  EXPECT_EQ(verdictOn(table, "F35"), "follows");
+  EXPECT_EQ(rowOf(table, "F36").evidence.hits, 0);
+  EXPECT_EQ(verdictOn(table, "F36"), "does not follow: 2 times");
+  EXPECT_EQ(verdictOn(table, "F1"), "not run");
+  EXPECT_EQ(verdictOn(table, "F48"), "-");
 }
 
-TEST(PublishedFigures, HaveNoVerdictOnAFewExperimentsNorWherePeopleGuessed) {
+// Noisy people don't follow the more easily: 61 +- 50 ms hits in every study, but is three times as wide as the published interval.
+TEST(Claims, AFigureOfNoisyPeopleOnlyLooksTheSame) {
+  const TemporaryDirectory dir;
+  EXPECT_EQ(verdictOn(tableOf(dir, {{41, 61, 81}, {132, 132, 132}}, 5), "F35"), "would mostly look the same");
+}
+
+TEST(Claims, HaveNoVerdictOnAFewStudiesNorAFigureWherePeopleGuessed) {
   const TemporaryDirectory few, guessed;
-  EXPECT_EQ(verdictOn(findingsOf(few, {{51, 61, 71}, {51, 61, 71}}, 3).figures[0]), "too few experiments");
-  EXPECT_EQ(verdictOn(findingsOf(guessed, {{51, 61, 71}, {51, 61, 71}, true}, 4).figures[0]), "no threshold");
+  EXPECT_EQ(verdictOn(tableOf(few, {{51, 61, 71}, {51, 61, 71}}, 3), "F35"), "too few studies");
+  EXPECT_EQ(verdictOn(tableOf(guessed, {{51, 61, 71}, {51, 61, 71}, true}, 4), "F35"), "does not follow: no threshold");
 }
 
-// Everybody notices the front end's delay 1 ms later, though people differ by 10: paired it is certain (t = 17), else nobody could tell (t = 0.12).
-TEST(PublishedOrders, AreJudgedWithinPeople) {
-  const TemporaryDirectory dir, reversed;
+// Everybody notices the front end's delay 1 ms later, though people differ by 10: within people certain (t = 17), by the published unpaired test not
+// (t = 0.12).
+TEST(Claims, AnOrderIsJudgedByThePublishedTestWithAPairedOneBeside) {
+  const TemporaryDirectory dir, clear, reversed;
   const Thresholds later{{51, 61, 71}, {52, 62.1, 71.9}};
-  const PublishedFindings findings = findingsOf(dir, later, 4);
-  ASSERT_EQ(findings.orders.size(), 1u);
-  EXPECT_EQ(findings.orders[0].holds, 4);
-  EXPECT_EQ(findings.orders[0].significant, 4);
-  EXPECT_EQ(verdictOn(findings.orders[0]), "follows");
-  const PublishedOrder other = findingsOf(reversed, {later.front_end, later.whole}, 4).orders[0];
-  EXPECT_EQ(other.significant, 0);
-  EXPECT_EQ(verdictOn(other), "the other way round");
+  const ClaimTable table = tableOf(dir, later, 5);
+  EXPECT_EQ(rowOf(table, "F37").evidence.that_way, 5);
+  EXPECT_EQ(rowOf(table, "F37").evidence.significant, 0);
+  EXPECT_EQ(rowOf(table, "F37").evidence.paired, 5);
+  EXPECT_EQ(verdictOn(table, "F37"), "same direction only");
+  EXPECT_EQ(verdictOn(tableOf(clear, {{51, 61, 71}, {132, 142, 122}}, 5), "F37"), "follows");
+  EXPECT_EQ(verdictOn(tableOf(reversed, {later.front_end, later.whole}, 5), "F37"), "reversed");
+}
+
+TEST(Claims, ANullFollowsWithinItsMarginOnly) {
+  Claim null{"F0", "", ClaimKind::kNull, "", ""};
+  null.margin_kind = MarginKind::kDifference;
+  null.margin = 5;
+  ClaimEvidence e;
+  e.studies = 20;
+  e.difference = 2;
+  e.difference_half = 2;
+  EXPECT_EQ(verdictOn(null, e), "follows");
+  e.difference_half = 4;
+  EXPECT_EQ(verdictOn(null, e), "would mostly look the same");
+  e.significant = 18;
+  EXPECT_EQ(verdictOn(null, e), "does not follow");
+  e.significant = 10;
+  EXPECT_EQ(verdictOn(null, e), "can't be told");
+  null.margin_kind = MarginKind::kRatio;  // ln 1.5 = 0.405
+  null.margin = 1.5;
+  e.difference = 0.3;
+  e.difference_half = 0.1;
+  EXPECT_EQ(verdictOn(null, e), "follows");
+}
+
+// A pilot's best verdict, and figures that people's limits came from.
+TEST(Claims, PilotsAndCalibrationsNeverFollow) {
+  ClaimEvidence e;
+  e.studies = e.that_way = e.significant = e.significant_that_way = e.hits = 20;
+  Claim claim{"F0", "", ClaimKind::kOrder, "", ""};
+  claim.test = ClaimTest::kStudent;
+  EXPECT_EQ(verdictOn(claim, e), "follows");
+  claim.mark = ClaimMark::kPilot;
+  EXPECT_EQ(verdictOn(claim, e), "same direction only");
+  claim.mark = ClaimMark::kCalibration;
+  EXPECT_EQ(verdictOn(claim, e), "calibration");
+  claim.mark = ClaimMark::kNotAsPublished;
+  EXPECT_EQ(verdictOn(claim, e), "not run");
+}
+
+// F1 .. F48, each once (a, b, t: parts of one), each with what its kind needs.
+TEST(Claims, AreAllThere) {
+  std::set<int> numbers;
+  std::set<std::string> ids;
+  for (const Claim& c : publishedClaims()) {
+    EXPECT_TRUE(ids.insert(c.id).second) << c.id;
+    numbers.insert(std::stoi(std::string(c.id).substr(1)));
+    EXPECT_TRUE(c.kind != ClaimKind::kNull || c.mark == ClaimMark::kNotAsPublished || c.margin > 0) << c.id;
+    EXPECT_TRUE(c.kind != ClaimKind::kFigure || c.mean > 0) << c.id;
+  }
+  EXPECT_EQ(numbers.size(), 48u);
+  EXPECT_EQ(*numbers.rbegin(), 48);
+}
+
+TEST(Claims, RefusePartsOfTwoCommits) {
+  const TemporaryDirectory dir;
+  SessionInfo info;
+  info.task = "delay-discrimination";
+  info.protocol_json = studyJson(delayStudy());
+  for (const char* commit : {"a", "b"}) {
+    info.commit = commit;
+    SessionWriter::create(dir / commit, info).close();
+  }
+  const std::string error = errorOf([&] { judgeClaims({{"delay-discrimination", {dir / "a", dir / "b"}}}, {}); });
+  EXPECT_TRUE(contains(error, "another commit") && contains(error, "--out")) << error;
 }
 
 // People who need `force` squeezes per sphere without the display and `cld` with it, all in the same time.

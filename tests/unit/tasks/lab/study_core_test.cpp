@@ -36,6 +36,21 @@ TEST(Staircase, StaysWithinItsBoundsAndEndsWithoutAThresholdWhereThereIsNone) {
   EXPECT_TRUE(std::isnan(s.threshold()));
 }
 
+TEST(Counterbalance, AReducedSquareHasItsFirstRowAndColumnInOrder) {
+  const auto rows = reducedLatinSquare(4);
+  for (int k = 0; k < 4; ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    EXPECT_EQ(rows[0][at], k);
+    EXPECT_EQ(rows[at][0], k);
+    Order sorted = rows[at], column;
+    std::sort(sorted.begin(), sorted.end());
+    for (const Order& row : rows) column.push_back(row[at]);
+    std::sort(column.begin(), column.end());
+    EXPECT_EQ(sorted, (Order{0, 1, 2, 3}));
+    EXPECT_EQ(column, (Order{0, 1, 2, 3}));
+  }
+}
+
 TEST(Staircase, NamesWhatIsWrongWithARule) {
   EXPECT_EQ(problemWith({}), "");
   EXPECT_EQ(problemWith({.small_step = -0.1}), "small_step = -0.1 is out of range (0, inf)");

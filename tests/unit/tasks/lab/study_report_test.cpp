@@ -80,6 +80,32 @@ TEST(StudyReport, ThresholdsAreMeansOfTheLastReversalsPerPerson) {
   EXPECT_TRUE(contains(table, "70.0 ± 127.1") && contains(table, "yes")) << table;
 }
 
+// Turns of 0.9/9 and 0.9/99 rad, over and over: n = 10 and 100. The mean of n is 55; the n of the mean angle would be 17.5.
+TEST(StudyReport, CountsSmoothnessInSegmentsAndAveragesThem) {
+  const TemporaryDirectory dir;
+  SessionInfo info;
+  info.task = "smoothness-discrimination";
+  info.protocol_json = studyJson(smoothnessStudy());
+  SessionWriter writer = SessionWriter::create(dir / "a.db", info, {});
+  for (std::int64_t k = 0; k < 20; ++k) {
+    ResponseRecord r;
+    r.trial = k;
+    r.condition = "C1";
+    r.level = 0.9 / (k % 2 ? 99 : 9);
+    r.correct = k % 4 != 0;
+    r.reversal = k >= 9;
+    r.outcome = "answered";
+    writer.finishResponse(r);
+  }
+  writer.close();
+  const SessionReader session(dir / "a.db");
+  const StudySummary s = summariseStudy(session, session.responses());
+  EXPECT_NEAR(s.conditions[0].headline.mean, 55, 1e-9);
+  EXPECT_NEAR(levelShown(s, 55), 180 / M_PI * 0.9 / 54, 1e-12);
+  const std::string table = formatStudyTable(s);
+  EXPECT_TRUE(contains(table, "threshold [segments]") && contains(table, "55.00 (0.95°)") && contains(table, "104")) << table;
+}
+
 TEST(StudyReport, SaysWhereStaircasesNeverSettled) {
   const TemporaryDirectory dir;
   writeDelaySession(dir / "a.db", true);

@@ -107,7 +107,7 @@ TEST(Study, ABladeIsAsSharpAsItsAngleSays) {
   EXPECT_GT(answers[0].contact_share, 0.2);  // strokes of 16 mm take less time than lowering and reading
 }
 
-TEST(Study, PlacesAreShownWhereTheyAreNamed) {
+TEST(Study, PlacesAreFoundAgain) {
   LocalisationStudy study;
   study.participants = 1;
   study.repetitions = 2;
@@ -178,6 +178,50 @@ TEST(Study, WhatTheArmCanDoLimitsTheGateOfAShapeTrial) {
   EXPECT_EQ(trial.gate().peak_torque, devices::SimArm().peakTorque());
 }
 
+// Which sense feels what, as published: facets in both is C3, facets in force alone with the smooth tactor C4; the pilots come after the others.
+TEST(Smoothness, ConditionsAreThePublishedOnes) {
+  using Variant = contact::SurfaceVariant;
+  const ArcStudy study = smoothnessStudy();
+  const auto shown = [&](std::size_t k) { return std::make_pair(study.conditions[k].force, study.conditions[k].tactile); };
+  const std::optional<Variant> parked;
+  EXPECT_EQ(shown(0), std::make_pair(Variant::facet, parked));
+  EXPECT_EQ(shown(1), std::make_pair(Variant::force, parked));
+  EXPECT_EQ(shown(2), std::make_pair(Variant::facet, std::optional(Variant::facet)));
+  EXPECT_EQ(shown(3), std::make_pair(Variant::facet, std::optional(Variant::smooth)));
+  EXPECT_EQ(shown(4), std::make_pair(Variant::smooth, std::optional(Variant::smooth)));
+  EXPECT_EQ(shown(5), std::make_pair(Variant::force, std::optional(Variant::facet)));
+  const std::vector<StudyRun> runs = ArcExperiment(study, {}, 50).runs();
+  ASSERT_EQ(runs.size(), 72u);
+  for (std::size_t p = 0; p < 12; ++p) {
+    EXPECT_EQ(runs[6 * p].condition, study.conditions[p % 4].name) << "a reduced Latin square: its first column in order";
+    EXPECT_EQ(runs[6 * p + 4].condition, "P1");
+    EXPECT_EQ(runs[6 * p + 5].condition, "P2");
+  }
+}
+
+// Strokes go away from and towards the body; the tactor runs along the finger.
+TEST(Smoothness, StrokesGoForeAndAft) {
+  struct Places final : StudySink {
+    void sample(const SampleRecord& s) override {
+      for (std::size_t i = 0; i < 3; ++i) {
+        low[i] = std::min(low[i], s.fingers[0].p_WF[i]);
+        high[i] = std::max(high[i], s.fingers[0].p_WF[i]);
+      }
+    }
+    void event(const EventRecord&) override {}
+    void response(const ResponseRecord&) override {}
+    std::array<double, 3> low{1, 1, 1}, high{-1, -1, -1};
+  };
+  ArcStudy study = smallStudy(smoothnessStudy());
+  study.conditions[0].staircase.most_trials = 1;
+  ArcExperiment experiment(study, {}, 10);
+  Places places;
+  const std::atomic<bool> no{false};
+  runStudy(experiment, 1, {}, places, no);
+  EXPECT_LT(places.high[0] - places.low[0], 1e-3);
+  EXPECT_NEAR(places.high[1] - places.low[1], 2 * 0.12 * std::sin(0.4), 5e-3);  // a hand's spring gives way by a few millimetres
+}
+
 // A finger pressed into the circle by d gets k d outwards, and the tactor goes where the finger touches.
 TEST(PlanarTick, ForceAndPlaceAreThoseOfTheCircle) {
   const auto circle = std::make_shared<const contact::Curve>(contact::arcPolygon(0.1, 1e-3, 1.0), contact::SurfaceVariant::smooth);
@@ -189,13 +233,13 @@ TEST(PlanarTick, ForceAndPlaceAreThoseOfTheCircle) {
   const double a = 0.2, depth = 1e-3;
   devices::ArmSample sample;
   sample.valid = true;
-  sample.p_DF = (0.1 + model.finger_radius - depth) * Vec3(std::sin(a), 0, std::cos(a));
+  sample.p_DF = (0.1 + model.finger_radius - depth) * Vec3(0, std::sin(a), std::cos(a));
   const PlanarStimulus stimulus{circle, circle, 8e-3};
   const std::int64_t allocations = tests::allocationCount();
   const PlanarTickOutput out = planarTick(model, stimulus, state, sample, 0, 1e-3);
   EXPECT_EQ(tests::allocationCount(), allocations);
   EXPECT_NEAR(out.normal_force, model.stiffness * depth, 1e-3);  // the polygon's circle is 1.3e-8 m off: (1e-3)^2 / 8 of 0.1 m
-  EXPECT_NEAR(out.f_D.x(), model.stiffness * depth * std::sin(a), 1e-3);
+  EXPECT_NEAR(out.f_D.y(), model.stiffness * depth * std::sin(a), 1e-3);
   EXPECT_NEAR(out.tactile.place_L.x(), -model.finger_radius * a, 1e-5);
   EXPECT_FALSE(out.tactile.parked);
   EXPECT_TRUE(planarTick(model, {circle, nullptr, 8e-3}, state, sample, 1e-3, 1e-3).tactile.parked);

@@ -96,11 +96,11 @@ TEST(Measurements, RunWhatIsSelectedAndFailTogether) {
   EXPECT_EQ(runWith(list, {.json = true}, out), kExitCheckFailed);
   EXPECT_EQ(parseJson(out, "stdout").array()[1].at("name").text(), "bad");
   EXPECT_EQ(runs, 2);
-  EXPECT_EQ(runWith(list, {.only = "goo"}, out), kExitOk);
+  EXPECT_EQ(runWith(list, {.only = {"goo"}}, out), kExitOk);
   EXPECT_EQ(runs, 3);
   EXPECT_EQ(runWith(list, {.list = true}, out), kExitOk);
   EXPECT_EQ(out, "good\nbad\n");
-  EXPECT_EQ(runWith(list, {.only = "ugly"}, out), kExitUsage);
+  EXPECT_EQ(runWith(list, {.only = {"goo", "ugly"}}, out), kExitUsage);
   EXPECT_EQ(runs, 3);
 }
 
