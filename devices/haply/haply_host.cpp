@@ -73,7 +73,7 @@ ServiceCheck checkService(const ServicePlace& place, double timeout) {
   return {"", *version};
 }
 
-// What comes in during one connection goes to its session, with the time.
+// Hands all that comes in during one connection to its session, with the time.
 class HaplyHost::Life final : public PortSink {
  public:
   Life(HaplyPort& port, HaplySession& session) : port_(port), session_(session) {}
