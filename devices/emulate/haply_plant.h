@@ -3,8 +3,8 @@
 //
 //   p_H = c + Rz(-turn) (x, -z, y)_D         its own words for the mapping, so that the driver's can be wrong
 //
-// What the service tells is of single precision, as there. Dead man: what becomes of the last force when commands end isn't documented;
-// so it is a setting.
+// All numbers that the service tells are of single precision, as there. Dead man: the fate of the last force when commands end isn't
+// documented; so it is a setting.
 #pragma once
 #include <string>
 

@@ -1,6 +1,6 @@
 // haply_arm: one Inverse3 of a HaplyHost as an arm. The tick reads and writes two triple buffers; all texts are the host's thread's.
 //
-// What no page of the maker tells, and nobody here has measured, is absent (mass and damping of the tip) or careful: 2 N at peak until the
+// A figure that no page of the maker tells, and nobody here has measured, is absent (mass and damping of the tip) or careful: 2 N at peak until the
 // arm's calibration says how soon it goes idle by itself (docs/devices/haply.md), 300 N/m for some 2 ms of delay.
 #pragma once
 #include <atomic>

@@ -73,7 +73,7 @@ ServiceCheck checkService(const ServicePlace& place, double timeout) {
   return {"", *version};
 }
 
-// What comes in during one connection goes to its session, with the time.
+// Hands all that comes in during one connection to its session, with the time.
 class HaplyHost::Life final : public PortSink {
  public:
   Life(HaplyPort& port, HaplySession& session) : port_(port), session_(session) {}
@@ -83,7 +83,7 @@ class HaplyHost::Life final : public PortSink {
   void speak(std::int64_t now) {
     for (auto text = session_.next(now); !text.empty(); text = session_.next(now)) {
       last_.writing(true);
-      port_.send(text);
+      if (!LastZero::isLast()) port_.send(text);
       last_.writing(false);
     }
     const bool commands = session_.phase() == SessionPhase::kReady;

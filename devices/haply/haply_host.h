@@ -23,7 +23,7 @@ struct HaplyHostOptions {
   double timeout = 2;                    // of a connection's parts [s]
 };
 
-// What is wrong with the program at the port as Haply's service, as a sentence; its version where nothing is.
+// The reason why the program at the port can't be used as Haply's service, as a sentence; its version where it can.
 struct ServiceCheck {
   std::string problem;
   ServiceVersion version;

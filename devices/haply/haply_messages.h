@@ -41,7 +41,7 @@ class Label {
 
 enum class DeviceFamily : std::uint8_t { kInverse3, kGrip, kWirelessGrip };
 
-// What the service says of a device's settings, in the inventory and in a full state.
+// The settings of a device as the service tells them, in the inventory and in a full state.
 struct DeviceConfig {
   Label type;  // "inverse3", "inverse3x", "minverse", ..
   Label preset, basis, handedness;
@@ -85,7 +85,7 @@ const char* describe(ReadError error);  // a phrase: "a number is out of range"
 // kNone: `message` is sound. Otherwise `message` holds nothing to be used. Any bytes; never throws.
 ReadError readService(std::string_view text, ServiceMessage& message) noexcept;
 
-// What the event channel says, as far as it matters here.
+// An event, as far as it matters here.
 enum class EventLevel : std::uint8_t { kInfo, kNotice, kWarning, kError, kCritical, kPanic };
 struct ServiceEvent {
   Label name;                            // "device-safety-triggered", ..

@@ -17,7 +17,7 @@ struct ServicePlace {
 // "127.0.0.1:10001", "127.0.0.1:10001:10020" with the event channel's port. Absent: it is none, or isn't on this computer.
 std::optional<ServicePlace> servicePlaceOf(std::string_view text);
 
-// What comes in; called from wait().
+// Takes all that comes in; called from wait().
 class PortSink {
  public:
   virtual ~PortSink() = default;

@@ -1,4 +1,4 @@
-// What a session believes of the service's answers: everything here ends in a sample, or in a doubt.
+// A session's belief in the service's answers: everything here ends in a sample, or in a doubt.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -80,7 +80,7 @@ bool endsWith(std::string_view text, std::string_view end) {
 // Of a mount or a transform: what the number at `path` is in the identity.
 double inIdentity(std::string_view path) { return endsWith(path, "rotation.w") || path.find(".scale.") != std::string_view::npos ? 1 : 0; }
 
-// What is told of one device, until its object ends.
+// All that is told of one device, until its object ends.
 struct Slots {
   std::array<double, kNumbers> numbers{};
   std::bitset<kNumbers> told_numbers;

@@ -15,7 +15,7 @@ struct CalibrateArguments {
 
 using NamedValue = std::pair<std::string, double>;
 
-// What --load and --set change, in this order; all of it checked before anything is.
+// The changes of --load and --set, in this order; all of them checked before any is made.
 std::vector<NamedValue> changesOf(const CalibrateArguments& arguments);
 
 // An Inverse3 keeps nothing: its values are in the file alone.

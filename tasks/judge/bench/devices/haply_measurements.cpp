@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <functional>
 #include <iterator>
+#include <limits>
 #include <thread>
 
 #include "pincer/devices/emulate/haply_server.h"
@@ -27,8 +28,9 @@ using devices::emulate::HaplyService;
 using devices::haply::HaplyHost;
 using devices::haply::HaplyHostOptions;
 
-const Vec3 kPush(0, 0, 1);  // [N]
-constexpr int kTimes = 9;   // of which the median is shown
+const Vec3 kPush(0, 0, 1);         // [N]
+constexpr int kTimes = 9;          // of which the median is shown
+constexpr double kForgotten = 50;  // states that still tell of the last fault [ms]
 
 HaplyHostOptions bothArmsOf(const HaplyServer& server) {
   HaplyHostOptions options;
@@ -114,6 +116,7 @@ std::array<double, 2> timeToZero(MeasureContext& context, const std::function<vo
   for (double& time : ms) {
     if (context.interrupted()) break;
     server.setFault(HaplyFault::kNone);
+    sleepMs(kForgotten);
     host.arm(0).arm();
     const auto push = [&] { host.arm(0).commandForce(kPush); };
     for (int i = 0; i < 5000 && server.force(0) < 0.99; ++i) push(), sleepMs(1);
@@ -124,7 +127,8 @@ std::array<double, 2> timeToZero(MeasureContext& context, const std::function<vo
       if (pushes_on) push();
       sleepMs(0.1);
     }
-    time = msSince(begin, server.zeroSince(0));
+    const std::int64_t zero = server.zeroSince(0);
+    time = zero >= begin ? msSince(begin, zero) : std::numeric_limits<double>::infinity();  // it never pushed
     host.arm(0).stop();
     sleepMs(5);
   }

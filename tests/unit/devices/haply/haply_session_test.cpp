@@ -110,7 +110,7 @@ TEST(HaplySession, RendersForcesOnlyOnceArmedAndTheirEchoWasHeard) {
   EXPECT_EQ(wire.force(), 0);
 }
 
-// Whether 3.5 takes "values", and what 3.1 to 3.4 take, isn't documented: both ways work.
+// No page says if 3.5 takes "values", or which spelling 3.1 to 3.4 take: both ways work.
 TEST(HaplySession, FindsTheSpellingThatTheServiceTakes) {
   for (const int minor : {1, 3, 4, 5}) {
     for (const bool vector : {false, true}) {
