@@ -136,15 +136,23 @@ std::string tipForm(const grasp::FingerModel& f, grasp::FingerMethod method) {
   return text;
 }
 
+// One line per body, or per shape where they differ.
+void describeTouch(const engine::WorldModel& world, const std::string& finger, const engine::BodyModel& body,
+                   std::vector<PlanLine>& lines) {
+  const auto shapes = engine::collidersOf(world, body);
+  const std::string first = touchForm(shapes.front());
+  const auto is_alike = [&](const engine::ColliderModel& c) { return touchForm(c) == first; };
+  if (std::all_of(shapes.begin(), shapes.end(), is_alike))
+    return lines.push_back({"touch", fmt::format("{} - {}", finger, body.name), first});
+  for (const engine::ColliderModel& c : shapes)
+    lines.push_back({"touch", fmt::format("{} - {}.{}", finger, body.name, c.name), touchForm(c)});
+}
+
 void describeFinger(const grasp::GraspModel& model, std::size_t finger, grasp::FingerMethod method, std::vector<PlanLine>& lines) {
   const grasp::FingerModel& f = model.fingers[finger];
   lines.push_back({"finger", f.name, fmt::format("{}, {}", tipForm(f, method), couplingForm(f.coupling, model.world.point_forms[finger]))});
   lines.push_back({"arm", f.name, armForm(f, model.world.options.h)});
-  for (const engine::ColliderModel& c : model.world.colliders) {
-    const engine::BodyModel& body = model.world.bodies[static_cast<std::size_t>(c.body)];
-    const std::string name = body.collider_count == 1 ? body.name : fmt::format("{}.{}", body.name, c.name);
-    lines.push_back({"touch", fmt::format("{} - {}", f.name, name), touchForm(c)});
-  }
+  for (const engine::BodyModel& body : model.world.bodies) describeTouch(model.world, f.name, body, lines);
 }
 
 void describeMany(const grasp::GraspModel& model, std::vector<PlanLine>& lines) {

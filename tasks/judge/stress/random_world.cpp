@@ -86,6 +86,8 @@ class Draft {
         return drawSlivers();
       case StressClass::kHeap:
         return drawFalling(6 + static_cast<int>(random_.below(7)), 10, 0.05);
+      case StressClass::kCompounds:
+        return drawCompounds();
       default:
         return drawHeld();
     }
@@ -165,6 +167,24 @@ class Draft {
       start.w_W = anySpin(spin);
       z += 1.8 * size;
     }
+  }
+
+  // Shapes about a body's origin, which overlap or leave gaps; they reach 0.95 sizes from it at most.
+  std::vector<engine::ColliderSpec> anyParts(double size) {
+    std::vector<engine::ColliderSpec> parts;
+    const int count = 2 + static_cast<int>(random_.below(4));
+    for (int i = 0; i < count; ++i) {
+      const Quat q = anyRotation(random_);
+      const Vec3 p = 0.25 * size * anyVector(random_, -1, 1);
+      parts.push_back({fmt::format("part{}", i), anyShape(random_, size * random_.uniform(0.2, 0.6)), Pose{q, p}});
+    }
+    return parts;
+  }
+
+  void drawCompounds() {
+    constexpr double kSize = 0.06;
+    drawFalling(3 + static_cast<int>(random_.below(4)), 10, kSize);
+    for (std::size_t i = 1; i < bodies.size(); ++i) bodies[i].shapes = anyParts(0.75 * kSize);  // so that no two overlap at the start
   }
 
   void drawSlivers() {

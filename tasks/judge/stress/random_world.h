@@ -24,9 +24,10 @@ enum class StressClass {
   kTeleport,   // fingers jump by up to 50 mm now and then
   kNoise,      // fingers tremble by up to 1 mm from tick to tick
   kPads,       // two to four flat pads of 5 to 40 mm close on an object, 10 to 1e4 N/m
+  kCompounds,  // three to six bodies of two to five shapes each fall on a heap
 };
 constexpr std::string_view kStressClassNames[] = {"mass-ratio", "redundant", "overlap",  "spin",  "tick", "inertia",
-                                                  "heap",       "stiffness", "teleport", "noise", "pads"};
+                                                  "heap",       "stiffness", "teleport", "noise", "pads", "compounds"};
 
 struct StressWorld {
   // `threads` solve it (engine::WorldOptions).

@@ -16,6 +16,7 @@ std::vector<Measurement> verifyPads();
 std::vector<Measurement> verifySliding();
 std::vector<Measurement> verifyRolling();
 std::vector<Measurement> verifyFreeBodies();
+std::vector<Measurement> verifyCompounds();
 std::vector<Measurement> verifyToppling();
 std::vector<Measurement> verifyBouncing();
 std::vector<Measurement> verifyMasonry();

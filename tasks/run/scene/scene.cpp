@@ -56,6 +56,8 @@ Scene sceneOf(const JsonValue& json, const std::string& name) {
   if (const JsonValue* v = json.find("gravity")) scene.options.gravity_W = v->vector(ranges::kGravity);
   readTimes(json, scene);
   if (const JsonValue* v = json.find("solver")) readSolver(*v, scene.options);
+  if (const JsonValue* v = json.find("combination"))
+    scene.options.combination = static_cast<engine::Combination>(v->oneOf(keys::kCombinations));
   SceneNames names;
   for (const JsonValue& body : listOf(json.at("bodies", "What is in the world."), kMostBodies)) {
     readBody(body, names, scene);

@@ -1,12 +1,13 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "pincer/contact/smooth_mesh.h"
 #include "pincer/engine/motion/mass.h"
 #include "pincer/tasks/run/scene/scene_keys.h"
 #include "pincer/tasks/run/scene/scene_parts.h"
 
 namespace pincer::tasks {
-namespace {
 
 engine::Material readMaterial(const JsonValue& json) {
   json.allowOnly(keys::kMaterial);
@@ -29,40 +30,25 @@ bool isSupport(const contact::Shape& shape) {
   return std::holds_alternative<contact::HalfSpace>(shape) || std::holds_alternative<contact::Dish>(shape);
 }
 
-bool readDynamic(const JsonValue& json, const contact::Shape& shape) {
-  const JsonValue* fixed = json.find("static");
-  if (const JsonValue* v = json.find("trajectory")) {
-    if (isSupport(shape)) v->reject("doesn't go with this shape: half-spaces and dishes never move. Use a box.");
-    if (fixed) fixed->reject("doesn't go with a trajectory: one of the two says how the body moves. Remove one.");
-    return false;
-  }
-  if (!isSupport(shape)) return !(fixed && fixed->boolean());
-  if (fixed && !fixed->boolean()) fixed->reject("doesn't go with this shape: half-spaces and dishes never move. Remove the key.");
-  return false;
-}
-
 void refuse(const JsonValue& json, std::string_view key, std::string_view because) {
   if (const JsonValue* value = json.find(key)) value->reject(because);
 }
 
-double readMass(const JsonValue& json, const engine::BodySpec& spec) {
+Vec3 readVector(const JsonValue& json, std::string_view key, const NumberRule& rule) {
+  const JsonValue* value = json.find(key);
+  return value ? value->vector(rule) : Vec3::Zero();
+}
+
+std::optional<double> readWeight(const JsonValue& json, const std::function<double()>& volume) {
   const JsonValue* mass = json.find("mass");
   const JsonValue* density = json.find("density");
-  if (!spec.dynamic) {
-    const bool driven = json.find("trajectory") != nullptr;
-    const std::string_view because = driven ? "doesn't go with a trajectory, which the body follows whatever touches it. Remove the key."
-                                            : "doesn't go with a body that never moves. Remove the key.";
-    refuse(json, "mass", because);
-    refuse(json, "density", because);
-    return 0;
-  }
   if (mass && density) density->reject("says again what \"mass\" says. Keep one of the two.");
   if (mass) return mass->number(ranges::kMass);
-  if (!density) json.reject("lacks the key \"mass\" [kg] (or \"density\" [kg/m^3], or \"static\": true).");
+  if (!density) return std::nullopt;
   const double rho = density->number(ranges::kDensity);
   const double weighed = [&] {
     try {
-      return rho * engine::volumeOf(spec.shape);
+      return rho * volume();
     } catch (const InputError& error) {
       density->reject(fmt::format("can't be used: {}", error.what()));
     }
@@ -72,14 +58,70 @@ double readMass(const JsonValue& json, const engine::BodySpec& spec) {
   return weighed;
 }
 
-Vec3 readVector(const JsonValue& json, std::string_view key, const NumberRule& rule) {
-  const JsonValue* value = json.find(key);
-  return value ? value->vector(rule) : Vec3::Zero();
+namespace {
+
+bool hasSupport(const engine::BodySpec& spec) {
+  if (spec.shapes.empty()) return isSupport(spec.shape);
+  return std::any_of(spec.shapes.begin(), spec.shapes.end(), [](const engine::ColliderSpec& part) { return isSupport(part.shape); });
+}
+
+bool readDynamic(const JsonValue& json, bool has_support) {
+  const JsonValue* fixed = json.find("static");
+  if (const JsonValue* v = json.find("trajectory")) {
+    if (has_support) v->reject("doesn't go with this shape: half-spaces and dishes never move. Use a box.");
+    if (fixed) fixed->reject("doesn't go with a trajectory: one of the two says how the body moves. Remove one.");
+    return false;
+  }
+  if (!has_support) return !(fixed && fixed->boolean());
+  if (fixed && !fixed->boolean()) fixed->reject("doesn't go with this shape: half-spaces and dishes never move. Remove the key.");
+  return false;
+}
+
+void refuseWeight(const JsonValue& json, bool driven) {
+  const std::string_view because = driven ? "doesn't go with a trajectory, which the body follows whatever touches it. Remove the key."
+                                          : "doesn't go with a body that never moves. Remove the key.";
+  for (const std::string_view key : {"mass", "density", "inertia"}) refuse(json, key, because);
+  const JsonValue* shapes = json.find("shapes");
+  if (!shapes) return;
+  for (const JsonValue& part : shapes->array()) {
+    for (const std::string_view key : {"mass", "density"}) refuse(part, key, because);
+  }
+}
+
+// Of several shapes, a density is that of those without a mass of their own.
+double readMass(const JsonValue& json, const engine::BodySpec& spec) {
+  if (!spec.dynamic) {
+    refuseWeight(json, json.find("trajectory") != nullptr);
+    return 0;
+  }
+  double given = 0;
+  const auto volume = [&] {
+    if (spec.shapes.empty()) return engine::volumeOf(spec.shape);
+    double sum = 0;
+    for (const engine::ColliderSpec& part : spec.shapes) sum += part.mass > 0 ? 0 : engine::volumeOf(part.shape);
+    return sum;
+  };
+  for (const engine::ColliderSpec& part : spec.shapes) given += part.mass;
+  const std::optional<double> weight = readWeight(json, volume);
+  const bool has_each =
+      !spec.shapes.empty() && std::all_of(spec.shapes.begin(), spec.shapes.end(), [](const auto& part) { return part.mass > 0; });
+  if (!weight && !has_each) json.reject("lacks the key \"mass\" [kg] (or \"density\" [kg/m^3], or \"static\": true).");
+  return !weight ? given : json.find("density") ? given + *weight : *weight;
+}
+
+void readShapes(const JsonValue& json, const std::string& file, engine::BodySpec& spec) {
+  const JsonValue* shapes = json.find("shapes");
+  if (!shapes) {
+    spec.shape = readShape(json.at("shape", "For example {\"type\": \"sphere\", \"radius\": 0.02}."), file);
+    return;
+  }
+  refuse(json, "shape", "doesn't go with \"shapes\". Keep one of the two.");
+  spec.shapes = readParts(*shapes, file);
 }
 
 engine::BodyStart readStart(const JsonValue& json, const engine::BodySpec& spec) {
   engine::BodyStart start;
-  if (std::holds_alternative<contact::HalfSpace>(spec.shape)) {
+  if (spec.shapes.empty() && std::holds_alternative<contact::HalfSpace>(spec.shape)) {
     for (const std::string_view key : {"position", "rotation"})
       refuse(json, key, "doesn't go with a half-space: its shape has \"point\" and \"normal\".");
     start.X_WB = readHalfSpacePose(json.at("shape"));
@@ -102,9 +144,10 @@ void readBody(const JsonValue& json, SceneNames& names, Scene& scene) {
   json.allowOnly(keys::kBody);
   engine::BodySpec spec;
   spec.name = names.readNext(json, fmt::format("body{}", scene.bodies.size()));
-  spec.shape = readShape(json.at("shape", "For example {\"type\": \"sphere\", \"radius\": 0.02}."), scene.file);
-  spec.dynamic = readDynamic(json, spec.shape);
+  readShapes(json, scene.file, spec);
+  spec.dynamic = readDynamic(json, hasSupport(spec));
   spec.mass = readMass(json, spec);
+  if (const JsonValue* inertia = json.find("inertia")) spec.inertia = readInertia(*inertia);
   if (const JsonValue* material = json.find("material")) spec.material = readMaterial(*material);
   engine::BodyStart start = readStart(json, spec);
   if (const JsonValue* trajectory = json.find("trajectory")) {

@@ -7,12 +7,18 @@ namespace pincer::tasks::keys {
 
 using Word = std::string_view;
 
-inline constexpr std::array<Word, 12> kScene = {"version", "description", "gravity", "tick",    "duration", "solver",
-                                                "bodies",  "pairs",       "joints",  "fingers", "record",   "expect"};
+inline constexpr std::array<Word, 13> kScene = {"version",     "description", "gravity", "tick",    "duration", "solver", "bodies",
+                                                "combination", "pairs",       "joints",  "fingers", "record",   "expect"};
 inline constexpr std::array<Word, 8> kSolver = {"tolerance",          "accuracy",  "max_contacts", "contact_margin",
                                                 "position_tolerance", "max_parts", "sleep",        "budget"};
-inline constexpr std::array<Word, 11> kBody = {"name",       "shape",    "static",           "mass",    "density", "position", "rotation",
-                                               "trajectory", "velocity", "angular_velocity", "material"};
+inline constexpr std::array<Word, 13> kBody = {"name",    "shape",    "shapes",   "static",     "mass",     "density",
+                                               "inertia", "position", "rotation", "trajectory", "velocity", "angular_velocity",
+                                               "material"};
+inline constexpr std::array<Word, 9> kPart = {"name", "shape", "pieces", "position", "rotation", "mass", "density", "material", "collides"};
+inline constexpr std::array<Word, 3> kPieces = {"file", "units", "scale"};
+inline constexpr std::array<Word, 2> kCollides = {"as", "with"};
+inline constexpr std::array<Word, 4> kInertia = {"center", "moments", "products", "rotation"};
+inline constexpr std::array<Word, 2> kCombinations = {"geometric_mean", "maximum"};
 inline constexpr std::array<Word, 1> kBodyTrajectory = {"keyframes"};
 inline constexpr std::array<Word, 3> kBodyKeyframe = {"time", "position", "rotation"};
 inline constexpr std::array<Word, 6> kJoint = {"type", "body", "to", "point", "axis", "damping"};

@@ -1,6 +1,9 @@
 // scene_parts: the parts of a scene file, each read by a page of its own. Used by scene.cpp alone.
 #pragma once
+#include <functional>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <unordered_map>
 #include <vector>
 
@@ -12,6 +15,9 @@ namespace pincer::tasks {
 
 // `file` is the scene's own name: files that it names are relative to its folder.
 std::string besideScene(const std::string& file, const std::string& name);
+
+// Refuses at `place` what isn't letters, digits, - and _, or is too long.
+void requireName(const std::string& name, const JsonValue& place);
 
 // The bodies and fingers of a scene by their names, while it is read.
 class SceneNames {
@@ -25,9 +31,21 @@ class SceneNames {
   std::unordered_map<std::string, int> index_;  // bodies come before fingers
 };
 
+// The mass of what has this volume [m^3], by "mass" or "density"; nothing if neither is there.
+std::optional<double> readWeight(const JsonValue& json, const std::function<double()>& volume);
+void refuse(const JsonValue& json, std::string_view key, std::string_view because);
+Vec3 readVector(const JsonValue& json, std::string_view key, const NumberRule& rule);  // zero if there is none
+bool isSupport(const contact::Shape& shape);                                           // half-spaces and dishes
+engine::Material readMaterial(const JsonValue& json);
+// The entries of a body's "shapes".
+std::vector<engine::ColliderSpec> readParts(const JsonValue& json, const std::string& file);
+engine::GivenInertia readInertia(const JsonValue& json);
+
 // Adds one body and its start to `scene`.
 void readBody(const JsonValue& json, SceneNames& names, Scene& scene);
 contact::Shape readShape(const JsonValue& json, const std::string& file);
+// The convex pieces of a file.
+std::vector<contact::Shape> readPieces(const JsonValue& json, const std::string& file);
 // Pose of a half-space in W, from its normal and a point on it.
 Pose readHalfSpacePose(const JsonValue& shape);
 

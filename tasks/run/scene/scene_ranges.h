@@ -47,6 +47,10 @@ inline constexpr NumberRule kContactMargin = {.min = 1e-6, .max = 1, .remedy = "
 inline constexpr NumberRule kMass = {.min = kLightest, .max = kHeaviest, .remedy = "Masses are in kilograms: 75 g is 0.075."};
 inline constexpr NumberRule kDensity = {
     .min = 1e-3, .max = 1e5, .remedy = "Densities are in kg/m^3: water 1000, ABS plastic 1050, aluminium 2700."};
+inline constexpr NumberRule kMoment = {
+    .min = 1e-24, .max = 1e12, .remedy = "Moments of inertia are in kg m^2: a ball of 75 g and 20 mm has 1.2e-5."};
+inline constexpr NumberRule kProduct = {
+    .min = -1e12, .max = 1e12, .remedy = "Products of inertia are in kg m^2, minus the integrals of x y."};
 inline constexpr NumberRule kVelocity = {.min = -kFastest, .max = kFastest, .remedy = "Velocities are in m/s."};
 inline constexpr NumberRule kSpin = {.min = -kFastestSpin, .max = kFastestSpin, .remedy = "Angular velocities are in rad/s."};
 inline constexpr NumberRule kFriction = {

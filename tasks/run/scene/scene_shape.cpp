@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "pincer/contact/mesh/convex_pieces.h"
 #include "pincer/contact/mesh/lathe.h"
 #include "pincer/contact/mesh_reader.h"
 #include "pincer/contact/mesh_report.h"
@@ -162,6 +163,19 @@ contact::Shape readShape(const JsonValue& json, const std::string& file) {
   if (name == "mesh") return readMesh(json, file);
   if (name == "convex") return readConvex(json, file);
   return contact::HalfSpace{};
+}
+
+std::vector<contact::Shape> readPieces(const JsonValue& json, const std::string& file) {
+  json.allowOnly(keys::kPieces);
+  try {
+    const contact::TriangleMesh triangles = readTriangles(json, file);
+    requireSize(triangles.vertices, json);
+    std::vector<contact::Shape> shapes;
+    for (auto& hull : contact::hullsOfPieces(triangles)) shapes.emplace_back(contact::Convex{std::move(hull)});
+    return shapes;
+  } catch (const InputError& error) {
+    json.reject(fmt::format("can't be used: {}", error.what()));
+  }
 }
 
 Pose readHalfSpacePose(const JsonValue& shape) {

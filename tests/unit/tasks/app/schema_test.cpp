@@ -40,6 +40,13 @@ const std::map<std::string, Place> kPlaces = {
     {"pad_tip.scale", {{{"type", "\"pad\""}, {"file", "\"none.obj\""}, {"units", "\"mm\""}}, kTipStart, kBodyEnd}},
     {"scene", {{{"version", "1"}, {"duration", "1"}, {"bodies", "[]"}}, "", ""}},
     {"solver", {{}, R"({"version": 1, "duration": 1, "bodies": [], "solver": )", "}"}},
+    {"part", {{{"shape", kSphere}}, R"({"version": 1, "duration": 1, "bodies": [{"mass": 1, "shapes": [)", "]}]}"}},
+    {"pieces",
+     {{{"file", "\"none.obj\""}, {"units", "\"mm\""}},
+      R"({"version": 1, "duration": 1, "bodies": [{"mass": 1, "shapes": [{"pieces": )",
+      "}]}]}"}},
+    {"collides",
+     {{}, R"({"version": 1, "duration": 1, "bodies": [{"mass": 1, "shapes": [{"shape": )" + kSphere + R"(, "collides": )", "}]}]}"}},
     {"body", {{{"shape", kSphere}}, R"({"version": 1, "duration": 1, "bodies": [)", "]}"}},
     {"body_keyframe",
      {{{"time", "0"}}, R"({"version": 1, "duration": 1, "bodies": [{"shape": )" + kSphere + R"(, "trajectory": {"keyframes": [)", "]}}]}"}},
@@ -172,7 +179,7 @@ TEST(StudySchema, RefusesWithTheLineWhatIsOutOfRange) {
 TEST(SchemaReference, HasARowPerKeyWithRangeDefaultAndMeaning) {
   const std::string page = tests::runPincer({"schema", "scene", "--markdown"}).out;
   EXPECT_TRUE(contains(page, "| `tick` | number in [1e-05, 0.01] | `0.001` |")) << page.substr(0, 2000);
-  EXPECT_TRUE(contains(page, "| `shape` | [shape](#shape) | needed |"));
+  EXPECT_TRUE(contains(page, "| `shape` | [shape](#shape) |  | needed, unless there are shapes |"));
   EXPECT_TRUE(contains(page, "\n## finger.arm\n"));
   EXPECT_TRUE(contains(tests::runPincer({"schema", "delay-discrimination", "--markdown"}).out,
                        "| `strokes` | whole number in [2, 100] | `4` | per interval"));
