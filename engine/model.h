@@ -55,6 +55,7 @@ struct ColliderModel {
 struct BodyModel {
   std::string name;
   int first_collider = 0, collider_count = 1;  // its shapes, of WorldModel::colliders
+  bool is_plane = false;                       // the only one is a half-space whose frame is B
   bool dynamic = true;                         // false: never moves, or is driven
   bool driven = false;                         // follows the motion that the caller gives, whatever touches it
   int motion = -1;                             // of driven bodies: which of the inputs

@@ -170,6 +170,7 @@ BodyModel bodyFor(const BodySpec& spec, const std::vector<ColliderModel>& collid
   BodyModel body;
   body.name = spec.name;
   body.collider_count = static_cast<int>(colliders.size());
+  body.is_plane = colliders.size() == 1 && std::holds_alternative<contact::HalfSpace>(colliders[0].shape) && !colliders[0].is_posed;
   body.dynamic = spec.dynamic;
   body.driven = spec.driven;
   if (spec.dynamic) setInertia(spec, body);

@@ -6,7 +6,6 @@
 #include "pincer/contact/functions/invariants.h"
 #include "pincer/contact/surface/bullet_memory.h"
 #include "pincer/engine/world/broad_phase.h"
-#include "pincer/engine/world/colliders.h"
 #include "pincer/engine/world/scratch.h"
 
 namespace pincer::engine {
@@ -39,8 +38,7 @@ bool overlap(const btBroadphaseProxy& x, const btBroadphaseProxy& y) {
 
 // A half-space's far side is all that matters of it.
 bool isNear(const WorldModel& model, const WorldScratch& scratch, int unbounded, int body) {
-  const ColliderModel* const lone = loneCollider(model, model.bodies[unbounded]);
-  if (!lone || !isPlane(*lone)) return true;
+  if (!model.bodies[unbounded].is_plane) return true;
   const BodyScratch &plane = scratch.bodies[unbounded], &s = scratch.bodies[body];
   const double height = plane.R_WB_mid.col(2).dot(s.X_WI_mid.p - plane.X_WB_mid.p);
   const double speed = (s.start.v_W - plane.start.v_W).norm();

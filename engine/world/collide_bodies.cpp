@@ -12,17 +12,14 @@ namespace pincer::engine {
 namespace {
 
 // Whether `plane` is a half-space that is further than `margin` from b's bounding sphere.
-bool isOver(const WorldModel& model, const BodyModel& plane, const BodyModel& b, const BodyScratch& s_plane, const BodyScratch& sb,
-            double margin) {
-  const ColliderModel* const lone = loneCollider(model, plane);
-  return lone && isPlane(*lone) && s_plane.R_WB_mid.col(2).dot(sb.X_WI_mid.p - s_plane.X_WB_mid.p) > b.bounding_radius + margin;
+bool isOver(const BodyModel& plane, const BodyModel& b, const BodyScratch& s_plane, const BodyScratch& sb, double margin) {
+  return plane.is_plane && s_plane.R_WB_mid.col(2).dot(sb.X_WI_mid.p - s_plane.X_WB_mid.p) > b.bounding_radius + margin;
 }
 
-bool boundsTouch(const WorldModel& model, const BodyModel& a, const BodyModel& b, const BodyScratch& sa, const BodyScratch& sb,
-                 double margin) {
+bool boundsTouch(const BodyModel& a, const BodyModel& b, const BodyScratch& sa, const BodyScratch& sb, double margin) {
   const double reach = a.bounding_radius + b.bounding_radius + margin;
   if ((sa.X_WI_mid.p - sb.X_WI_mid.p).squaredNorm() > reach * reach) return false;
-  return !isOver(model, a, b, sa, sb, margin) && !isOver(model, b, a, sb, sa, margin);
+  return !isOver(a, b, sa, sb, margin) && !isOver(b, a, sb, sa, margin);
 }
 
 double cornerSpeed(const BodyModel& body, const BodyScratch& s) {
@@ -67,7 +64,7 @@ void collidePair(const WorldModel& model, const WorldState& state, const BodyPai
   const double speed = (sa.start.v_W - sb.start.v_W).norm();
   const double turning = model.has_corners ? cornerSpeed(a, sa) + cornerSpeed(b, sb) : 0;
   const double margin = model.options.contact_margin + h * std::max(speed, 0.5 * (speed + turning)) + sa.flung + sb.flung;
-  if (!boundsTouch(model, a, b, sa, sb, margin)) return;
+  if (!boundsTouch(a, b, sa, sb, margin)) return;
   noteFastPair(model, pair.a, pair.b, scratch);
   const auto collide = [&](const ColliderModel& ca, const Pose& X_WA, const ColliderModel& cb, const Pose& X_WB) {
     chargeQuery(ca, cb, scratch);

@@ -26,13 +26,17 @@ bool areApart(const ColliderModel& a, const Pose& X_WA, const ColliderModel& b, 
 template <class F>
 void forEachNearShapes(const WorldModel& model, const BodyModel& a, const Pose& X_WA, const BodyModel& b, const Pose& X_WB, double margin,
                        F f) {
-  const bool are_lone = a.collider_count == 1 && b.collider_count == 1;  // the bodies' own bounds have been looked at
+  const ColliderModel *const lone_a = loneCollider(model, a), *const lone_b = loneCollider(model, b);
+  if (lone_a && lone_b) {  // whose bounds are the bodies', which have been looked at
+    if (mayTouch(lone_a->bits, lone_b->bits)) f(*lone_a, X_WA, *lone_b, X_WB);
+    return;
+  }
   for (const ColliderModel& ca : collidersOf(model, a)) {
     const Pose X_WSa = poseOf(ca, X_WA);
     for (const ColliderModel& cb : collidersOf(model, b)) {
       if (!mayTouch(ca.bits, cb.bits)) continue;
       const Pose X_WSb = poseOf(cb, X_WB);
-      if (are_lone || !areApart(ca, X_WSa, cb, X_WSb, margin)) f(ca, X_WSa, cb, X_WSb);
+      if (!areApart(ca, X_WSa, cb, X_WSb, margin)) f(ca, X_WSa, cb, X_WSb);
     }
   }
 }

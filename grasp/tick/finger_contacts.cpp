@@ -35,7 +35,8 @@ class FingerLook {
     const std::size_t first = scratch_.world.contacts.size();
     for (const engine::ColliderModel& c : engine::collidersOf(model_.world, b)) {
       const Vec3 p_WS = mid.X_WB_mid.p + mid.R_WB_mid * c.X_BS.p;
-      at({c, mid, p_WS, mid.R_WB_mid * c.X_BS.q.toRotationMatrix()}, p_WS, c.bounding_radius);
+      const Mat3 R_WS = mid.R_WB_mid * c.X_BS.q.toRotationMatrix();
+      at({c, mid, p_WS, R_WS}, p_WS, c.bounding_radius);
     }
     engine::thinContacts(first, scratch_.world);
   }
@@ -51,8 +52,8 @@ class FingerLook {
   struct Place {
     const engine::ColliderModel& collider;
     const engine::BodyScratch& mid;  // of its body
-    Vec3 p_WS;
-    Mat3 R_WS;
+    const Vec3& p_WS;
+    const Mat3& R_WS;
   };
 
   // Its bounds are a sphere about `centre_W`.
