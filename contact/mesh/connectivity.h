@@ -3,8 +3,9 @@
 //   n_corner = normalised sum over the corner's fan of  (e_i x f_i / |e_i||f_i|) (|e_i||f_i|)^p,   e_i, f_i  a triangle's two edges there [m]
 //   p = -1 where the fan's edges are of about one length (up to 2 : 1), +1 where they aren't (from 6 : 1), between in the logarithm
 //
-// Edge i of a triangle goes from its corner i to corner (i + 1) mod 3. A fan is the triangles around a vertex between two sharp edges, so a
-// vertex on a crease has several normals. Where the file has usable normals their mean replaces that sum, and an edge is sharp where the two
+// Triangles of the fan that lie in one plane count as one facet, with the outer two of their edges: a quad weighs the same whichever way its
+// diagonal runs. Edge i of a triangle goes from its corner i to corner (i + 1) mod 3. A fan is the triangles around a vertex between two
+// sharp edges, so a vertex on a crease has several normals. Where the file has usable normals their mean replaces that sum, and an edge is sharp where the two
 // sides' normals differ at an end by more than kSameNormal; elsewhere, where the file has smoothing groups, it is sharp unless both sides
 // are in the same one or in one plane (within kSameNormal); elsewhere where the facets' angle exceeds the crease angle.
 // A fan that ends at a sharp edge sees one side of its vertex only, and its facets' mean would lean away from the edge by half a facet's

@@ -14,6 +14,7 @@ constexpr double kFarthestMirror = 0.35;  // [rad] 20 degrees: further away the 
 constexpr double kCancelled = 1e-6;  // opposite facets cancel; what is left below this has no direction
 
 using Normals = std::vector<std::array<Vec3, 3>>;
+using Sharp = std::vector<std::array<bool, 3>>;
 
 class CornerNormalFinder {
  public:
@@ -36,7 +37,7 @@ class CornerNormalFinder {
       for (std::size_t i = 0; i < 3; ++i) result.sharp[t][i] = isSharp(t, i, crease_angle);
     }
     const Fans fans = findFans(result.sharp);
-    result.normals = averageOverFans(fans);
+    result.normals = averageOverFans(fans, result.sharp);
     continueToCreases(fans, result.normals);
     continueToCreaseEnds(fans, result.normals);
     return result;
@@ -67,7 +68,8 @@ class CornerNormalFinder {
   enum class FanEnd { none, straight, corner };
 
   struct Fan {
-    Vec3 out = Vec3::Zero(), in = Vec3::Zero();  // unit directions to the other ends of its first and last edge, if sharp
+    Vec3 out = Vec3::Zero(), in = Vec3::Zero();               // unit directions to the other ends of its first and last edge, if sharp
+    double crease = std::numeric_limits<double>::infinity();  // length of the shorter of the two [m]
     double shortest = std::numeric_limits<double>::infinity(), longest = 0;  // of its edges at the vertex [m]
 
     // The exponent p of the edges' lengths in the weights.
@@ -101,8 +103,14 @@ class CornerNormalFinder {
       const std::size_t t = c / 3, i = c % 3;
       fans.of_corner[c] = static_cast<std::size_t>(sets.find(static_cast<std::int32_t>(c)));
       Fan& fan = fans.fan[fans.of_corner[c]];
-      if (sharp[t][i]) fan.out = direction(t, i, i + 1);
-      if (sharp[t][(i + 2) % 3]) fan.in = direction(t, i, i + 2);
+      if (sharp[t][i]) {
+        fan.out = direction(t, i, i + 1);
+        fan.crease = std::min(fan.crease, side(t, i, i + 1).norm());
+      }
+      if (sharp[t][(i + 2) % 3]) {
+        fan.in = direction(t, i, i + 2);
+        fan.crease = std::min(fan.crease, side(t, i, i + 2).norm());
+      }
       for (const std::size_t j : {i + 1, i + 2}) {
         const double length = (corner(t, j) - corner(t, i)).norm();
         fan.shortest = std::min(fan.shortest, length);
@@ -112,20 +120,66 @@ class CornerNormalFinder {
     return fans;
   }
 
-  Vec3 weightedNormal(std::size_t t, std::size_t i, const Fan& fan) const {
-    const Vec3 e = corner(t, i + 1) - corner(t, i), f = corner(t, i + 2) - corner(t, i);
+  static Vec3 weightedNormal(const Vec3& e, const Vec3& f, const Fan& fan) {
     const double ef = e.norm() * f.norm();
     return e.cross(f) / ef * math::pow(ef / (fan.longest * fan.longest), fan.exponent());
   }
+  Vec3 side(std::size_t t, std::size_t from, std::size_t to) const { return corner(t, to) - corner(t, from); }
 
-  Normals averageOverFans(const Fans& fans) const {
+  // True if the triangle goes on in one plane, and in one fan, across its edge.
+  bool isFlatAcross(std::size_t t, std::size_t edge, const Sharp& sharp) const {
+    constexpr double kFlat = 2e-3;  // [rad]: what rounding in a file makes of a plane; beyond, triangles are facets of their own
+    const std::int32_t other = neighbours_[t][edge].triangle;
+    if (other < 0 || sharp[t][edge]) return false;
+    return facet_normals_[t].cross(facet_normals_[static_cast<std::size_t>(other)]).squaredNorm() < kFlat * kFlat;
+  }
+
+  // The weighted normals of the fans' facets, one per corner c = 3 t + i. What lies in one plane is one facet, of the outer two of its edges:
+  // else a quad would weigh as one triangle or as two, as its diagonal happens to run, and normals lean to one side of a cylinder's rim.
+  std::vector<Vec3> facetsOf(const Fans& fans, const Sharp& sharp) const {
+    std::vector<Vec3> weighted(fans.of_corner.size(), Vec3::Zero());
+    std::vector<bool> done(fans.of_corner.size());
+    for (std::size_t c = 0; c < weighted.size(); ++c) {
+      if (isFlatAcross(c / 3, c % 3, sharp) || !isFlatAcross(c / 3, (c % 3 + 2) % 3, sharp)) continue;
+      weighted[c] = planeFrom(c, fans, sharp, done);
+    }
+    for (std::size_t c = 0; c < weighted.size(); ++c) {
+      if (!done[c]) weighted[c] = weightedNormal(side(c / 3, c % 3, c % 3 + 1), side(c / 3, c % 3, c % 3 + 2), fans.fan[fans.of_corner[c]]);
+    }
+    return weighted;
+  }
+
+  // Of the plane that begins, counter-clockwise around the vertex, at corner c; zero, with nothing done, if it takes half the way around.
+  Vec3 planeFrom(std::size_t c, const Fans& fans, const Sharp& sharp, std::vector<bool>& done) const {
+    constexpr double kHalfWay = -0.9;  // cosine
+    const Vec3 e = side(c / 3, c % 3, c % 3 + 1);
+    std::vector<std::size_t> corners = {c};
+    double turn = 0;  // counted in right angles, roughly
+    for (std::size_t t = c / 3, i = c % 3;;) {
+      const Vec3 first = direction(t, i, i + 1), last = direction(t, i, i + 2);
+      turn += 1 - first.dot(last);
+      const std::size_t edge = (i + 2) % 3;
+      if (!isFlatAcross(t, edge, sharp) || turn > 2) {
+        const Vec3 f = side(t, i, i + 2);
+        if (turn > 2 || e.normalized().dot(last) < kHalfWay) return Vec3::Zero();
+        for (const std::size_t each : corners) done[each] = true;
+        return weightedNormal(e, f, fans.fan[fans.of_corner[c]]);
+      }
+      const Neighbour next = neighbours_[t][edge];
+      t = static_cast<std::size_t>(next.triangle);
+      i = static_cast<std::size_t>(next.edge);
+      corners.push_back(3 * t + i);
+    }
+  }
+
+  Normals averageOverFans(const Fans& fans, const Sharp& sharp) const {
     const std::size_t corners = fans.of_corner.size();
     std::vector<Vec3> from_file(corners, Vec3::Zero()), from_facets(corners, Vec3::Zero());
     std::vector<double> weight(corners, 0);
+    const std::vector<Vec3> facets = facetsOf(fans, sharp);
     for (std::size_t c = 0; c < corners; ++c) {
-      const Vec3 weighted = weightedNormal(c / 3, c % 3, fans.fan[fans.of_corner[c]]);
-      from_facets[fans.of_corner[c]] += weighted;
-      weight[fans.of_corner[c]] += weighted.norm();
+      from_facets[fans.of_corner[c]] += facets[c];
+      weight[fans.of_corner[c]] += facets[c].norm();
       if (const Vec3* n = fileNormal(c / 3, c % 3)) from_file[fans.of_corner[c]] += *n;
     }
     Normals normals(mesh_.triangles.size());
@@ -138,10 +192,11 @@ class CornerNormalFinder {
 
   static Vec3 mirrored(const Vec3& n, const Vec3& along) { return n - 2 * n.dot(along) * along; }
 
-  // Fans that end straight take the normal of whole neighbours that lie most squarely across the crease.
+  // Fans that end straight take the normal of whole neighbours that lie most squarely across the crease: the least along it. (By angles, the
+  // far end of a long quad's diagonal would be as square as its side's, and what is mirrored across that doesn't turn with the surface.)
   void continueToCreases(const Fans& fans, Normals& normals) const {
-    constexpr double kAsSquare = 0.1;  // cosine
-    std::vector<double> least_along(fans.fan.size(), 2);
+    constexpr double kAsSquare = 0.1;  // of the crease's edges there
+    std::vector<double> least_along(fans.fan.size(), std::numeric_limits<double>::infinity());
     std::vector<Vec3> sum(fans.fan.size(), Vec3::Zero());
     for (std::size_t c = 0; c < fans.of_corner.size(); ++c) {
       const std::size_t t = c / 3, i = c % 3, fan = fans.of_corner[c];
@@ -150,7 +205,7 @@ class CornerNormalFinder {
       for (const std::size_t j : {(i + 1) % 3, (i + 2) % 3}) {
         if (fans.fan[fans.of_corner[3 * t + j]].end() != FanEnd::none) continue;
         const Vec3 g = direction(t, i, j);
-        const double along = std::abs(g.dot(crease));
+        const double along = std::abs(side(t, i, j).dot(crease)) / fans.fan[fan].crease;
         if (along > least_along[fan] + kAsSquare) continue;
         if (along < least_along[fan] - kAsSquare) sum[fan].setZero();
         least_along[fan] = std::min(along, least_along[fan]);

@@ -101,7 +101,7 @@ TEST(SurfaceNet, DerivativesAreThoseOfThePatch) {
     EXPECT_LT(((pv.S - mv.S) / (2 * e) - x.Sv).norm(), 1e-10);
     EXPECT_LT(((pu.N - mu.N) / (2 * e) - x.Nu).norm(), 1e-9);
     EXPECT_LT(((pv.N - mv.N) / (2 * e) - x.Nv).norm(), 1e-9);
-    EXPECT_LT((place(p, u, v) - x.S).norm(), 1e-17);
+    EXPECT_LT((place(p, u, v) - x.S).norm(), 3e-17);  // 4 ulp of 40 mm
   }
 }
 

@@ -193,7 +193,7 @@ TEST(SurfaceVariants, AnswerEverywhereWithoutAllocating) {
         const Vec3 C = random.uniform(0, 0.06) * direction(random);
         const SurfaceContacts found = object->querySphere(C, kFinger, 0, tracker, cache);
         ASSERT_TRUE(found.main().p_BS.allFinite() && std::isfinite(found.main().phi)) << mesh.source;
-        ASSERT_NEAR(found.main().n_B.norm(), 1, 1e-14);
+        ASSERT_NEAR(found.main().n_B.norm(), 1, 1e-13);  // within microns of the surface the way to the centre has fewer digits
       }
       EXPECT_TRUE(!pincer::tests::allocationsAreCounted() || pincer::tests::allocationCount() == before);
     }
