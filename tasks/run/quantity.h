@@ -30,8 +30,13 @@ struct Quantity {
   std::string name;                    // as in the file
   const QuantityKind* kind = nullptr;  // never null in a scene that was read
   std::size_t index = 0;               // of the body or finger
+  int taxel = -1;                      // of a finger's pressure map, row by row; -1: the quantity isn't one of these
 
-  double measure(const Moment& moment) const { return kind->measure(moment, index); }
+  double measure(const Moment& moment) const {
+    if (taxel < 0) return kind->measure(moment, index);
+    const std::span<const grasp::Taxel> map = moment.fingers[index].pressure;
+    return map.empty() ? 0 : map[static_cast<std::size_t>(taxel)].normal;  // empty before the first tick
+  }
 };
 
 std::span<const QuantityKind> worldQuantities();

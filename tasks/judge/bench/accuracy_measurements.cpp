@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "pincer/contact/generated_meshes.h"
+#include "pincer/contact/mesh/lathe.h"
 #include "pincer/contact/surface/surface_net.h"
 #include "pincer/tasks/judge/bench/contact_bench.h"
 #include "pincer/tasks/judge/bench/objects.h"
@@ -49,6 +51,62 @@ std::vector<Record> cylinderErrors() {
   }
   return {atMost("position error", 1e6 * position, "um", 0.5), atMost("direction error", direction / kDegree, "deg", 0.02),
           atMost("depth ripple", 1e6 * ripple, "um", 0.5)};
+}
+
+// Round about the z axis: the radius at height z, and the latitude of its normal.
+struct RoundPlace {
+  double radius, z, latitude;  // [m], [m], [rad]
+};
+
+// The slowest and the fastest of the contact on its way around, over the true speed: a maximum alone would pass a contact that halts.
+std::vector<Record> speedsAround(const contact::TriangleMesh& mesh, const std::vector<RoundPlace>& places, double from, double slowest_bound,
+                                 double fastest_bound) {
+  constexpr double kDepth = 0.0015;
+  constexpr int kSteps = 5000;
+  const auto surface = SmoothMesh::build(mesh);
+  double slowest = std::numeric_limits<double>::infinity(), fastest = 0;
+  for (const RoundPlace& at : places) {
+    BenchFinger finger;
+    const double h = kBenchFinger - kDepth, reach = at.radius + h * std::cos(at.latitude), way = 2 * (M_PI - from);
+    Vec3 last = Vec3::Zero();
+    for (int i = 0; i <= kSteps; ++i) {
+      const double angle = from + way * i / kSteps;
+      const Vec3 C(reach * std::cos(angle), reach * std::sin(angle), at.z + h * std::sin(at.latitude));
+      const Vec3 p = finger.on(*surface, C).main().p_BS;
+      const double speed = (p - last).norm() * kSteps / (at.radius * way);
+      if (i > 0) slowest = std::min(slowest, speed);
+      if (i > 0) fastest = std::max(fastest, speed);
+      last = p;
+    }
+  }
+  return {atLeast("slowest", slowest, "-", slowest_bound), atMost("fastest", fastest, "-", fastest_bound)};
+}
+
+// Rows of quads between the rims: CAD programs and lathes write one.
+std::vector<Record> cylinderSpeeds(int rows) {
+  return speedsAround(contact::cylinder(0.025, 0.03, 50, rows), {{0.025, 0, 0}, {0.025, 0.02, 0}, {0.025, 0.029, 0}}, 0, 0.999, 1.001);
+}
+std::vector<Record> flatSpeeds(int rows) {
+  const double crease = std::acos(0.015 / 0.025) + 1e-3;
+  return speedsAround(contact::cylinderWithFlat(0.025, 0.03, 0.015, 48, rows), {{0.025, 0, 0}, {0.025, 0.02, 0}, {0.025, 0.029, 0}}, crease,
+                      0.999, 1.001);
+}
+// A long quad of a cone is no rectangle: its diagonal's middle isn't half way around, and no edge knows that. Refine such meshes.
+std::vector<Record> coneSpeeds(int rows, double off) {
+  constexpr double kBottom = 0.03, kTaper = 0.015, kHeight = 0.04;
+  std::vector<Vec2> profile = {{0, -kHeight / 2}};
+  for (int k = 0; k <= rows; ++k) profile.push_back({kBottom - kTaper * k / rows, kHeight * (static_cast<double>(k) / rows - 0.5)});
+  profile.push_back({0, kHeight / 2});
+  std::vector<RoundPlace> places;
+  for (const double z : {-0.012, 0.0, 0.012}) {
+    places.push_back({kBottom - kTaper * (z / kHeight + 0.5), z, std::atan(kTaper / kHeight)});
+  }
+  return speedsAround(contact::lathe(profile, 48), places, 0, 1 - off, 1 + off);
+}
+std::vector<Record> uvSphereSpeeds() {
+  std::vector<RoundPlace> places;
+  for (const double latitude : {0.1, 0.3, 0.6, 0.9, 1.2}) places.push_back({0.02 * std::cos(latitude), 0.02 * std::sin(latitude), latitude});
+  return speedsAround(contact::uvSphere(0.02, 12, 24), places, 0, 0.998, 1.002);
 }
 
 // Barycentric coordinates 1 and 2 of the place at `s` along edge `i`.
@@ -120,6 +178,16 @@ std::vector<Measurement> accuracyMeasurements() {
   return {{"accuracy/sphere-80", [](MeasureContext&) { return sphereErrors(1, 15); }},
           {"accuracy/sphere-320", [](MeasureContext&) { return sphereErrors(2, 1); }},
           {"accuracy/cylinder-15deg", [](MeasureContext&) { return cylinderErrors(); }},
+          {"accuracy/speed-cylinder-1-row", [](MeasureContext&) { return cylinderSpeeds(1); }},
+          {"accuracy/speed-cylinder-2-rows", [](MeasureContext&) { return cylinderSpeeds(2); }},
+          {"accuracy/speed-cylinder-8-rows", [](MeasureContext&) { return cylinderSpeeds(8); }},
+          {"accuracy/speed-beside-crease-1-row", [](MeasureContext&) { return flatSpeeds(1); }},
+          {"accuracy/speed-beside-crease-2-rows", [](MeasureContext&) { return flatSpeeds(2); }},
+          {"accuracy/speed-beside-crease-8-rows", [](MeasureContext&) { return flatSpeeds(8); }},
+          {"accuracy/speed-cone-1-row", [](MeasureContext&) { return coneSpeeds(1, 0.14); }},
+          {"accuracy/speed-cone-2-rows", [](MeasureContext&) { return coneSpeeds(2, 0.1); }},
+          {"accuracy/speed-cone-8-rows", [](MeasureContext&) { return coneSpeeds(8, 0.02); }},
+          {"accuracy/speed-uv-sphere", [](MeasureContext&) { return uvSphereSpeeds(); }},
           {"accuracy/gaps-across-smooth-edges", gapsAcrossEdges},
           {"accuracy/published-iteration", publishedIterations}};
 }

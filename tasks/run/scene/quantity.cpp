@@ -66,6 +66,12 @@ constexpr std::array kFinger = {
     QuantityKind{"touching", "-", [](M m, I i) { return felt(m, i).touching ? 1.0 : 0.0; }},
     QuantityKind{"sliding", "-", [](M m, I i) { return felt(m, i).sliding ? 1.0 : 0.0; }},
     QuantityKind{"gap", "m", [](M m, I i) { return felt(m, i).gap; }},
+    QuantityKind{"pressure", "N",
+                 [](M m, I i) {
+                   double sum = 0;
+                   for (const grasp::Taxel& taxel : felt(m, i).pressure) sum += taxel.normal;
+                   return sum;
+                 }},
     QuantityKind{"place_distal", "m", [](M m, I i) { return place(m, i).x(); }},
     QuantityKind{"place_radial", "m", [](M m, I i) { return place(m, i).y(); }},
 };

@@ -64,6 +64,17 @@ void readCoupling(const JsonValue& json, grasp::FingerModel& finger) {
   requireHeldAxes(json, coupling);
 }
 
+grasp::PressureGrid readTaxels(const JsonValue& json) {
+  constexpr int kFewestTaxels = 2, kMostTaxels = 64;
+  json.allowOnly(keys::kTaxels);
+  const auto count = [&](const char* key) {
+    return json.at(key, "How many taxels that way.").integer(kFewestTaxels, kMostTaxels, "A fingerpad's sensor has 8 x 6.");
+  };
+  grasp::PressureGrid grid{.rows = count("rows"), .columns = count("columns")};
+  if (const JsonValue* v = json.find("pitch")) grid.pitch = v->number(ranges::kTaxelPitch);
+  return grid;
+}
+
 // Pad and tip.
 void readTipOf(const JsonValue& json, const Scene& scene, grasp::FingerModel& finger) {
   const JsonValue *shape = json.find("shape"), *radius = json.find("radius");
@@ -75,6 +86,7 @@ void readTipOf(const JsonValue& json, const Scene& scene, grasp::FingerModel& fi
   if (patch && modulus) patch->reject("and \"modulus\" both say how large the patch is. Keep one of the two.");
   if (patch) finger.pad.patch_radius = patch->number(ranges::kPatch);
   if (modulus) finger.pad.modulus = modulus->number(ranges::kModulus);
+  if (const JsonValue* v = json.find("taxels")) finger.taxels = readTaxels(*v);
   if (const JsonValue* v = json.find("effective_radius")) finger.pad.effective_radius = v->number(ranges::kEffectiveRadius);
 }
 

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <functional>
 
 #include "pincer/tasks/run/files/file_limits.h"
@@ -39,6 +40,31 @@ Quantity find(const std::string& text, std::span<const QuantityKind> kinds, std:
   return {text, kind, index};
 }
 
+constexpr std::string_view kPressure = "pressure";
+
+// "pressure_2_5": the taxel in row 2, column 5, from 0.
+Quantity findTaxel(const std::string& text, std::string_view word, const SceneFinger& finger, std::size_t index, const Reject& reject) {
+  const grasp::PressureGrid& grid = finger.model.taxels;
+  int row = -1, column = -1;
+  const std::string_view numbers = word.substr(kPressure.size() + 1);
+  const char* const end = numbers.data() + numbers.size();
+  const auto first = std::from_chars(numbers.data(), end, row);
+  const bool has_two = first.ec == std::errc() && first.ptr != end && *first.ptr == '_';
+  const auto second = has_two ? std::from_chars(first.ptr + 1, end, column) : first;
+  if (!has_two || second.ec != std::errc() || second.ptr != end || row < 0 || row >= grid.rows || column < 0 || column >= grid.columns) {
+    reject(fmt::format("is no taxel of the finger: it has {} rows and {} columns, numbered from 0 (\"pressure_0_0\"; key \"taxels\").",
+                       grid.rows, grid.columns));
+  }
+  return {text, findKind(fingerQuantities(), kPressure), index, row * grid.columns + column};
+}
+
+Quantity findOfFinger(const std::string& text, std::string_view word, const Scene& scene, std::size_t index, const Reject& reject) {
+  const SceneFinger& finger = scene.fingers[index];
+  if (word == kPressure && !finger.model.taxels.isOn()) reject("needs the finger's key \"taxels\": {\"rows\": 8, \"columns\": 6}.");
+  if (word.starts_with(kPressure) && word.size() > kPressure.size()) return findTaxel(text, word, finger, index, reject);
+  return find(text, fingerQuantities(), word, index, reject);
+}
+
 Quantity findQuantity(const std::string& text, const Scene& scene, const Reject& reject) {
   const std::size_t dot = text.find('.');
   if (dot == std::string::npos) return find(text, worldQuantities(), text, 0, reject);
@@ -49,7 +75,7 @@ Quantity findQuantity(const std::string& text, const Scene& scene, const Reject&
   if (it == owners.end()) reject(fmt::format("names no body or finger of this scene.{}", suggestion(owner, owners)));
   const std::size_t place = static_cast<std::size_t>(it - owners.begin());
   const std::size_t bodies = scene.bodies.size();
-  return place < bodies ? find(text, bodyQuantities(), word, place, reject) : find(text, fingerQuantities(), word, place - bodies, reject);
+  return place < bodies ? find(text, bodyQuantities(), word, place, reject) : findOfFinger(text, word, scene, place - bodies, reject);
 }
 
 Quantity readQuantity(const JsonValue& json, const Scene& scene) {
@@ -88,6 +114,20 @@ Quantity quantityOf(const std::string& name, const Scene& scene) {
   return findQuantity(name, scene, [&](const std::string& problem) { throw InputError(fmt::format("quantity \"{}\" {}", name, problem)); });
 }
 
+namespace {
+
+// Of a recorded pressure every taxel is a column; any other quantity is one.
+void addColumns(const Quantity& quantity, const Scene& scene, std::vector<Quantity>& columns) {
+  if (!quantity.name.ends_with(std::string(".") + std::string(kPressure))) return columns.push_back(quantity);
+  const grasp::PressureGrid& grid = scene.fingers[quantity.index].model.taxels;
+  for (int taxel = 0; taxel < grid.rows * grid.columns; ++taxel) {
+    const std::string name = fmt::format("{}_{}_{}", quantity.name, taxel / grid.columns, taxel % grid.columns);
+    columns.push_back({name, quantity.kind, quantity.index, taxel});
+  }
+}
+
+}  // namespace
+
 Recording readRecording(const JsonValue& json, const Scene& scene) {
   json.allowOnly(keys::kRecord);
   Recording record;
@@ -99,7 +139,7 @@ Recording readRecording(const JsonValue& json, const Scene& scene) {
     quantities.reject(
         fmt::format("has {} elements; a scene records at most {}. Leave some out.", quantities.array().size(), kMostQuantities));
   for (const JsonValue& quantity : quantities.array()) {
-    record.quantities.push_back(readQuantity(quantity, scene));
+    addColumns(readQuantity(quantity, scene), scene, record.quantities);
   }
   return record;
 }

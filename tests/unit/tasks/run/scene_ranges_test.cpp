@@ -126,6 +126,8 @@ class RandomScene {
     text += one() ? fmt::format(R"(, "patch_radius": {})", number(ranges::kPatch, 0.004))
                   : fmt::format(R"(, "modulus": {}, "effective_radius": {})", number(ranges::kModulus, 1e5),
                                 number(ranges::kEffectiveRadius, 0.01));
+    if (one())
+      text += fmt::format(R"(, "taxels": {{"rows": {}, "columns": 64, "pitch": {}}})", one() ? 2 : 64, number(ranges::kTaxelPitch, 2e-3));
     if (one()) return text + fmt::format(R"(, "position": {}}})", place());
     return text + fmt::format(R"(, "trajectory": {{"keyframes": [{{"time": 0, "position": {}}}, {{"time": {}, "position": {}}}]}}}})",
                               place(), number({1e-6, 1e6}, 0.1), place());
