@@ -59,19 +59,19 @@ struct RoundPlace {
 };
 
 // The slowest and the fastest of the contact on its way around, over the true speed: a maximum alone would pass a contact that halts.
-std::vector<Record> speedsAround(const contact::TriangleMesh& mesh, const std::vector<RoundPlace>& places, double from, double slowest_bound,
-                                 double fastest_bound) {
+std::vector<Record> speedsAround(const contact::TriangleMesh& mesh, const std::vector<RoundPlace>& places, double from,
+                                 double slowest_bound, double fastest_bound) {
   constexpr double kDepth = 0.0015;
   constexpr int kSteps = 5000;
   const auto surface = SmoothMesh::build(mesh);
   double slowest = std::numeric_limits<double>::infinity(), fastest = 0;
   for (const RoundPlace& at : places) {
     BenchFinger finger;
-    const double h = kBenchFinger - kDepth, reach = at.radius + h * std::cos(at.latitude), way = 2 * (M_PI - from);
+    const double h = kBenchFinger - kDepth, reach = at.radius + h * math::cos(at.latitude), way = 2 * (M_PI - from);
     Vec3 last = Vec3::Zero();
     for (int i = 0; i <= kSteps; ++i) {
       const double angle = from + way * i / kSteps;
-      const Vec3 C(reach * std::cos(angle), reach * std::sin(angle), at.z + h * std::sin(at.latitude));
+      const Vec3 C(reach * math::cos(angle), reach * math::sin(angle), at.z + h * math::sin(at.latitude));
       const Vec3 p = finger.on(*surface, C).main().p_BS;
       const double speed = (p - last).norm() * kSteps / (at.radius * way);
       if (i > 0) slowest = std::min(slowest, speed);
@@ -105,7 +105,8 @@ std::vector<Record> coneSpeeds(int rows, double off) {
 }
 std::vector<Record> uvSphereSpeeds() {
   std::vector<RoundPlace> places;
-  for (const double latitude : {0.1, 0.3, 0.6, 0.9, 1.2}) places.push_back({0.02 * std::cos(latitude), 0.02 * std::sin(latitude), latitude});
+  for (const double latitude : {0.1, 0.3, 0.6, 0.9, 1.2})
+    places.push_back({0.02 * math::cos(latitude), 0.02 * math::sin(latitude), latitude});
   return speedsAround(contact::uvSphere(0.02, 12, 24), places, 0, 0.998, 1.002);
 }
 

@@ -8,7 +8,7 @@
 namespace pincer::tasks {
 namespace {
 
-std::string sceneWith(const std::string& finger, const std::string& record) {
+std::string sceneOfPad(const std::string& finger, const std::string& record) {
   return R"({"version": 1, "duration": 0.05, "bodies": [{"name": "plate", "shape": {"type": "half_space"}, "static": true, "material": {"mu_s": 0.5}}],
              "fingers": [{"name": "index", "position": [0, 0, 0.007], "modulus": 1e5)" +
          finger + R"(}], "record": {"quantities": [)" + record + "]}}";
@@ -16,7 +16,7 @@ std::string sceneWith(const std::string& finger, const std::string& record) {
 
 TEST(ScenePressure, IsRecordedAsOneColumnPerTaxel) {
   const Scene scene =
-      parseScene(sceneWith(R"(, "taxels": {"rows": 4, "columns": 3})", R"("index.normal_force", "index.pressure")"), "pad.json");
+      parseScene(sceneOfPad(R"(, "taxels": {"rows": 4, "columns": 3})", R"("index.normal_force", "index.pressure")"), "pad.json");
   ASSERT_EQ(scene.record.quantities.size(), 13u);
   EXPECT_EQ(scene.record.quantities[1].name, "index.pressure_0_0");
   EXPECT_EQ(scene.record.quantities[12].name, "index.pressure_3_2");
@@ -32,7 +32,7 @@ TEST(ScenePressure, IsRecordedAsOneColumnPerTaxel) {
 
 TEST(ScenePressure, RefusesWhatIsNoTaxel) {
   const auto message = [](const std::string& finger, const std::string& record) {
-    return tests::errorOf([&] { parseScene(sceneWith(finger, record), "pad.json"); });
+    return tests::errorOf([&] { parseScene(sceneOfPad(finger, record), "pad.json"); });
   };
   const std::string taxels = R"(, "taxels": {"rows": 4, "columns": 3})";
   EXPECT_NE(message("", R"("index.pressure")").find("needs the finger's key \"taxels\""), std::string::npos);
