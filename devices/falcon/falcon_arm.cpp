@@ -60,7 +60,8 @@ bool FalconSession::runs() {
 std::string FalconSession::start(std::span<const std::uint8_t> firmware) {
   if (runs()) return "";
   if (firmware.empty()) {
-    return "The Falcon has no firmware, and none was given. Take the image from the maker's driver: --firmware FILE (docs/devices/setup.md).";
+    return "The Falcon has no firmware, and none was given. Take the image from the maker's driver: --firmware FILE "
+           "(docs/devices/setup.md).";
   }
   if (!enterLoader()) return "The Falcon doesn't answer its loader's greeting. Unplug its power for ten seconds and try again.";
   if (!load(firmware))

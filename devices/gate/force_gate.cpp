@@ -98,7 +98,8 @@ TripWords wordsOf(Trip trip) {
       return {"The fingertip was too fast", "hold the arm, then arm again."};
     case Trip::kStaleSample:
       return {"The arm's last sample was too old, or its clock ran backward",
-              "check the arm's cable; if the computer is busy, close other programs, permit real-time priority (docs/devices/setup.md), or allow "
+              "check the arm's cable; if the computer is busy, close other programs, permit real-time priority (docs/devices/setup.md), or "
+              "allow "
               "older samples with --watchdog; then arm again."};
     case Trip::kInvalidSample:
       return {"The arm's sample was marked unusable", "check cable and power (pincer devices list), then arm again."};

@@ -91,7 +91,8 @@ std::string placeOf(libusb_device* device) { return "USB device " + portName(dev
 std::string openProblem(libusb_device* device, int error) {
   if (error == LIBUSB_ERROR_ACCESS) {
     return placeOf(device) +
-           ": no permission to open it. Install the udev rule (docs/devices/setup.md) and join its group: sudo usermod -aG plugdev $USER; then "
+           ": no permission to open it. Install the udev rule (docs/devices/setup.md) and join its group: sudo usermod -aG plugdev $USER; "
+           "then "
            "log in "
            "again and replug the device. No need to be root.";
   }

@@ -51,9 +51,9 @@ struct Shorter {
   std::string instead;
 };
 const std::vector<Shorter> kShorter = {
-    {std::regex("^(pincer .*--view.*)$"), "$1 --help"},  // there may be no display
+    {std::regex("^(pincer .*--view.*)$"), "$1 --help"},                                     // there may be no display
     {std::regex("^(pincer devices emulate .*|pincer .*--devices haply.*)$"), "$1 --help"},  // they wait, or for a service
-    {std::regex("^(pincer bench .*) --peers"), "$1"},    // other engines aren't built in
+    {std::regex("^(pincer bench .*) --peers"), "$1"},                                       // other engines aren't built in
     {std::regex("^(pincer (bench|verify|stress)( .*)?)$"), "$1 --list"},
     {std::regex("^(pincer run sphere-pickup --object .*)$"), "$1 --repetitions 1 --friction 0.9 --condition cld+force"},
     {std::regex("^(pincer run findings.*)$"), "$1 --help"},

@@ -141,7 +141,9 @@ int listDevices(const DevicesListArguments& arguments) {
     listHaply(haply);
     for (const std::string& problem : host.problems()) print("{}\n", printableMessage(problem));
     if (host.arms().empty() && host.displays().empty() && falcons.empty() && haply.devices.count == 0 && host.problems().empty()) {
-      print("No device of pincer's USB protocol is plugged in. Check cable and power; `lsusb` must show 1209:0001 (docs/devices/setup.md).\n");
+      print(
+          "No device of pincer's USB protocol is plugged in. Check cable and power; `lsusb` must show 1209:0001 "
+          "(docs/devices/setup.md).\n");
     }
   }
   return host.problems().empty() ? kExitOk : kExitDevice;

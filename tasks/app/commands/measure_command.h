@@ -14,7 +14,7 @@ namespace pincer::tasks {
 struct MeasureOptions {
   bool json = false;
   bool list = false;
-  bool thorough = false;  // see MeasureContext
+  bool thorough = false;               // see MeasureContext
   std::vector<std::string> only = {};  // patterns (matches()); none: all
 };
 

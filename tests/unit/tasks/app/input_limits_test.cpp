@@ -67,7 +67,8 @@ TEST(InputLimits, DevicesAndPipesAreNotReadAsScenesStudiesOrTrajectories) {
     EXPECT_TRUE(contains(errorOf([&] { readScene(path); }), "a scene (a JSON file, docs/scenes.md) is needed here")) << path;
     EXPECT_TRUE(contains(errorOf([&] { readStudyFile(path); }), "a study (a JSON file, docs/experiments.md) is needed here")) << path;
     EXPECT_TRUE(contains(errorOf([&] { readTrajectoryCsv(path); }), "a trajectory (a CSV file, docs/scenes.md) is needed here")) << path;
-    EXPECT_TRUE(contains(errorOf([&] { readCalibration(path); }), "a calibration (a JSON file, docs/devices/setup.md) is needed here")) << path;
+    EXPECT_TRUE(contains(errorOf([&] { readCalibration(path); }), "a calibration (a JSON file, docs/devices/setup.md) is needed here"))
+        << path;
     EXPECT_EQ(runPincer({"run", "sphere-pickup", "--devices", "replay", "--recording", path, "--out", folder / "out"}).exit_code, 3)
         << path;
     EXPECT_EQ(runPincer({"run", "delay-discrimination", "--study", path}).exit_code, 3) << path;
