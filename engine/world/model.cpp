@@ -156,6 +156,7 @@ Material materialOf(const WorldModel& model, const ColliderModel& a, const Colli
 }
 
 Material materialOf(const WorldModel& model, int a, int b) {
+  PINCER_ASSERT(a < b);  // as above
   return materialOf(model, model.colliders[model.bodies[a].first_collider], model.colliders[model.bodies[b].first_collider]);
 }
 
