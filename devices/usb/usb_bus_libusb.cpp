@@ -17,6 +17,7 @@
 
 #include "pincer/devices/usb/port_name.h"
 #include "pincer/devices/usb/usb_bus.h"
+#include "pincer/devices/usb/usb_endpoints.h"
 
 namespace pincer::devices::usb {
 namespace {
@@ -26,38 +27,6 @@ namespace {
 constexpr int kInFlight = 64;
 constexpr int kFailuresInARow = 8;  // after which a port is given up
 constexpr int kWaitMs = 20;         // between looks at what is due, with nothing going on
-
-// The addresses of the first endpoints of each direction. libusb 1.0.26 may leave an endpoint that the descriptor counts empty: address 0.
-struct Endpoints {
-  std::uint8_t in = 0, out = 0;
-  std::uint8_t in_type = LIBUSB_TRANSFER_TYPE_INTERRUPT, out_type = LIBUSB_TRANSFER_TYPE_INTERRUPT;
-};
-
-bool isPacketEndpoint(const libusb_endpoint_descriptor& e) {
-  const int type = e.bmAttributes & LIBUSB_TRANSFER_TYPE_MASK;
-  return e.bEndpointAddress != 0 && (type == LIBUSB_TRANSFER_TYPE_INTERRUPT || type == LIBUSB_TRANSFER_TYPE_BULK) &&
-         (e.wMaxPacketSize & 0x7ff) >= static_cast<int>(kFrameSize);
-}
-
-Endpoints endpointsOf(libusb_device* device) {
-  Endpoints found;
-  libusb_config_descriptor* config = nullptr;
-  if (libusb_get_active_config_descriptor(device, &config) != 0) return found;
-  if (config->bNumInterfaces > 0 && config->interface[0].num_altsetting > 0) {
-    const libusb_interface_descriptor& face = config->interface[0].altsetting[0];
-    for (int i = 0; i < face.bNumEndpoints && face.endpoint != nullptr; ++i) {
-      const libusb_endpoint_descriptor& e = face.endpoint[i];
-      if (!isPacketEndpoint(e)) continue;
-      const bool in = (e.bEndpointAddress & LIBUSB_ENDPOINT_IN) != 0;
-      std::uint8_t& address = in ? found.in : found.out;
-      if (address != 0) continue;
-      address = e.bEndpointAddress;
-      (in ? found.in_type : found.out_type) = e.bmAttributes & LIBUSB_TRANSFER_TYPE_MASK;
-    }
-  }
-  libusb_free_config_descriptor(config);
-  return found;
-}
 
 struct Transfer {
   libusb_transfer* transfer = nullptr;
