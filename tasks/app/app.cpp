@@ -23,7 +23,8 @@ namespace {
 // The program's table of contents, in the order in which --help shows it.
 constexpr std::array kCommands = {addRunCommand,     addReportCommand, addExportCommand, addReplayCommand, addSimCommand,
                                   addPlanCommand,    addVerifyCommand, addStressCommand, addBenchCommand,  addMeshCommand,
-                                  addDevicesCommand, addSweepCommand,  addSolveCommand,  addKeysCommand,   addSchemaCommand};
+                                  addDevicesCommand, addSweepCommand,  addImportCommand, addSolveCommand,  addKeysCommand,
+                                  addSchemaCommand};
 
 constexpr const char* kExamples = R"(
 Examples:

@@ -50,7 +50,7 @@ const std::map<std::string, std::vector<std::string>> kRooms = {
     {"grasp", {"coupling", "tick", "baseline", "passivity", "quality"}},
     {"devices", {"arm", "cld", "usb", "falcon", "haply", "gate", "window", "emulate"}},
     {"tasks", {"run", "lab", "judge", "view", "app"}},
-    {"tasks/run", {"process", "measure", "files", "session", "scene", "tick", "servo"}},
+    {"tasks/run", {"process", "measure", "files", "robot", "session", "scene", "tick", "servo"}},
     {"tasks/lab", {"participants", "study", "report", "experiments", "findings", "sessions", "sweep"}},
     {"tasks/app", {"commands"}},
     {"tasks/judge", {"exact", "solve", "verify", "stress", "bench", "peers"}},
@@ -204,6 +204,7 @@ TEST(FrontDoor, TasksUseOnlyNamedBackDoors) {
       "contact/surface/patch.h",           // the window draws patches
       "contact/surface/self_crossings.h",  // `pincer mesh check`
       "contact/surface/surface_net.h",     // measured by `pincer bench contact`
+      "engine/motion/driven_motion.h",     // rotation vectors of imported robots
       "engine/motion/mass.h",              // densities of scenes
       "engine/world/island_sleep.h",       // what sleeps, in `pincer bench grasp`
       "engine/world/scratch.h",            // judges look into contacts: stress, verify, bench

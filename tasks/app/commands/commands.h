@@ -21,6 +21,7 @@ void addReplayCommand(CLI::App& app, int& exit_code);
 void addKeysCommand(CLI::App& app, int& exit_code);
 void addDevicesCommand(CLI::App& app, int& exit_code);
 void addSweepCommand(CLI::App& app, int& exit_code);
+void addImportCommand(CLI::App& app, int& exit_code);
 void addSolveCommand(CLI::App& app, int& exit_code);
 void addSchemaCommand(CLI::App& app, int& exit_code);
 

@@ -1,0 +1,67 @@
+#include "pincer/tasks/run/robot/robot_links.h"
+
+#include <fmt/format.h>
+
+#include "pincer/contact/error.h"
+#include "pincer/tasks/run/files/spelling.h"
+#include "pincer/tasks/run/robot/robot_pose.h"
+
+namespace pincer::tasks {
+namespace {
+
+const RobotKeyframe* keyframeNamed(const Robot& robot, const std::string& name) {
+  if (name.empty()) return nullptr;
+  std::vector<std::string_view> names;
+  for (const RobotKeyframe& key : robot.keyframes) {
+    if (key.name == name) return &key;
+    names.push_back(key.name);
+  }
+  throw InputError(fmt::format("{}: has no keyframe \"{}\".{}", robot.file, name, suggestion(name, names)));
+}
+
+bool moves(const RobotBody& body) { return !body.joints.empty() || body.is_driven; }
+
+void addInertia(const engine::MassProperties& inertia, const Pose& X_LB, RobotLink& link) {
+  if (inertia.mass == 0) return;
+  const engine::MassProperties moved = engine::movedBy(X_LB, inertia);
+  const engine::MassProperties parts[] = {link.inertia, moved};
+  link.inertia = link.inertia.mass == 0 ? moved : engine::sumOf(parts);
+}
+
+void gatherLinks(PosedRobot& posed) {
+  for (int i = 0; i < static_cast<int>(posed.robot.bodies.size()); ++i) {
+    const RobotBody& body = posed.body(i);
+    const bool is_own = body.parent < 0 || moves(body);
+    if (is_own) posed.links.push_back({i, !moves(body), {}, {}});
+    posed.link_of.push_back(is_own ? static_cast<int>(posed.links.size()) - 1 : posed.link_of[static_cast<std::size_t>(body.parent)]);
+    RobotLink& link = posed.links[static_cast<std::size_t>(posed.link_of.back())];
+    const Pose X_LB = is_own ? Pose{} : posed.pose(link.body).inverse() * posed.pose(i);
+    for (const RobotGeom& geom : body.geoms) link.geoms.emplace_back(&geom, is_own ? geom.X_BG : X_LB * geom.X_BG);
+    addInertia(body.inertia, X_LB, link);
+  }
+}
+
+}  // namespace
+
+const double* PosedRobot::coordinatesOf(int body_index) const {
+  const double* at = q.data();
+  for (int i = 0; i < body_index; ++i) {
+    for (const RobotJoint& joint : body(i).joints) at += coordinateCount(joint.kind);
+  }
+  return at;
+}
+
+Pose PosedRobot::poseAfter(int body_index, std::size_t joints) const {
+  const Pose X_PB = poseInParent(body(body_index), coordinatesOf(body_index), joints);
+  return body(body_index).parent < 0 ? X_PB : pose(body(body_index).parent) * X_PB;
+}
+
+PosedRobot poseRobot(const Robot& robot, const std::string& keyframe) {
+  PosedRobot posed{robot, keyframeNamed(robot, keyframe), {}, {}, {}, {}};
+  posed.q = posed.key && !posed.key->q.empty() ? posed.key->q : drawnCoordinates(robot);
+  posed.poses = bodyPoses(robot, posed.q);
+  gatherLinks(posed);
+  return posed;
+}
+
+}  // namespace pincer::tasks

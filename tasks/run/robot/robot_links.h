@@ -1,0 +1,39 @@
+// robot_links: a robot in a pose, and its bodies gathered into links: parts that move as one.
+#pragma once
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pincer/tasks/run/robot/robot.h"
+
+namespace pincer::tasks {
+
+// A body with joints, or one of the world, and the bodies that are fixed to it.
+struct RobotLink {
+  int body = 0;            // whose frame is the link's
+  bool is_static = false;  // it hangs on nothing: it stands still
+  engine::MassProperties inertia;
+  std::vector<std::pair<const RobotGeom*, Pose>> geoms;  // and their poses
+};
+
+struct PosedRobot {
+  const Robot& robot;
+  const RobotKeyframe* key = nullptr;  // null: as drawn
+  std::vector<double> q;               // coordinates, see robot_pose.h
+  std::vector<Pose> poses;             // X_WB, by body
+  std::vector<RobotLink> links;
+  std::vector<int> link_of;  // by body
+
+  const RobotBody& body(int index) const { return robot.bodies[static_cast<std::size_t>(index)]; }
+  const Pose& pose(int index) const { return poses[static_cast<std::size_t>(index)]; }
+  // The body whose frame is that of the link to which this one belongs.
+  int carrier(int index) const { return links[static_cast<std::size_t>(link_of[static_cast<std::size_t>(index)])].body; }
+  const double* coordinatesOf(int body_index) const;  // the first one of its joints
+  // X_WB of a body when only its first `joints` joints have moved.
+  Pose poseAfter(int body_index, std::size_t joints) const;
+};
+
+// `keyframe` empty: as drawn. Throws InputError: there is no such keyframe.
+PosedRobot poseRobot(const Robot& robot, const std::string& keyframe);
+
+}  // namespace pincer::tasks

@@ -1,0 +1,245 @@
+#include "pincer/tasks/run/robot/robot_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "pincer/contact/error.h"
+#include "pincer/engine/motion/driven_motion.h"
+#include "pincer/tasks/run/robot/robot_pose.h"
+#include "pincer/tasks/run/robot/robot_scene_parts.h"
+#include "pincer/tasks/run/robot/robot_shapes.h"
+
+namespace pincer::tasks {
+namespace {
+
+// Of bodies between the joints of one body: the least that a scene takes.
+constexpr double kNextToNothing = 1e-9;    // [kg]
+constexpr double kNextToNoMoment = 1e-18;  // [kg m^2]
+constexpr double kDotRadius = 1e-3;        // of what has no shape that touches [m]
+constexpr double kRoundOff = 1e-6;         // of a tick, in a duration
+
+// What a robot can say and a scene can't.
+void refuseTheRest(const Robot& robot) {
+  if (!robot.loops.empty())
+    rejectAt(robot.loops.front().place, "closes a loop of bodies, which can't be had from a file yet. Leave it out, or make it of joints.");
+  for (const RobotTendon& tendon : robot.tendons) {
+    if (tendon.limits || tendon.stiffness != 0 || tendon.damping != 0 || tendon.friction != 0)
+      rejectAt(tendon.place, fmt::format("tendon \"{}\" has limits, a spring, damping or friction of its own, which can't be had yet. Give "
+                                         "them to its joints.",
+                                         tendon.name));
+  }
+  for (const RobotBody& body : robot.bodies) {
+    if (body.is_driven) rejectAt(body.place, fmt::format("body \"{}\" is driven (mocap), which can't be had from a file yet.", body.name));
+  }
+}
+
+void noteTheRest(const Robot& robot, ImportNotes& notes) {
+  for (const RobotBody& body : robot.bodies) {
+    if (body.gravity_compensation != 0) notes.add("body gravcomp", "Bodies weigh what they weigh.", body.place);
+    for (const RobotJoint& joint : body.joints) {
+      if (joint.drive_forces) notes.add("joint actuatorfrcrange", "Drives have force ranges of their own.", joint.place);
+    }
+    for (const RobotGeom& geom : body.geoms) {
+      if (geom.priority != 0) notes.add("geom priority", "The larger of two frictions counts.", geom.place);
+    }
+  }
+}
+
+void writePose(const Pose& X, JsonWriter& json) {
+  json.key("position").value(X.p);
+  const Vec3 turn = engine::rotationVectorOf(X.q);
+  if (!turn.isZero(0)) json.key("rotation").value(turn);
+}
+
+void writeGeom(const RobotGeom& geom, const Pose& X, const std::vector<RobotMesh>& meshes, JsonWriter& json) {
+  json.beginObject().key("shape");
+  writeRobotShape(geom, X, meshes, json);
+  if (geom.shape != RobotShape::kPlane) writePose(X, json);
+  json.key("material").beginObject().key("mu_s").value(geom.mu);
+  if (geom.torsion_radius > 0) json.key("torsion_radius").value(geom.torsion_radius);
+  if (geom.rolling_radius > 0) json.key("rolling_radius").value(geom.rolling_radius);
+  json.endObject();
+  json.key("collides").beginObject().key("as").value(geom.contype).key("with").value(geom.conaffinity).endObject().endObject();
+}
+
+// What touches; a body that nothing touches is a dot that is only seen.
+void writeShapes(const std::vector<std::pair<const RobotGeom*, Pose>>& geoms, const std::vector<RobotMesh>& meshes, JsonWriter& json) {
+  json.key("shapes").beginArray();
+  bool is_empty = true;
+  for (const auto& [geom, X] : geoms) {
+    if (geom->isOnlySeen()) continue;
+    writeGeom(*geom, X, meshes, json);
+    is_empty = false;
+  }
+  if (is_empty) {
+    json.beginObject().key("shape").beginObject().key("type").value("sphere").key("radius").value(kDotRadius).endObject();
+    json.key("collides").beginObject().key("as").value(0).key("with").value(0).endObject().endObject();
+  }
+  json.endArray();
+}
+
+void writeInertia(const engine::MassProperties& m, JsonWriter& json) {
+  json.key("mass").value(std::max(m.mass, kNextToNothing)).key("inertia").beginObject().key("center").value(m.p_BBcm);
+  json.key("moments").value(Vec3(m.I_BBcm.diagonal().cwiseMax(kNextToNoMoment)));
+  json.key("products").value(Vec3(m.I_BBcm(0, 1), m.I_BBcm(0, 2), m.I_BBcm(1, 2))).endObject();
+}
+
+// The body that stands behind the `joint`th joint of a body of several.
+const std::string& betweenName(SceneWriting& w, const RobotBody& body, std::size_t joint) {
+  return w.names.of("between", body.name + "_" + body.joints[joint].name);
+}
+
+void writeBetween(SceneWriting& w, int index, std::size_t joint) {
+  const RobotBody& body = w.posed.body(index);
+  w.notes.add("body of several joints", "A body of a microgram stands between two of them.", body.place);
+  w.json.beginObject().key("name").value(betweenName(w, body, joint));
+  writeShapes({}, {}, w.json);
+  writeInertia({kNextToNothing, Vec3::Zero(), kNextToNoMoment * Mat3::Identity()}, w.json);
+  writePose(w.posed.poseAfter(index, joint + 1), w.json);
+  w.json.endObject();
+}
+
+void writeLink(SceneWriting& w, const RobotLink& link) {
+  const RobotBody& body = w.posed.body(link.body);
+  for (std::size_t k = 0; k + 1 < body.joints.size(); ++k) writeBetween(w, link.body, k);
+  w.json.beginObject().key("name").value(w.bodyName(link.body));
+  if (link.is_static) w.json.key("static").value(true);
+  writeShapes(link.geoms, w.posed.robot.meshes, w.json);
+  if (!link.is_static) writeInertia(link.inertia, w.json);
+  writePose(w.posed.pose(link.body), w.json);
+  w.json.endObject();
+}
+
+void writeBodies(SceneWriting& w) {
+  const Robot& robot = w.posed.robot;
+  w.json.key("bodies").beginArray();
+  if (!robot.world_geoms.empty()) {
+    std::vector<std::pair<const RobotGeom*, Pose>> geoms;
+    for (const RobotGeom& geom : robot.world_geoms) geoms.emplace_back(&geom, geom.X_BG);
+    w.json.beginObject().key("name").value(w.names.of("world", "world")).key("static").value(true);
+    writeShapes(geoms, robot.meshes, w.json);
+    w.json.endObject();
+  }
+  for (const RobotLink& link : w.posed.links) writeLink(w, link);
+  w.json.endArray();
+}
+
+void writeTraits(SceneWriting& w, const RobotJoint& joint, double start) {
+  const auto unless0 = [&](std::string_view key, double value) {
+    if (value != 0) w.json.key(key).value(value);
+  };
+  if (joint.limits) w.json.key("limits").beginArray().value((*joint.limits)[0]).value((*joint.limits)[1]).endArray();
+  unless0("stiffness", joint.stiffness);
+  if (joint.stiffness > 0) w.json.key("rest").value(joint.spring_rest);
+  unless0("damping", joint.damping);
+  unless0("friction", joint.friction);
+  unless0("start", start);
+}
+
+void writeJoint(SceneWriting& w, int index, std::size_t k, double start) {
+  constexpr std::string_view kTypes[] = {"pivot", "slider", "ball"};
+  const RobotBody& body = w.posed.body(index);
+  const RobotJoint& joint = body.joints[k];
+  const Pose X_WB = w.posed.poseAfter(index, k);
+  w.json.beginObject().key("name").value(w.names.of("joint", joint.name)).key("type").value(kTypes[static_cast<int>(joint.kind)]);
+  w.json.key("body").value(k + 1 < body.joints.size() ? betweenName(w, body, k) : w.bodyName(index));
+  if (k > 0) {
+    w.json.key("to").value(betweenName(w, body, k - 1));
+  } else if (body.parent >= 0) {
+    w.json.key("to").value(w.bodyName(w.posed.carrier(body.parent)));
+  }
+  w.json.key("point").value(Vec3(X_WB * joint.p_B));
+  if (joint.kind != RobotJointKind::kBall) {
+    w.json.key("axis").value(Vec3(X_WB.q * joint.axis_B));
+    writeTraits(w, joint, start);
+  }
+  if (joint.armature > 0) w.json.key("armature").value(joint.armature);
+  w.json.endObject();
+}
+
+void writeJoints(SceneWriting& w) {
+  w.json.key("joints").beginArray();
+  for (const RobotLink& link : w.posed.links) {
+    const double* q = w.posed.coordinatesOf(link.body);
+    const auto& joints = w.posed.body(link.body).joints;
+    for (std::size_t k = 0; k < joints.size(); ++k) {
+      if (joints[k].kind != RobotJointKind::kFree) writeJoint(w, link.body, k, *q);
+      q += coordinateCount(joints[k].kind);
+    }
+  }
+  w.json.endArray();
+}
+
+void writeFrame(SceneWriting& w, const std::string& name, int body, const Pose& X_BF) {
+  const int carrier = w.posed.carrier(body);
+  w.json.beginObject().key("name").value(name).key("body").value(w.bodyName(carrier));
+  writePose(w.posed.pose(carrier).inverse() * w.posed.pose(body) * X_BF, w.json);
+  w.json.endObject();
+}
+
+// Sites, and bodies that are part of another.
+void writeFrames(SceneWriting& w) {
+  w.json.key("frames").beginArray();
+  for (const RobotFrame& frame : w.posed.robot.frames) {
+    if (frame.body >= 0) {
+      writeFrame(w, w.names.of("frame", frame.name), frame.body, frame.X_BF);
+    } else {
+      w.notes.add("site of the world", "Frames are on bodies.", w.posed.robot.file);
+    }
+  }
+  for (int i = 0; i < static_cast<int>(w.posed.robot.bodies.size()); ++i) {
+    if (w.posed.carrier(i) != i) writeFrame(w, w.bodyName(i), i, {});
+  }
+  w.json.endArray();
+}
+
+void writePairs(SceneWriting& w) {
+  std::vector<std::pair<int, int>> apart;
+  for (const auto& [a, b] : w.posed.robot.excluded) {
+    if (a < 0 || b < 0) {
+      w.notes.add("exclude of the world", "It is left out.", w.posed.robot.file);
+    } else if (w.posed.carrier(a) != w.posed.carrier(b)) {
+      apart.emplace_back(std::minmax(w.posed.carrier(a), w.posed.carrier(b)));
+    }
+  }
+  std::sort(apart.begin(), apart.end());
+  apart.erase(std::unique(apart.begin(), apart.end()), apart.end());
+  w.json.key("pairs").beginArray();
+  for (const auto& [a, b] : apart) {
+    w.json.beginObject()
+        .key("bodies")
+        .beginArray()
+        .value(w.bodyName(a))
+        .value(w.bodyName(b))
+        .endArray()
+        .key("touch")
+        .value(false)
+        .endObject();
+  }
+  w.json.endArray();
+}
+
+}  // namespace
+
+void rejectAt(const Place& place, std::string_view problem) { throw InputError(fmt::format("{}: {}", place, problem)); }
+
+std::string sceneOfRobot(const Robot& robot, const RobotSceneOptions& options, ImportNotes& notes) {
+  refuseTheRest(robot);
+  noteTheRest(robot, notes);
+  const PosedRobot posed = poseRobot(robot, options.keyframe);
+  SceneWriting w{posed, notes};
+  w.json.beginObject().key("version").value(1).key("description").value(robot.name).key("gravity").value(robot.gravity_W);
+  w.json.key("tick").value(robot.tick).key("duration").value(std::ceil(options.duration / robot.tick - kRoundOff) * robot.tick);
+  w.json.key("combination").value("maximum");
+  writeBodies(w);
+  writeJoints(w);
+  writeTies(w);
+  writeFrames(w);
+  writePairs(w);
+  w.json.endObject();
+  return w.json.text() + "\n";
+}
+
+}  // namespace pincer::tasks

@@ -1,0 +1,25 @@
+// robot_scene_parts: what the writers of a robot's scene share.
+#pragma once
+#include "pincer/tasks/run/files/json_writer.h"
+#include "pincer/tasks/run/robot/import_notes.h"
+#include "pincer/tasks/run/robot/robot_links.h"
+#include "pincer/tasks/run/robot/scene_names_of_robot.h"
+
+namespace pincer::tasks {
+
+struct SceneWriting {
+  const PosedRobot& posed;
+  ImportNotes& notes;
+  NamesOfRobot names = {};
+  JsonWriter json = {};
+
+  const std::string& bodyName(int body) { return names.of("body", posed.body(body).name); }
+};
+
+// Throws InputError "place: problem".
+[[noreturn]] void rejectAt(const Place& place, std::string_view problem);
+
+// "couplings", "tendons", "drives".
+void writeTies(SceneWriting& writing);
+
+}  // namespace pincer::tasks

@@ -1,0 +1,133 @@
+// What ties a robot's joints together and what drives them: couplings, tendons and drives of its scene.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "pincer/contact/error.h"
+#include "pincer/tasks/run/robot/robot_pose.h"
+#include "pincer/tasks/run/robot/robot_scene_parts.h"
+
+namespace pincer::tasks {
+namespace {
+
+using Terms = std::vector<std::pair<std::string, double>>;  // joint and factor
+
+double referenceOf(const Robot& robot, const std::string& name) {
+  for (const RobotBody& body : robot.bodies) {
+    for (const RobotJoint& joint : body.joints) {
+      if (joint.name == name) return joint.reference;
+    }
+  }
+  return 0;
+}
+
+// In powers of the leader's coordinate: the file's are of its way from where it is drawn, and give the follower's.
+std::vector<double> shifted(const Robot& robot, const RobotCoupling& coupling) {
+  const double shift = -referenceOf(robot, coupling.leader);
+  std::vector<double> sum(coupling.polynomial.size(), 0.0), power = {1};
+  for (const double factor : coupling.polynomial) {
+    for (std::size_t k = 0; k < power.size() && k < sum.size(); ++k) sum[k] += factor * power[k];
+    power.push_back(0);
+    for (std::size_t k = power.size() - 1; k > 0; --k) power[k] = power[k - 1] + shift * power[k];
+    power[0] *= shift;
+  }
+  sum[0] += referenceOf(robot, coupling.follower);
+  while (sum.size() > 2 && sum.back() == 0) sum.pop_back();
+  return sum;
+}
+
+void writeCouplings(SceneWriting& w) {
+  if (w.posed.robot.couplings.empty()) return;
+  w.json.key("couplings").beginArray();
+  for (const RobotCoupling& coupling : w.posed.robot.couplings) {
+    if (coupling.leader.empty()) rejectAt(coupling.place, "<joint> holds a joint still. Leave the joint out instead.");
+    w.json.beginObject().key("joint").value(w.names.of("joint", coupling.follower));
+    w.json.key("follows").value(w.names.of("joint", coupling.leader)).key("polynomial").beginArray();
+    for (const double c : shifted(w.posed.robot, coupling)) w.json.value(c);
+    w.json.endArray().endObject();
+  }
+  w.json.endArray();
+}
+
+// What a drive moves: l = sum of factors times coordinates.
+Terms termsOf(const Robot& robot, const RobotDrive& drive) {
+  Terms terms = {{drive.joint, 1}};
+  if (drive.joint.empty()) {
+    terms = std::find_if(robot.tendons.begin(), robot.tendons.end(), [&](const RobotTendon& t) { return t.name == drive.tendon; })->joints;
+  }
+  for (auto& term : terms) term.second *= drive.gear;
+  return terms;
+}
+
+bool isOfOneJoint(const RobotDrive& drive) { return !drive.joint.empty() && drive.gear == 1; }
+
+const std::string& tendonName(SceneWriting& w, const RobotDrive& drive) {
+  return w.names.of("tendon", drive.name + "_" + (drive.joint.empty() ? drive.tendon : drive.joint));
+}
+
+void writeTendons(SceneWriting& w) {
+  w.json.key("tendons").beginArray();
+  for (const RobotDrive& drive : w.posed.robot.drives) {
+    if (isOfOneJoint(drive)) continue;
+    w.json.beginObject().key("name").value(tendonName(w, drive)).key("joints").beginObject();
+    for (const auto& [joint, factor] : termsOf(w.posed.robot, drive)) w.json.key(w.names.of("joint", joint)).value(factor);
+    w.json.endObject().endObject();
+  }
+  w.json.endArray();
+}
+
+// What l feels of the robot's mass as it is drawn: the sum of M_jj/c_j^2, MuJoCo's rule for a damping ratio.
+double feltInertia(const Robot& robot, const RobotDrive& drive) {
+  const std::vector<double> own = ownInertias(robot, bodyPoses(robot, drawnCoordinates(robot)));
+  const Terms terms = termsOf(robot, drive);
+  double sum = 0;
+  auto at = own.begin();
+  for (const RobotBody& body : robot.bodies) {
+    for (const RobotJoint& joint : body.joints) {
+      for (const auto& [name, factor] : terms) {
+        if (name == joint.name && factor != 0) sum += *at / (factor * factor);
+      }
+      ++at;
+    }
+  }
+  return sum;
+}
+
+void writeLaw(SceneWriting& w, const RobotDrive& drive) {
+  const double damping =
+      drive.damping_ratio > 0 ? 2 * drive.damping_ratio * std::sqrt(drive.gain * feltInertia(w.posed.robot, drive)) : -drive.bias[2];
+  if (drive.bias[1] > 0 || damping < 0) {
+    rejectAt(
+        drive.place,
+        fmt::format("drive \"{}\" pushes further what is off already: the second and third number of biasprm are at most 0.", drive.name));
+  }
+  w.json.key("type").value("affine").key("gain").value(drive.gain).key("offset").value(drive.bias[0]);
+  w.json.key("stiffness").value(0 - drive.bias[1]).key("damping").value(damping);
+  if (drive.forces) w.json.key("force").beginArray().value((*drive.forces)[0]).value((*drive.forces)[1]).endArray();
+}
+
+void writeDrives(SceneWriting& w) {
+  const auto& drives = w.posed.robot.drives;
+  w.json.key("drives").beginArray();
+  for (std::size_t i = 0; i < drives.size(); ++i) {
+    const RobotDrive& drive = drives[i];
+    w.json.beginObject().key("name").value(w.names.of("drive", drive.name));
+    w.json.key(isOfOneJoint(drive) ? "joint" : "tendon");
+    w.json.value(isOfOneJoint(drive) ? w.names.of("joint", drive.joint) : tendonName(w, drive));
+    writeLaw(w, drive);
+    const double control = w.posed.key && !w.posed.key->controls.empty() ? w.posed.key->controls[i] : 0;
+    w.json.key("target").value(drive.controls ? std::clamp(control, (*drive.controls)[0], (*drive.controls)[1]) : control).endObject();
+  }
+  w.json.endArray();
+}
+
+}  // namespace
+
+void writeTies(SceneWriting& writing) {
+  writeCouplings(writing);
+  writeTendons(writing);
+  writeDrives(writing);
+}
+
+}  // namespace pincer::tasks
