@@ -147,6 +147,12 @@ struct WorldOptions {
   SolverOptions solver;
 };
 
+// Where a joint went.
+struct JointPlace {
+  int joint = 0;                  // in WorldModel::joints
+  int tree = -1, coordinate = 0;  // of a pivot or slider that a tree has; -1: none has it
+};
+
 struct WorldModel {
   WorldOptions options;
   std::vector<BodyModel> bodies;
@@ -162,9 +168,9 @@ struct WorldModel {
   std::vector<PairModel> special_pairs;             // with a material of their own, sorted
   std::vector<JointModel> joints;                   // by groups
   std::vector<JointGroup> joint_groups;
-  std::vector<int> joint_order;    // of what addJoint numbered: its place in `joints`
-  std::vector<TreeModel> trees;    // of the joints that no group has
-  std::vector<DriveModel> drives;  // their terms by places in `joints`
+  std::vector<JointPlace> joint_places;  // as addJoint numbered them
+  std::vector<TreeModel> trees;          // of the joints that no group has
+  std::vector<DriveModel> drives;        // their terms by places in `joints`
   int tree_q_count = 0, tree_v_count = 0, tree_block_count = 0;
   bool bounces = false;  // some pair has restitution
   int driven_count = 0;  // of bodies

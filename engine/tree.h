@@ -89,11 +89,12 @@ struct TreeLink {
   int body = 0;
   int parent = -1;  // link; -1: the base
   JointKind kind = JointKind::kPivot;
-  bool reversed = false;  // the joint's b is the link, its a the parent: q and v change their sign in the link's motion
-  int first_q = 0;        // in q of the tree: 1 number, a ball 4 (a quaternion w, x, y, z: J of the link in J of the parent), a weld none
-  int first_v = 0;        // its coordinates: 1, a ball 3 (angular velocity of the link past its parent, in J of the parent), a weld none
-  Pose X_PJ, X_LJ;        // J in the inertial frames of parent (W or the base body's) and link
-  double mass = 0;        // [kg]
+  int base = 0;     // of a root: its place in TreeModel::bases
+  int first_q = 0;  // in q of the tree: 1 number, a ball 4 (a quaternion w, x, y, z: J of the link in J of the parent), a weld none
+  int first_v = 0;  // its coordinates: 1, a ball 3 (angular velocity of the link past its parent, in J of the parent), a weld none
+  Pose X_PJ,
+      X_LJ;  // J in the inertial frames of parent (W or the base body's) and link; turned so that q is what the link has moved past its parent
+  double mass = 0;              // [kg]
   Vec3 moments = Vec3::Zero();  // principal, in the link's inertial frame [kg m^2]
 };
 inline int coordinatesOf(JointKind kind) { return kind == JointKind::kWeld ? 0 : kind == JointKind::kBall ? 3 : 1; }
@@ -128,7 +129,6 @@ struct TreeBlock {
 };
 
 struct TreeModel {
-  int base = -1;                            // static or driven body that carries it; -1: the world
   std::vector<TreeLink> links;              // parents first
   std::vector<TreeCoordinate> coordinates;  // by links
   std::vector<TreeDrive> drives;
