@@ -61,7 +61,7 @@ struct WorldState {
   std::vector<double> tree_q, tree_v;   // of all trees (tree.h)
   std::vector<DriveInput> controls;     // of the last tick, per drive
   std::vector<DriveMemory> drives;      // per drive
-  std::vector<BrakeMemory> brakes;      // per coordinate of all trees
+  std::vector<BrakeMemory> brakes;      // per freedom of all trees
   std::vector<ContactMemory> contacts;  // always options.max_contacts of them, so that no tick allocates; the first contact_count count
   int contact_count = 0;
 };
