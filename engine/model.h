@@ -149,8 +149,8 @@ struct WorldOptions {
 
 // Where a joint went.
 struct JointPlace {
-  int joint = 0;            // in WorldModel::joints
-  int tree = -1, rate = 0;  // of TreeModel::rates, of a pivot or slider that a tree has; -1: none has it
+  int joint = 0;                  // in WorldModel::joints
+  int tree = -1, coordinate = 0;  // of a pivot or slider that a tree has; -1: none has it
 };
 
 struct WorldModel {
@@ -171,7 +171,7 @@ struct WorldModel {
   std::vector<JointPlace> joint_places;  // as addJoint numbered them
   std::vector<TreeModel> trees;          // of the joints that no group has
   std::vector<DriveModel> drives;        // their terms by places in `joints`
-  int tree_q_count = 0, tree_freedom_count = 0, tree_block_count = 0;
+  int tree_q_count = 0, tree_coordinate_count = 0, tree_v_count = 0, tree_block_count = 0;
   bool bounces = false;  // some pair has restitution
   int driven_count = 0;  // of bodies
 };

@@ -58,10 +58,10 @@ struct WorldState {
   std::vector<BodyState> bodies;
   std::vector<Vec3> driven_w_W;  // angular velocities of driven bodies, by BodyModel::motion [rad/s]
   std::vector<PointState> points;
-  std::vector<double> tree_q, tree_v;   // of all trees (tree.h)
+  std::vector<double> tree_q, tree_v;   // coordinates, and velocities by columns, of all trees (tree.h)
   std::vector<DriveInput> controls;     // of the last tick, per drive
   std::vector<DriveMemory> drives;      // per drive
-  std::vector<BrakeMemory> brakes;      // per freedom of all trees
+  std::vector<BrakeMemory> brakes;      // per coordinate of all trees
   std::vector<ContactMemory> contacts;  // always options.max_contacts of them, so that no tick allocates; the first contact_count count
   int contact_count = 0;
 };

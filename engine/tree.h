@@ -82,72 +82,73 @@ struct DriveInput {
   bool operator==(const DriveInput&) const = default;
 };
 
-// ---------------------------------------------------------------- what the builder makes of them (engine/world/tree_builder.h)
+// ---------------------------------------------------------------- what the builder makes of them
 
 // One body of a tree and the joint that holds it to its parent.
 struct TreeLink {
   int body = 0;
   int parent = -1;  // link; -1: the base
   JointKind kind = JointKind::kPivot;
-  int first_q = 0;  // 1 number; of a ball 4: the quaternion w, x, y, z of J on the link in J on the parent; of a weld none
-  int first_rate = 0,
-      rate_count = 0;           // 1; of a ball 3: the angular velocity of the link past its parent, in J of the parent; of a weld none
-  int tip = -1;                 // the last freedom of those that move it; -1: none
-  Pose X_PJ, X_JL;              // J in the inertial frame of the parent (W or the base body's); the link's inertial frame in J
-  double mass = 0;              // [kg]
+  int first_q = 0;        // in q of the tree: 1 number, a ball 4 (a quaternion w, x, y, z: J of the link in J of the parent), a weld none
+  int first_v = 0;        // of its coordinates: 1, a ball 3 (angular velocity of the link past its parent, in J of the parent), a weld none
+  Pose X_PJ, X_LJ;        // J in the inertial frames of parent (W or the base body's) and link; turned so that q is what the link has moved past its parent
+  double mass = 0;        // [kg]
   Vec3 moments = Vec3::Zero();  // principal, in the link's inertial frame [kg m^2]
+  int tip = -1;                 // the column on whose path lie all that move it; -1: none do
 };
-inline int ratesOf(JointKind kind) { return kind == JointKind::kWeld ? 0 : kind == JointKind::kBall ? 3 : 1; }
-inline int numbersOf(JointKind kind) { return kind == JointKind::kBall ? 4 : ratesOf(kind); }
+inline int coordinatesOf(JointKind kind) { return kind == JointKind::kWeld ? 0 : kind == JointKind::kBall ? 3 : 1; }
 
-// The rate of one joint, and what acts on it. Most are freedoms themselves; those of joints that follow others are shares of these.
-struct TreeRate {
+// One velocity v_i of the tree.
+struct TreeCoordinate {
   int link = 0;
   int joint = 0;    // of WorldModel::joints
-  int q = -1;       // its coordinate, in q of the tree; -1 of balls
-  int freedom = 0;  // its own, or that of the joint that it follows
-  int leader = -1;  // the rate that it follows
+  int q = -1;       // in q of the tree; -1 of balls
+  int parent = -1;  // the coordinate before it on the way to the base
+  int column = 0;   // of the equations; of what follows another that one's
+  double damping = 0;
+  JointTraits traits;
+  int leader = -1;  // the coordinate that it follows
   std::array<double, 5> polynomial{};
-  double armature = 0;
 };
 
-// One column of the equations. M couples it with those on its path: parent, its parent ..
-struct TreeFreedom {
-  int rate = 0;
-  int parent = -1;  // the freedom before it on its path; of what a tendon or a coupling ties across branches all are one path
-  int depth = 0;    // how many come before it
-  int row = 0;      // of its entries in M, entry row + depth of those on its path and of itself
-  int block = 0;
-};
-
-// Spring, damper or drive along l = sum of factor q.
-struct TreeElement {
+// Spring, damper or drive on l = sum of factors times coordinates.
+struct TreeDrive {
+  int drive = 0;  // of WorldModel::drives
   struct Term {
-    int rate;
+    int coordinate;
     double factor;
   };
   std::vector<Term> terms;
-  double stiffness = 0, damping = 0;
-  double rest = 0;  // of springs of joints: where l is slack
-  int drive = -1;   // of WorldModel::drives; -1: spring and damper of a joint
 };
 
-// A run of at most six freedoms: one mover of the contact problem.
+// A run of at most six columns: one mover of the contact problem.
 struct TreeBlock {
-  int first = 0, count = 0;  // freedoms
+  int first = 0, count = 0;  // columns
   int parent = -1;           // the block before it on the way to the base
 };
 
 struct TreeModel {
-  int base = -1;                // static or driven body that carries it; -1: the world
-  std::vector<TreeLink> links;  // parents first
-  std::vector<TreeRate> rates;  // by links
-  std::vector<TreeFreedom> freedoms;
-  std::vector<TreeElement> elements;
+  int base = -1;                            // static or driven body that carries it; -1: the world
+  std::vector<TreeLink> links;              // parents first
+  std::vector<TreeCoordinate> coordinates;  // by links
+  std::vector<TreeDrive> drives;
+  // The equations' columns: column c depends on those that before[c], before[before[c]] .. name. That of a tree without ties is that of its branches; what
+  // a tendon or a coupling ties across branches is one chain.
+  std::vector<int> before;
+  std::vector<int> column_coordinate;  // the coordinate that a column is the rate of
+  std::vector<int> block_of;           // per column
+  // The packed matrix of the equations (engine/tree/sparse_ldl.h): entries of column c from row[c] on, of each column on its path by depth, its own last.
+  std::vector<int> depth, row;
+  int entries = 0;
   std::vector<TreeBlock> blocks;
-  int q_count = 0, entries = 0;                         // numbers of q, of M
-  int first_q = 0, first_freedom = 0, first_block = 0;  // of this tree in all of the world's
-  bool may_touch = false;                               // something can touch one of its links
+  int first_q = 0, first_v = 0, first_block = 0;  // of this tree in the world's: q's numbers, columns, blocks
+  int first_coordinate = 0;                       // likewise
+  int q_count = 0;
+  bool has_couplings = false;
+  bool may_touch = false;  // something can touch one of its links
+
+  int columnCount() const { return static_cast<int>(before.size()); }
+  int coordinateCount() const { return static_cast<int>(coordinates.size()); }
 };
 
 }  // namespace pincer::engine
