@@ -89,9 +89,10 @@ struct TreeLink {
   int body = 0;
   int parent = -1;  // link; -1: the base
   JointKind kind = JointKind::kPivot;
+  bool reversed = false;  // the joint's b is the link, its a the parent: pivots and sliders move by -q
   int first_q = 0;        // in q of the tree: 1 number, a ball 4 (a quaternion w, x, y, z: J of the link in J of the parent), a weld none
   int first_v = 0;        // of its coordinates: 1, a ball 3 (angular velocity of the link past its parent, in J of the parent), a weld none
-  Pose X_PJ, X_LJ;        // J in the inertial frames of parent (W or the base body's) and link; turned so that q is what the link has moved past its parent
+  Pose X_PJ, X_LJ;        // J in the inertial frames of parent (W or the base body's) and link
   double mass = 0;        // [kg]
   Vec3 moments = Vec3::Zero();  // principal, in the link's inertial frame [kg m^2]
   int tip = -1;                 // the column on whose path lie all that move it; -1: none do
@@ -123,7 +124,7 @@ struct TreeDrive {
 
 // A run of at most six columns: one mover of the contact problem.
 struct TreeBlock {
-  int first = 0, count = 0;  // columns
+  int first = 0, count = 0;  // its innermost column (the next ones follow by `before`), and how many
   int parent = -1;           // the block before it on the way to the base
 };
 
@@ -137,6 +138,7 @@ struct TreeModel {
   std::vector<int> before;
   std::vector<int> column_coordinate;  // the coordinate that a column is the rate of
   std::vector<int> block_of;           // per column
+  std::vector<int> column_in_block;    // its place there
   // The packed matrix of the equations (engine/tree/sparse_ldl.h): entries of column c from row[c] on, of each column on its path by depth, its own last.
   std::vector<int> depth, row;
   int entries = 0;
