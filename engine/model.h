@@ -15,6 +15,7 @@
 #include "pincer/contact/shape.h"
 #include "pincer/engine/motion.h"
 #include "pincer/engine/solver.h"
+#include "pincer/engine/tree.h"
 
 namespace pincer::engine {
 
@@ -72,6 +73,7 @@ struct BodyModel {
   double corner_reach = 0;     // how much further than that it reaches; 0 where turning doesn't change its outline [m]
   bool may_be_hollow = false;  // its surface may curve inwards: a mesh, a dish, several shapes
   int joint_group = -1;        // that binds it to others or to the world, -1: none
+  int tree = -1, link = -1;    // of which it is a link, -1: of none
   bool may_touch = false;      // some pair or point can touch it; the others move in closed form alone
 };
 
@@ -109,19 +111,6 @@ struct PairModel {
   bool is_of_many = false;  // one of the two has several shapes: materials go by those
 };
 
-// What a joint leaves free, in its frame J.
-enum class JointKind : unsigned char {
-  kPivot,   // a turns about J's z axis
-  kSlider,  // a slides along J's z axis
-  kBall,    // a turns about J's origin
-  kWeld,    // nothing
-};
-struct JointModel {
-  JointKind kind = JointKind::kPivot;
-  int a = 0, b = -1;   // bodies; b = -1: the world. a is dynamic
-  Pose X_AJ, X_BJ;     // J in the two inertial frames (in W for the world); as given to the builder: in the bodies' own frames
-  double damping = 0;  // of the free axis [N m s/rad] or [N s/m], >= 0
-};
 // Joints that share moving bodies, joints[first] .. joints[first + count - 1].
 struct JointGroup {
   int first = 0, count = 0;
@@ -158,6 +147,12 @@ struct WorldOptions {
   SolverOptions solver;
 };
 
+// Where a joint went.
+struct JointPlace {
+  int joint = 0;                  // in WorldModel::joints
+  int tree = -1, coordinate = 0;  // of a pivot or slider that a tree has; -1: none has it
+};
+
 struct WorldModel {
   WorldOptions options;
   std::vector<BodyModel> bodies;
@@ -173,6 +168,10 @@ struct WorldModel {
   std::vector<PairModel> special_pairs;             // with a material of their own, sorted
   std::vector<JointModel> joints;                   // by groups
   std::vector<JointGroup> joint_groups;
+  std::vector<JointPlace> joint_places;  // as addJoint numbered them
+  std::vector<TreeModel> trees;          // of the joints that no group has
+  std::vector<DriveModel> drives;        // their terms by places in `joints`
+  int tree_q_count = 0, tree_coordinate_count = 0, tree_v_count = 0, tree_block_count = 0;
   bool bounces = false;  // some pair has restitution
   int driven_count = 0;  // of bodies
 };
@@ -180,6 +179,8 @@ struct WorldModel {
 inline bool isHeldBody(const WorldModel& model, const BodyModel& body) {
   return body.joint_group >= 0 && model.joint_groups[body.joint_group].is_held_body;
 }
+
+inline bool isJoined(const BodyModel& body) { return body.joint_group >= 0 || body.tree >= 0; }
 
 inline std::span<const ColliderModel> collidersOf(const WorldModel& model, const BodyModel& body) {
   return {model.colliders.data() + body.first_collider, static_cast<std::size_t>(body.collider_count)};
@@ -220,6 +221,8 @@ class WorldBuilder {
   int addBody(const BodySpec& spec);                             // returns the body's index
   int addPoint(const DrivenPointModel& point);                   // returns the point's index
   int addJoint(const JointModel& joint);                         // returns the joint's index in the order of calls; the two never touch
+  int addCoupling(const CouplingModel& coupling);                // returns its index
+  int addDrive(const DriveModel& drive);                         // returns its index
   void excludePair(int a, int b);                                // these two never touch
   void setPairMaterial(int a, int b, const Material& material);  // of these two, in place of the combination of theirs; the last one counts
   WorldModel build() const;                                      // joints in the order of their groups
@@ -227,6 +230,7 @@ class WorldBuilder {
  private:
   WorldModel model_;
   std::vector<std::pair<int, int>> excluded_;
+  std::vector<CouplingModel> couplings_;
 };
 
 Material combine(const Material& a, const Material& b, Combination rule = Combination::kGeometricMean);

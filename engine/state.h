@@ -45,6 +45,11 @@ struct ContactMemory {
 // For how many ticks a contact that opens by next to nothing keeps its impulse and its offset.
 constexpr int kOpenTicks = 8;
 
+// What a drive did in the last tick.
+enum class DriveMemory : unsigned char { kWithin, kLow, kHigh, kUnsure };  // its limits; at one of them; it may be either
+// What dry friction did: held, or braked what moves.
+enum class BrakeMemory : unsigned char { kHolds, kForward, kBackward };
+
 struct WorldState {
   double time = 0;  // [s]
   std::int64_t tick = 0;
@@ -53,6 +58,10 @@ struct WorldState {
   std::vector<BodyState> bodies;
   std::vector<Vec3> driven_w_W;  // angular velocities of driven bodies, by BodyModel::motion [rad/s]
   std::vector<PointState> points;
+  std::vector<double> tree_q, tree_v;   // coordinates, and velocities by columns, of all trees (tree.h)
+  std::vector<DriveInput> controls;     // of the last tick, per drive
+  std::vector<DriveMemory> drives;      // per drive
+  std::vector<BrakeMemory> brakes;      // per coordinate of all trees
   std::vector<ContactMemory> contacts;  // always options.max_contacts of them, so that no tick allocates; the first contact_count count
   int contact_count = 0;
 };
@@ -72,6 +81,11 @@ WorldState makeState(const WorldModel& model, const std::vector<BodyStart>& star
 // states are to be grown too, and its scratch is to be made anew. `contacts`: not fewer than there is room for, at most kMostContacts; or throws
 // InputError.
 void growContacts(int contacts, WorldModel& model, WorldState& state);
+
+// Of a pivot or slider that a tree has, numbered as the builder did. setJoint places the links that it carries, too.
+double jointPosition(const WorldModel& model, const WorldState& state, int joint);  // q [rad, m]
+double jointVelocity(const WorldModel& model, const WorldState& state, int joint);  // [rad/s, m/s]
+void setJoint(const WorldModel& model, WorldState& state, int joint, double position, double velocity = 0);
 
 Pose bodyPose(const WorldModel& model, const WorldState& state, int body);                        // X_WB
 Vec3 bodyAngularVelocity(const WorldModel& model, const WorldState& state, int body);             // w_WB [rad/s]

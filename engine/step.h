@@ -49,6 +49,7 @@ struct StepInputs {
   std::span<const PointInput> points{};    // one per point
   std::span<const MotionInput> motions{};  // one per driven body, in the order of the bodies; missing ones rest where they are
   AppliedForces applied{};
+  std::span<const DriveInput> controls{};  // one per drive; missing ones stay as they were
 };
 
 // What happened that a caller may have to know; each bit says what was dropped and what to change.
@@ -107,6 +108,20 @@ struct ContactReport {
   bool pushes = false;           // false: near, but without a force
   bool sliding = false;
 };
+
+// What acted on a joint in the last tick, its mean over it [N, N m]; along its coordinate.
+struct JointReport {
+  double stop_force = 0;      // of its limits
+  double friction_force = 0;  // of its dry friction
+  bool at_lower = false, at_upper = false;
+};
+struct DriveReport {
+  double force = 0;  // along l
+  bool saturated = false;
+};
+// `joint` and `drive` as the builder numbered them.
+JointReport jointAt(const WorldModel& model, const WorldScratch& scratch, int joint);
+DriveReport driveAt(const WorldScratch& scratch, int drive);
 
 // Contacts of the last tick, sorted by id but for those of what sleeps, which come last.
 int contactCount(const WorldScratch& scratch);

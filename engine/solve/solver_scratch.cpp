@@ -31,15 +31,15 @@ void sizeForFew(int contacts, int movers, SolverScratch& s) {
   s.active.resize(n);
 }
 
-SolverSize sizeFor(int contacts, int movers) {
+}  // namespace
+
+SolverSize solverSize(int contacts, int movers, int movers_per_contact) {
   return {.contacts = contacts,
           .movers = movers,
-          .places = 4 * contacts,
-          .blocks = kBlocksPerMover * std::min({movers, 2 * contacts, BlockLu::kMaxNodes}),
+          .places = movers_per_contact * movers_per_contact * contacts,
+          .blocks = kBlocksPerMover * std::min({movers, movers_per_contact * contacts, BlockLu::kMaxNodes}),
           .products = std::max(kProductsAtLeast, kProductsPerContact * contacts)};
 }
-
-}  // namespace
 
 SolverScratch::SolverScratch(const SolverSize& its) : lu(its.movers, its.blocks, its.products) {
   const auto n = static_cast<std::size_t>(its.contacts), m = kMaxContactRows * n;
@@ -53,6 +53,6 @@ SolverScratch::SolverScratch(const SolverSize& its) : lu(its.movers, its.blocks,
   sizeForFew(std::min(its.contacts, kFewContacts), its.movers, *this);
 }
 
-SolverScratch::SolverScratch(int contacts, int movers) : SolverScratch(sizeFor(contacts, movers)) {}
+SolverScratch::SolverScratch(int contacts, int movers) : SolverScratch(solverSize(contacts, movers, 2)) {}
 
 }  // namespace pincer::engine

@@ -33,6 +33,9 @@ struct SolverSize {
   int blocks, products;  // of the movers' matrix: in its factors; in a factorisation, beyond which none is tried
 };
 
+// For contacts of at most so many movers each.
+SolverSize solverSize(int contacts, int movers, int movers_per_contact);
+
 struct SolverScratch {
   explicit SolverScratch(const SolverSize& size);
 

@@ -6,9 +6,11 @@
 #include "pincer/engine/world/held_body.h"
 #include "pincer/engine/world/impact.h"
 #include "pincer/engine/world/island_sleep.h"
+#include "pincer/engine/world/joint_rows.h"
 #include "pincer/engine/world/joints.h"
 #include "pincer/engine/world/rest.h"
 #include "pincer/engine/world/stages.h"
+#include "pincer/engine/world/tree_motion.h"
 
 namespace pincer::engine {
 namespace {
@@ -25,6 +27,7 @@ void applyImpulse(WorldScratch& scratch, const Side& side, const Vec3& arm_W, co
     scratch.points[side.index].twist_impulse += moment_W.dot(c.n_W());
     return push(scratch.points[side.index]);
   }
+  if (side.kind == SideKind::kJoint) return push(scratch.joint_rows[side.index]);
   BodyScratch& body = scratch.bodies[side.index];
   push(body);
   body.angular_impulse_W += arm_W.cross(impulse_W) + moment_W;
@@ -41,7 +44,7 @@ constexpr int kMostSpreads = 40;           // along the contacts, to and fro
 
 // How far apart the mean of its velocities and the one at the end take a free body along n_W in this part of the tick [m].
 double mismatchOf(const WorldModel& model, const WorldScratch& scratch, const Side& side, const Vec3& n_W) {
-  if (side.kind != SideKind::kBody || !model.bodies[side.index].dynamic || model.bodies[side.index].joint_group >= 0) return 0;
+  if (side.kind != SideKind::kBody || !model.bodies[side.index].dynamic || isJoined(model.bodies[side.index])) return 0;
   const Vec3 jump_W = endVelocity(model, scratch, side.index) - scratch.bodies[side.index].start.v_W;
   return 0.5 * scratch.h * std::abs(n_W.dot(jump_W));
 }
@@ -82,6 +85,7 @@ void gatherImpulses(const WorldModel& model, WorldScratch& scratch) {
     // What joints and contacts give to bodies in joints is gathered first.
     body.angular_impulse_W = model.bodies[i].joint_group < 0 ? body.free_angular_impulse_W : Vec3(Vec3::Zero());
   }
+  for (JointRowScratch& row : scratch.joint_rows) rest(row);
   for (PointScratch& point : scratch.points) {
     rest(point);
     point.twist_impulse = 0;
@@ -94,7 +98,8 @@ void gatherImpulses(const WorldModel& model, WorldScratch& scratch) {
     applyImpulse(scratch, c.b, c.arm_b_W, -c.impulse_W, -moment_W, c);
   }
   if (scratch.h > 0) spreadClosing(model, scratch);
-  if (!model.joints.empty()) gatherJointImpulses(model, scratch);
+  if (!model.joint_groups.empty()) gatherJointImpulses(model, scratch);
+  if (!model.trees.empty()) gatherTrees(model, scratch);
 }
 
 namespace {
@@ -182,7 +187,7 @@ void advance(const WorldModel& model, WorldState& state, WorldScratch& scratch) 
     if (isHeldBody(model, body)) {
       const int n = body.joint_group;
       advanceHeldBody(model, model.joint_groups[n], scratch.joint_groups[n], h, scratch.bodies[i], state.bodies[i]);
-    } else if (body.dynamic && !isIdle(scratch, static_cast<int>(i))) {
+    } else if (body.dynamic && body.tree < 0 && !isIdle(scratch, static_cast<int>(i))) {
       advanceBody(body, h, scratch.bodies[i], state.bodies[i]);
       scratch.still_bodies += scratch.bodies[i].still;
     }
@@ -192,7 +197,9 @@ void advance(const WorldModel& model, WorldState& state, WorldScratch& scratch) 
     advancePoint(model.point_forms[i], h, scratch.points[i], state.points[i]);
     scratch.points[i].tick_impulse_W += scratch.points[i].impulse_W;
   }
-  if (!model.joints.empty()) settleJoints(model, state, scratch);
+  if (!model.joint_groups.empty()) settleJoints(model, state, scratch);
+  if (!model.trees.empty()) advanceTrees(model, state, scratch);
+  if (!model.trees.empty()) rememberJointRows(model, state, scratch);
   rememberContacts(model, scratch, state);
   state.h_last = h;
 }

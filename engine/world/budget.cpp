@@ -7,6 +7,7 @@ namespace pincer::engine {
 namespace {
 
 bool isDriven(const WorldModel& model, const WorldScratch& scratch) {
+  if (!model.drives.empty()) return true;
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
     if (model.bodies[i].driven && scratch.bodies[i].touched) return true;
   }
@@ -16,6 +17,7 @@ bool isDriven(const WorldModel& model, const WorldScratch& scratch) {
 
 bool isPushed(const WorldModel& model, const WorldScratch& scratch, std::size_t body) {
   if (!model.bodies[body].dynamic) return false;
+  if (model.bodies[body].tree >= 0) return false;  // its coordinates say how it moves
   const int group = model.bodies[body].joint_group;
   if (group < 0) return scratch.bodies[body].touched;
   const auto& joined = model.joint_groups[group].bodies;

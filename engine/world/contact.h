@@ -9,7 +9,7 @@
 
 namespace pincer::engine {
 
-enum class SideKind : std::uint8_t { kBody, kPoint };
+enum class SideKind : std::uint8_t { kBody, kPoint, kJoint };  // kJoint: a row of WorldScratch::joint_rows
 
 struct MoverScratch;
 
@@ -94,7 +94,7 @@ template <class Rows>
 inline bool isOfSameTwo(const Contact& x, const Contact& y) { return isSame(x.a, y.a) && isSame(x.b, y.b); }
 
 // Identity of a contact from tick to tick; contacts are sorted by it. From the highest bit on:
-//   2 bits kind   0: body a on body b;  1: point a on body b
+//   2 bits kind   0: body a on body b;  1: point a on body b;  2: a stop or brake of a joint
 //   30 bits who   bodies a and b with 15 - s bits each, a's shape and b's with s each; or the point with 15, b with 15 - s, its shape with s
 //   32 bits feature
 //   shape_bits  s of the model: 0 where each body has one shape

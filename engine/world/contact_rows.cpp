@@ -6,6 +6,7 @@
 #include "pincer/contact/functions/invariants.h"
 #include "pincer/engine/world/hollow_inertia.h"
 #include "pincer/engine/world/impact.h"
+#include "pincer/engine/world/joint_rows.h"
 #include "pincer/engine/world/push_out.h"
 #include "pincer/engine/world/stick_bias.h"
 #include "pincer/engine/world/wedge.h"
@@ -105,6 +106,10 @@ void fillContact(const WorldModel& model, const Rates& rates, WorldScratch& scra
       r_i[k] = memory ? rates.longer * memory->r[k] : 0;
     }
   });
+  if (c.a.kind == SideKind::kJoint) {
+    const JointRowScratch& row = scratch.joint_rows[static_cast<std::size_t>(c.a.index)];
+    if (row.isBrake()) fillBrake(row, q_i, r_i);
+  }
   PINCER_ASSERT(!(c.mu < 0));
   scratch.mu[i] = c.mu;
 }

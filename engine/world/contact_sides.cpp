@@ -5,6 +5,7 @@
 
 #include "pincer/contact/functions/invariants.h"
 #include "pincer/engine/world/joints.h"
+#include "pincer/engine/world/tree_sides.h"
 
 namespace pincer::engine {
 namespace {
@@ -51,11 +52,15 @@ Mat3 rootOfInertia(const FreeRotation& rotation, const Quat& q_WI) {
   return q_WI.toRotationMatrix() * rotation.root_inverse_moments.asDiagonal();
 }
 
-void fillSide(const WorldModel& model, const WorldScratch& scratch, const Contact& c, int rows, bool is_a, int mover, int number,
+void fillSide(const WorldModel& model, WorldScratch& scratch, const Contact& c, int rows, bool is_a, int mover, int number,
               const std::vector<Mat3>& root_inertia, ContactSide& out) {
   out.mover = number;
   if (mover < 0) return;
   const Side& side = is_a ? c.a : c.b;
+  if (side.kind == SideKind::kJoint || (side.kind == SideKind::kBody && model.bodies[side.index].tree >= 0)) {
+    out.is_point = false;
+    return fillTreeSide(model, scratch, c, rows, is_a, mover, out);
+  }
   out.is_point = side.kind == SideKind::kPoint && rows == kTorsionRow;
   const double sign = is_a ? 1 : -1;
   if (side.kind == SideKind::kPoint) return fillPointSide(c, rows, sign, scratch.points[side.index], out);
@@ -70,12 +75,16 @@ void fillSide(const WorldModel& model, const WorldScratch& scratch, const Contac
   addJointedSide(model, scratch, c, rows, sign, side.index, arm_W, out);
 }
 
+void addSide(int rows, const ContactSide& from, ContactSide& to) {
+  for (int k = 0; k < rows; ++k) {
+    for (int j = 0; j < kMoverFreedoms; ++j) to.A[k][j] += from.A[k][j];
+  }
+  to.is_point = false;
+}
+
 void joinSides(int rows, ContactSides& sides) {
   PINCER_ASSERT(sides[0].mover == sides[1].mover);
-  for (int k = 0; k < rows; ++k) {
-    for (int j = 0; j < kMoverFreedoms; ++j) sides[0].A[k][j] += sides[1].A[k][j];
-  }
-  sides[0].is_point = false;
+  addSide(rows, sides[1], sides[0]);
   sides[1].mover = -1;
 }
 

@@ -17,8 +17,11 @@ namespace pincer::engine {
 Mat3 rootOfInertia(const FreeRotation& rotation, const Quat& q_WI);
 
 // Side a or b of a contact of so many rows. `mover`: index into `root_inertia`, -1 for what doesn't move; `number`: of the mover in its island.
-void fillSide(const WorldModel& model, const WorldScratch& scratch, const Contact& c, int rows, bool is_a, int mover, int number,
+void fillSide(const WorldModel& model, WorldScratch& scratch, const Contact& c, int rows, bool is_a, int mover, int number,
               const std::vector<Mat3>& root_inertia, ContactSide& out);
+
+// A side's block is added to that of another side with the same mover.
+void addSide(int rows, const ContactSide& from, ContactSide& to);
 
 // Two joined bodies that touch each other are one mover: what they do is one block.
 void joinSides(int rows, ContactSides& sides);

@@ -25,7 +25,7 @@ double fastestFree(const WorldModel& model, const WorldScratch& scratch) {
 }
 
 bool isJoined(const WorldModel& model, const Side& side) {
-  return side.kind == SideKind::kBody && model.bodies[side.index].joint_group >= 0;
+  return side.kind == SideKind::kJoint || (side.kind == SideKind::kBody && engine::isJoined(model.bodies[side.index]));
 }
 
 // At the end of this part of the tick, contacts included.

@@ -6,6 +6,8 @@
 #include "pincer/engine/motion/free_motion.h"
 #include "pincer/engine/solve/local_contact.h"
 #include "pincer/engine/world/contact_rows.h"
+#include "pincer/engine/world/joint_rows.h"
+#include "pincer/engine/world/tree_motion.h"
 
 namespace pincer::engine {
 namespace {
@@ -151,6 +153,9 @@ void keepStruck(const WorldModel& model, WorldScratch& scratch) {
   std::fill(scratch.struck.begin(), scratch.struck.end(), false);
   const auto strike = [&](int body) {
     scratch.struck[body] = true;
+    if (model.bodies[body].tree >= 0) {
+      for (const TreeLink& link : model.trees[model.bodies[body].tree].links) scratch.struck[link.body] = true;
+    }
     if (model.bodies[body].joint_group < 0) return;
     for (const int other : model.joint_groups[model.bodies[body].joint_group].bodies) scratch.struck[other] = true;
   };
@@ -159,7 +164,11 @@ void keepStruck(const WorldModel& model, WorldScratch& scratch) {
     strike(pair.b);
   }
   std::erase_if(scratch.contacts, [&](const Contact& c) { return c.phi > kTouching || givesWay(model, c.a) || givesWay(model, c.b); });
-  const auto isStruck = [&](const Side& side) { return isDynamic(model, side) && scratch.struck[side.index]; };
+  const auto isStruck = [&](const Side& side) {
+    if (side.kind == SideKind::kJoint && scratch.joint_rows[side.index].tree >= 0)
+      return bool(scratch.struck[model.trees[scratch.joint_rows[side.index].tree].links.front().body]);
+    return isDynamic(model, side) && scratch.struck[side.index];
+  };
   for (bool spreads = true; spreads;) {
     spreads = false;
     for (const Contact& c : scratch.contacts) {
@@ -235,6 +244,7 @@ Vec3 endAngularVelocity(const WorldModel& model, const WorldScratch& scratch, in
 }
 
 double gapAcceleration(const WorldModel& model, const WorldScratch& scratch, const Contact& c) {
+  if (c.a.kind == SideKind::kJoint) return scratch.joint_rows[c.a.index].acceleration;
   const auto acceleration = [&](const Side& side) {
     if (!isDynamic(model, side)) return Vec3(Vec3::Zero());
     const BodyForce* const force = forceOn(scratch, static_cast<std::size_t>(side.index));
@@ -276,6 +286,7 @@ void holdBackImpacts(const WorldModel& model, const WorldState& state, bool land
   scratch.impact_pairs.clear();
   if (!scratch.fast_pairs.empty() || !scratch.pushed_pairs.empty() || model.bounces) holdBackHits(model, state, scratch);
   if (landings) holdBackLandings(model, state, scratch);
+  if (!model.trees.empty()) noteStopHits(model, scratch);
 }
 
 bool impactsWait(const WorldModel& model, const WorldState& state, const WorldScratch& scratch) {
@@ -293,6 +304,10 @@ void applyImpacts(const WorldModel& model, WorldState& state, WorldScratch& scra
   predictImpact(model, state, scratch);
   collideBodies(model, state, scratch);
   if (source) source->addContacts(scratch);
+  if (!model.trees.empty()) {
+    startJointRows(model, state, scratch);
+    putJointRows(model, state, scratch);
+  }
   keepStruck(model, scratch);
   for (int quarters = 4; quarters >= 0; --quarters) {
     scratch.bounce = 0.25 * quarters;
@@ -302,8 +317,9 @@ void applyImpacts(const WorldModel& model, WorldState& state, WorldScratch& scra
     gatherImpulses(model, scratch);
     if (!addsEnergy(model, scratch)) break;
   }
+  if (!model.trees.empty()) strikeTrees(model, state, scratch);
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
-    if (!model.bodies[i].dynamic) continue;
+    if (!model.bodies[i].dynamic || model.bodies[i].tree >= 0) continue;
     state.bodies[i].v_W += model.bodies[i].inverse_mass * scratch.bodies[i].impulse_W;
     state.bodies[i].L_W += scratch.bodies[i].angular_impulse_W;
   }

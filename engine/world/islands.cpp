@@ -13,6 +13,7 @@
 #include "pincer/engine/world/rest.h"
 #include "pincer/engine/world/scratch.h"
 #include "pincer/engine/world/solve_island.h"
+#include "pincer/engine/world/tree_sides.h"
 
 namespace pincer::engine {
 namespace {
@@ -20,9 +21,12 @@ namespace {
 constexpr int kSettlingTicks = 24;  // stick offsets halve per tick: from the tolerance to round-off
 
 // The number of what moves there in IslandScratch's arrays per mover; -1 for what doesn't.
-int moverOf(const WorldModel& model, const WorldScratch& scratch, const Side& side) {
+int moverOf(const WorldModel& model, const WorldScratch& scratch, const Contact& c, bool is_a) {
+  const Side& side = is_a ? c.a : c.b;
+  if (side.kind == SideKind::kJoint) return moverOfRow(model, scratch, c, is_a);
   if (side.kind == SideKind::kBody) {
     const BodyModel& body = model.bodies[side.index];
+    if (body.tree >= 0) return moverOfLink(model, body);
     if (body.joint_group >= 0) return model.joint_groups[body.joint_group].bodies.front();  // joined bodies are one mover
     return body.dynamic ? side.index : -1;
   }
@@ -30,6 +34,12 @@ int moverOf(const WorldModel& model, const WorldScratch& scratch, const Side& si
   const Vec3& inverse_mass = point.inverse_mass;
   const bool moves = inverse_mass[0] != 0 || inverse_mass[1] != 0 || inverse_mass[2] != 0 || point.inverse_twist > 0;
   return moves ? static_cast<int>(model.bodies.size()) + side.index : -1;
+}
+
+// f(mover) for it and, if it is a block, for those before it on the way to the base.
+template <class F>
+void forEachOf(const IslandScratch& s, int mover, F f) {
+  for (; mover >= 0; mover = parentOf(s, mover)) f(mover);
 }
 
 int rootOf(std::vector<int>& parent, int mover) {
@@ -47,11 +57,12 @@ void findEnds(const WorldModel& model, const WorldScratch& scratch, IslandScratc
       continue;
     }
     s.near.push_back(static_cast<int>(&c - scratch.contacts.data()));
-    *ends = {moverOf(model, scratch, c.a), moverOf(model, scratch, c.b)};
-    for (const int mover : {ends->a, ends->b}) {
-      if (mover < 0) continue;
-      parent[mover] = mover;
-      number[mover] = island_of[mover] = -1;
+    *ends = {moverOf(model, scratch, c, true), moverOf(model, scratch, c, false)};
+    for (const int end : {ends->a, ends->b}) {
+      forEachOf(s, end, [&](int mover) {
+        parent[mover] = mover;
+        number[mover] = island_of[mover] = -1;
+      });
     }
     ++ends;
   }
@@ -69,11 +80,14 @@ bool haveCommonMover(const IslandScratch& s) {
 }
 
 void uniteMovers(IslandScratch& s) {
+  const auto unite = [&](int x, int y) {
+    const int a = rootOf(s.parent, x), b = rootOf(s.parent, y);
+    s.parent[std::max(a, b)] = std::min(a, b);
+  };
   for (const int i : s.near) {
     const ContactEnds& ends = s.ends[i];
-    if (ends.a < 0 || ends.b < 0) continue;
-    const int a = rootOf(s.parent, ends.a), b = rootOf(s.parent, ends.b);
-    s.parent[std::max(a, b)] = std::min(a, b);
+    for (const int end : {ends.a, ends.b}) forEachOf(s, end < 0 ? -1 : parentOf(s, end), [&](int mover) { unite(end, mover); });
+    if (ends.a >= 0 && ends.b >= 0) unite(ends.a, ends.b);
   }
 }
 
@@ -114,7 +128,7 @@ int numberOf(const WorldModel& model, const WorldScratch& scratch, const Side& s
   PINCER_ASSERT(isIndex(mover, s.number.size()));
   if (s.number[mover] < 0) {
     s.number[mover] = island.movers++;
-    if (side.kind == SideKind::kBody)
+    if (side.kind == SideKind::kBody && model.bodies[side.index].tree < 0)
       s.root_inertia[mover] = rootOfInertia(model.bodies[side.index].rotation, scratch.bodies[side.index].X_WI_mid.q);
   }
   return s.number[mover];
@@ -129,8 +143,45 @@ bool isCalm(const WorldModel& model, const Contact& c) {
   return is_slow(c.mover_a->start, c.arm_a_W) && is_slow(c.mover_b->start, c.arm_b_W);
 }
 
+// Of an island in which a contact may have more than two movers.
+void fillManySides(const WorldModel& model, WorldScratch& scratch, int k, Island& island, IslandScratch& s) {
+  const int *const order = s.order.data() + island.place, *const from_row = scratch.first_row.data();
+  ContactSide* const all = s.many_sides.data() + s.sides_per_contact * island.place;
+  int* const first_side = s.first_side.data() + island.place + k;
+  int sides = 0;
+  for (int n = 0; n < island.contacts; ++n) {
+    const int i = order[n], rows = from_row[i + 1] - from_row[i];
+    const Contact& c = scratch.contacts[i];
+    first_side[n] = sides;
+    for (const bool is_a : {true, false}) {
+      const Side& side = is_a ? c.a : c.b;
+      forEachOf(s, is_a ? s.ends[i].a : s.ends[i].b, [&](int mover) {
+        ContactSide& out = all[sides];
+        fillSide(model, scratch, c, rows, is_a, mover, numberOf(model, scratch, side, mover, island, s), s.root_inertia, out);
+        for (int other = first_side[n]; other < sides; ++other) {
+          if (all[other].mover == out.mover) return addSide(rows, out, all[other]);
+        }
+        ++sides;
+      });
+    }
+    island.settling = std::max(island.settling, c.settling);
+    island.calm = island.calm && island.contacts > kFewContacts && isCalm(model, c);
+  }
+  first_side[island.contacts] = sides;
+}
+
+bool hasManySides(const IslandScratch& s, const Island& island) {
+  if (s.sides_per_contact == 2) return false;
+  const int* const order = s.order.data() + island.place;
+  return std::any_of(order, order + island.contacts, [&](int i) {
+    int count = 0;
+    for (const int end : {s.ends[i].a, s.ends[i].b}) forEachOf(s, end, [&](int) { ++count; });
+    return count > 2;
+  });
+}
+
 // What the contacts of the island are to the movers.
-void fillSides(const WorldModel& model, const WorldScratch& scratch, Island& island, IslandScratch& s) {
+void fillSides(const WorldModel& model, WorldScratch& scratch, Island& island, IslandScratch& s) {
   const int *const order = s.order.data() + island.place, *const from_row = scratch.first_row.data();
   const Contact* const contacts = scratch.contacts.data();
   const ContactEnds* const all_ends = s.ends.data();
@@ -194,7 +245,12 @@ void gather(const WorldModel& model, WorldScratch& scratch) {
     } else {
       copyRows(scratch, static_cast<int>(k), s.rows, island, s);
     }
-    fillSides(model, scratch, island, s);
+    island.has_many_sides = hasManySides(s, island);
+    if (island.has_many_sides) {
+      fillManySides(model, scratch, static_cast<int>(k), island, s);
+    } else {
+      fillSides(model, scratch, island, s);
+    }
     s.rows += island.rows;
   }
 }
@@ -249,7 +305,12 @@ void addResult(const SolveResult& island, SolveResult& all) {
 
 IslandScratch::IslandScratch(const WorldModel& model) {
   const auto n = static_cast<std::size_t>(model.options.max_contacts), m = kMaxContactRows * n;
-  const std::size_t movers = model.bodies.size() + model.points.size();
+  const std::size_t movers = moverCount(model);
+  findBlocks(model, *this);
+  if (sides_per_contact > 2) {
+    many_sides.resize(static_cast<std::size_t>(sides_per_contact) * n);
+    first_side.resize(2 * n + 1);
+  }
   islands.reserve(n);
   for (std::vector<int>* per_contact : {&order, &contact_island}) per_contact->resize(n);
   near.reserve(n);
@@ -261,12 +322,20 @@ IslandScratch::IslandScratch(const WorldModel& model) {
   mu.resize(n);
   for (std::vector<double>* per_row : {&q, &r, &u}) per_row->resize(m);
   for (int t = 0; t < model.options.threads; ++t)
-    solvers.push_back(std::make_unique<SolverScratch>(model.options.max_contacts, static_cast<int>(movers)));
+    solvers.push_back(std::make_unique<SolverScratch>(solverSize(model.options.max_contacts, static_cast<int>(movers), sides_per_contact)));
   if (model.options.threads > 1) threads = std::make_unique<IslandThreads>(model.options.threads);
 }
 
 IslandScratch::~IslandScratch() = default;
 IslandScratch::IslandScratch(IslandScratch&&) noexcept = default;
+
+void takeManySides(const Island& island, const IslandScratch& s, ContactProblem& problem) {
+  const auto k = static_cast<std::size_t>(&island - s.islands.data()), n = static_cast<std::size_t>(island.contacts);
+  const auto place = static_cast<std::size_t>(island.place);
+  problem.first_side = {s.first_side.data() + place + k, n + 1};
+  problem.sides = {s.many_sides.data() + static_cast<std::size_t>(s.sides_per_contact) * place,
+                   static_cast<std::size_t>(problem.first_side.back())};
+}
 
 void solveIslands(const WorldModel& model, WorldScratch& scratch) {
   IslandScratch& s = scratch.islands;

@@ -20,8 +20,9 @@ class IslandThreads;
 // Contacts place .. place + contacts - 1 of IslandScratch's arrays.
 struct Island {
   int place = 0, contacts = 0, movers = 0;
-  int settling = 0;  // the most of its contacts (state.h)
-  bool calm = true;  // all that moves of it is as good as at rest
+  int settling = 0;             // the most of its contacts (state.h)
+  bool calm = true;             // all that moves of it is as good as at rest
+  bool has_many_sides = false;  // its contacts' are in many_sides
   // Filled by solveIslands, without a value before.
   // What the solver sees: of one among several islands in IslandScratch, of the only one the world's own (scratch.h), uncopied.
   int rows;
@@ -54,11 +55,21 @@ struct IslandScratch {
   std::vector<ContactEnds> ends;  // per contact, in the order of scratch.contacts
   std::vector<int> first_row;     // island by island, each from 0: entries place + index of the island ..
   std::vector<ContactSides> sides;
+  // Of worlds with trees: blocks are movers after bodies and points, and so is each joint row's own.
+  int first_block = 0;            // the first one of those movers
+  std::vector<int> block_parent;  // per block: the mover of the block before it on the way to the base, -1
+  std::vector<ContactSide>
+      many_sides;  // of islands in which a contact has more than two movers, from place sides_per_contact times the island's on
+  std::vector<int> first_side;     // likewise, as `first_row`
+  int sides_per_contact = 2;       // at most
   std::vector<Mat3> root_inertia;  // per mover of the world: F with F F^T = I^-1, in W [kg^-1/2 m^-1]
   std::vector<double> mu, q, r, u;
   std::vector<std::unique_ptr<SolverScratch>> solvers;  // one per thread
   std::unique_ptr<IslandThreads> threads;               // null with one thread
 };
+
+// Of an island that has them.
+void takeManySides(const Island& island, const IslandScratch& s, ContactProblem& problem);
 
 // Sorts scratch.contacts into islands, solves each from scratch.q, mu and r, and fills scratch.r, u and solve (the worst of all islands'
 // methods and residuals, the sum of their iterations), and the contacts' `settling` and `quiet`. Allocates nothing.

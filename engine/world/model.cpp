@@ -12,7 +12,10 @@
 #include "pincer/engine/world/body_model.h"
 #include "pincer/engine/world/broad_phase.h"
 #include "pincer/engine/world/colliders.h"
+#include "pincer/engine/world/joint_groups.h"
+#include "pincer/engine/world/joint_rows.h"
 #include "pincer/engine/world/most_numbered.h"
+#include "pincer/engine/world/tree_builder.h"
 
 namespace pincer::engine {
 namespace {
@@ -22,74 +25,6 @@ AxisForm formOf(const DrivenPointModel& point, int axis, double h) {
   if (point.locked[axis]) return AxisForm::kLocked;
   const bool soft = point.stiffness[axis] * h * h <= 0.25 * point.mass && point.damping[axis] * h <= 0.5 * point.mass;
   return point.mass > 0 && soft ? AxisForm::kFourthOrder : AxisForm::kImplicit;
-}
-
-// Sorts the joints by the group that they belong to: the lowest body that moving bodies and joints connect them with.
-void groupJoints(WorldModel& model) {
-  std::vector<int> root(model.bodies.size());
-  for (std::size_t i = 0; i < root.size(); ++i) root[i] = static_cast<int>(i);
-  const auto moves = [&](int body) { return body >= 0 && model.bodies[body].dynamic; };
-  for (bool changes = true; changes;) {
-    changes = false;
-    for (const JointModel& joint : model.joints) {
-      if (!moves(joint.b) || root[joint.a] == root[joint.b]) continue;
-      root[joint.a] = root[joint.b] = std::min(root[joint.a], root[joint.b]);
-      changes = true;
-    }
-  }
-  std::stable_sort(model.joints.begin(), model.joints.end(),
-                   [&](const JointModel& x, const JointModel& y) { return root[x.a] < root[y.a]; });
-  for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
-    const JointModel& joint = model.joints[j];
-    if (j == 0 || root[joint.a] != root[model.joints[j - 1].a]) model.joint_groups.push_back({j, 0, {}});
-    ++model.joint_groups.back().count;
-    for (const int body : {joint.a, joint.b}) {
-      if (moves(body)) model.bodies[body].joint_group = static_cast<int>(model.joint_groups.size()) - 1;
-      if (body >= 0) model.bodies[body].may_touch = true;
-    }
-  }
-  for (int i = 0; i < static_cast<int>(model.bodies.size()); ++i) {
-    if (model.bodies[i].joint_group >= 0) model.joint_groups[model.bodies[i].joint_group].bodies.push_back(i);
-  }
-  PINCER_ASSERT(model.joint_groups.empty() ||
-                model.joint_groups.back().first + model.joint_groups.back().count == static_cast<int>(model.joints.size()));
-}
-
-// Whether the group has one coordinate, and what that one is.
-void findHeldBody(const WorldModel& model, JointGroup& group) {
-  const JointModel& joint = model.joints[group.first];
-  const bool turns = joint.kind == JointKind::kPivot, slides = joint.kind == JointKind::kSlider;
-  const bool stands = joint.b < 0 || (!model.bodies[joint.b].dynamic && !model.bodies[joint.b].driven);
-  if (group.count != 1 || !stands || !(turns || slides)) return;
-  const BodyModel& body = model.bodies[joint.a];
-  group.is_held_body = true;
-  group.axis_A = joint.X_AJ.q * Vec3::UnitZ();
-  PINCER_ASSERT(isUnit(group.axis_A));
-  const double about_centre = group.axis_A.cwiseAbs2().dot(body.moments), arm2 = group.axis_A.cross(joint.X_AJ.p).squaredNorm();
-  group.inertia = turns ? about_centre + body.mass * arm2 : body.mass;
-}
-
-int blockedBy(JointKind kind) { return kind == JointKind::kWeld ? 6 : kind == JointKind::kBall ? 3 : 5; }
-
-// A group of joined bodies is one mover of the contact solver, which knows so many freedoms.
-void checkGroups(WorldModel& model) {
-  for (const PairModel& pair : model.pairs) {
-    for (const int body : {pair.a, pair.b}) {
-      if (model.bodies[body].joint_group >= 0) model.joint_groups[model.bodies[body].joint_group].may_touch = true;
-    }
-  }
-  for (JointGroup& group : model.joint_groups) {
-    group.may_touch = group.may_touch || !model.points.empty() || model.has_broad_phase;
-    findHeldBody(model, group);
-    int freedoms = 6 * static_cast<int>(group.bodies.size());
-    const bool large = freedoms > kMostGroupFreedoms;
-    for (int j = group.first; j < group.first + group.count; ++j) freedoms -= blockedBy(model.joints[j].kind);
-    if (!group.may_touch || (freedoms <= kMoverFreedoms && !large)) continue;
-    throw InputError(fmt::format(
-        "the {} bodies joined with \"{}\" can move in {} ways together, and contacts know joined bodies of at most {} bodies and {} "
-        "ways. Hold one of them to the world, weld some, or let nothing touch them.",
-        group.bodies.size(), model.bodies[group.bodies.front()].name, freedoms, kMostGroupFreedoms / 6, kMoverFreedoms));
-  }
 }
 
 bool comesBefore(const PairModel& x, const PairModel& y) { return std::pair(x.a, x.b) < std::pair(y.a, y.b); }
@@ -292,30 +227,11 @@ void WorldBuilder::setPairMaterial(int a, int b, const Material& material) {
   model_.special_pairs.push_back({std::min(a, b), std::max(a, b), material, false});
 }
 
-int WorldBuilder::addJoint(const JointModel& joint) {
-  const int count = static_cast<int>(model_.bodies.size());
-  const std::string name = fmt::format("joint {}", model_.joints.size());
-  requireRange(name + ".damping", joint.damping, 0, 1e9, "A damper's coefficient is zero or positive.");
-  if (joint.a < 0 || joint.a >= count || joint.b < -1 || joint.b >= count || joint.a == joint.b) {
-    throw InputError(fmt::format("{}: it joins bodies {} and {}, but there are {}. Add both bodies first.", name, joint.a, joint.b, count));
-  }
-  if (!model_.bodies[joint.a].dynamic) {
-    throw InputError(
-        fmt::format("{}: its first body \"{}\" never moves by itself. Name the moving one first.", name, model_.bodies[joint.a].name));
-  }
-  PINCER_DEMAND(isUnit(joint.X_AJ.q) && isUnit(joint.X_BJ.q), "addJoint: the frames' quaternions have length 1; normalise them");
-  JointModel inertial = joint;
-  inertial.X_AJ = model_.bodies[joint.a].X_IB * joint.X_AJ;
-  if (joint.b >= 0) inertial.X_BJ = model_.bodies[joint.b].X_IB * joint.X_BJ;
-  if (joint.b >= 0) excludePair(joint.a, joint.b);
-  model_.joints.push_back(inertial);
-  return static_cast<int>(model_.joints.size()) - 1;
-}
-
 WorldModel WorldBuilder::build() const {
   WorldModel model = model_;
   sortSpecialPairs(model.special_pairs);
   groupJoints(model);
+  findTrees(couplings_, model);
   model.shape_bits = shapeBits(model);
   for (const ColliderModel& c : model.colliders) model.bounces = model.bounces || c.material.restitution > 0;
   for (const PairModel& pair : model.special_pairs) model.bounces = model.bounces || pair.material.restitution > 0;
@@ -342,7 +258,9 @@ WorldModel WorldBuilder::build() const {
     for (BodyModel& body : model.bodies) body.may_touch = true;
   }
   checkGroups(model);
+  findTouchedTrees(model);
   if (model.options.max_contacts == 0) model.options.max_contacts = contactCapacity(model);
+  model.options.max_contacts = std::min(model.options.max_contacts + jointRowsOf(model), kMostContacts);
   return model;
 }
 

@@ -6,6 +6,7 @@
 #include "pincer/engine/world/island_sleep.h"
 #include "pincer/engine/world/joints.h"
 #include "pincer/engine/world/stages.h"
+#include "pincer/engine/world/tree_motion.h"
 
 namespace pincer::engine {
 namespace {
@@ -176,6 +177,8 @@ void predictBodies(const WorldModel& model, const WorldState& state, WorldScratc
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
     if (isHeldBody(model, model.bodies[i])) {
       predictHeld(model, state, static_cast<int>(i), scratch);
+    } else if (model.bodies[i].tree >= 0) {
+      continue;  // predictTrees
     } else if (model.bodies[i].dynamic) {
       if (!isIdle(scratch, static_cast<int>(i)))
         predictBody(model.bodies[i], state.bodies[i], dv_gravity_W, forceOn(scratch, i), h, scratch.bodies[i]);
@@ -193,10 +196,11 @@ void predictBodies(const WorldModel& model, const WorldState& state, WorldScratc
 
 void predict(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
   predictBodies(model, state, scratch);
+  if (!model.trees.empty()) predictTrees(model, state, scratch);
   for (std::size_t i = 0; i < model.points.size(); ++i) {
     predictPoint(model.points[i], model.point_forms[i], state.points[i], scratch.point_inputs[i], scratch.h, scratch.points[i]);
   }
-  if (!model.joints.empty()) predictJoints(model, scratch);
+  if (!model.joint_groups.empty()) predictJoints(model, scratch);
   scratch.contacts.clear();
   scratch.fast_pairs.clear();
 }
@@ -225,7 +229,8 @@ void predictImpact(const WorldModel& model, const WorldState& state, WorldScratc
     out.root_inverse_mass = out.inverse_mass.cwiseSqrt();
     out.mobility_h = 0;
   }
-  if (!model.joints.empty()) predictJoints(model, scratch);
+  if (!model.joint_groups.empty()) predictJoints(model, scratch);
+  if (!model.trees.empty()) predictTreeImpacts(model, state, scratch);
   scratch.contacts.clear();
   scratch.fast_pairs.clear();
 }

@@ -15,7 +15,7 @@ constexpr int kPushSweeps = 10;
 bool isFree(const WorldModel& model, const Side& side) {
   if (side.kind != SideKind::kBody) return false;
   const BodyModel& body = model.bodies[side.index];
-  return body.dynamic && body.joint_group < 0;
+  return body.dynamic && !isJoined(body);
 }
 
 double deepGap(const WorldModel& model) { return -(kDeepSpeed / kNormalCorrection) * model.options.h; }
@@ -115,7 +115,7 @@ void sweepPushes(const WorldModel& model, bool standing, WorldScratch& scratch) 
 
 bool isPushedOut(const WorldModel& model, const Contact& c) {
   if (c.a.kind != SideKind::kBody || c.b.kind != SideKind::kBody) return false;
-  return model.bodies[c.a.index].joint_group < 0 && model.bodies[c.b.index].joint_group < 0;
+  return !isJoined(model.bodies[c.a.index]) && !isJoined(model.bodies[c.b.index]);
 }
 
 void pushOut(const WorldModel& model, WorldState& state, WorldScratch& scratch) {

@@ -8,6 +8,7 @@ namespace pincer::engine {
 namespace {
 
 Vec3 centre(const WorldScratch& scratch, const Side& side) {
+  if (side.kind == SideKind::kJoint) return Vec3::Zero();
   return side.kind == SideKind::kBody ? scratch.bodies[side.index].X_WI_mid.p : scratch.points[side.index].p_mid_W;
 }
 
@@ -45,7 +46,9 @@ void place(const WorldScratch& scratch, Contact& c) {
 void recall(Contact& c) {
   const ContactMemory* const memory = c.memory;
   PINCER_ASSERT(isUnitIfFinite(c.n_W()));
-  if (memory)
+  if (c.a.kind == SideKind::kJoint)
+    c.R_WC.setIdentity();  // its rows are what they are
+  else if (memory)
     carryFrame(*memory, c.R_WC);
   else
     c.R_WC = frameFromNormal(c.n_W());

@@ -47,7 +47,8 @@ std::span<const ContactMemory> contactsOf(const WorldState& state) {
 
 // All but the time.
 bool sameState(const WorldState& a, const WorldState& b) {
-  return a.h_last == b.h_last && a.parts == b.parts && sameRange(a.bodies, b.bodies) && a.driven_w_W == b.driven_w_W &&
+  return a.h_last == b.h_last && a.parts == b.parts && a.tree_q == b.tree_q && a.tree_v == b.tree_v && a.brakes == b.brakes &&
+         a.drives == b.drives && a.controls == b.controls && sameRange(a.bodies, b.bodies) && a.driven_w_W == b.driven_w_W &&
          sameRange(a.points, b.points) && sameRange(contactsOf(a), contactsOf(b));
 }
 
@@ -57,10 +58,20 @@ void copyState(const WorldState& from, WorldState& to) {
   to.h_last = from.h_last;
   to.parts = from.parts;
   to.contact_count = from.contact_count;
+  to.tree_q = from.tree_q;
+  to.tree_v = from.tree_v;
+  to.brakes = from.brakes;
+  to.drives = from.drives;
+  to.controls = from.controls;
   std::copy(from.bodies.begin(), from.bodies.end(), to.bodies.begin());
   std::copy(from.driven_w_W.begin(), from.driven_w_W.end(), to.driven_w_W.begin());
   std::copy(from.points.begin(), from.points.end(), to.points.begin());
   std::copy(from.contacts.begin(), from.contacts.begin() + from.contact_count, to.contacts.begin());
+}
+
+// The controls are those of the last tick, and lead nowhere.
+bool sameControls(std::span<const DriveInput> controls, const WorldState& state) {
+  return std::equal(controls.begin(), controls.end(), state.controls.begin(), state.controls.begin() + std::ssize(controls));
 }
 
 bool isStill(const WorldState& state) {
@@ -72,7 +83,7 @@ bool isStill(const WorldState& state) {
 
 bool repeatsItself(const WorldState& state, const WorldScratch& scratch, const StepInputs& inputs) {
   const RestMemory& rest = scratch.sleep.rest;
-  return rest.holds && sameRange(inputs.points, std::span<const PointInput>(rest.points)) &&
+  return rest.holds && sameControls(inputs.controls, state) && sameRange(inputs.points, std::span<const PointInput>(rest.points)) &&
          sameRange(inputs.motions, std::span<const MotionInput>(rest.motions)) && inputs.applied.gravity_W == rest.gravity_W &&
          sameRange(inputs.applied.forces, std::span<const BodyForce>(rest.forces)) && sameState(state, rest.state);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "pincer/contact/functions/invariants.h"
+#include "pincer/engine/world/joint_rows.h"
 #include "pincer/engine/world/most_numbered.h"
 
 namespace pincer::engine {
@@ -24,6 +25,11 @@ void sizeState(const WorldModel& model, WorldState& state) {
   state.points.resize(model.points.size());
   state.driven_w_W.resize(static_cast<std::size_t>(model.driven_count));
   state.contacts.resize(static_cast<std::size_t>(model.options.max_contacts));
+  state.tree_q.resize(static_cast<std::size_t>(model.tree_q_count));
+  state.tree_v.resize(static_cast<std::size_t>(model.tree_v_count));
+  state.brakes.resize(static_cast<std::size_t>(model.tree_coordinate_count));
+  state.controls.resize(model.drives.size());
+  state.drives.resize(model.drives.size());
 }
 
 }  // namespace
@@ -63,6 +69,7 @@ WorldScratch::WorldScratch(const WorldModel& model) : h(model.options.h), patche
     out.factor.resize(6 * kMoverFreedoms * group.bodies.size());
     out.may_touch = group.may_touch;
   }
+  sizeJointRows(model, *this);
   if (model.options.position_tolerance > 0) {
     for (WorldState* copy : {&before, &coarse}) sizeState(model, *copy);
   }
@@ -85,11 +92,13 @@ ScratchHandle makeScratch(const WorldModel& model) { return ScratchHandle(new Wo
 
 void timeStages(StageClock* clock, WorldScratch& scratch) { scratch.clock = clock; }
 
-int contactCount(const WorldScratch& scratch) { return static_cast<int>(scratch.contacts.size() + scratch.sleep.contacts.size()); }
+int contactCount(const WorldScratch& scratch) {
+  return static_cast<int>(scratch.contacts.size() + scratch.sleep.contacts.size()) - scratch.joint_contacts;
+}
 
 ContactReport contactAt(const WorldScratch& scratch, int k) {
   const auto i = static_cast<std::size_t>(k);
-  const std::size_t awake = scratch.contacts.size();
+  const std::size_t awake = scratch.contacts.size() - static_cast<std::size_t>(scratch.joint_contacts);
   const Contact& c = i < awake ? scratch.contacts[i] : scratch.sleep.contacts[i - awake].contact;
   ContactReport report;
   report.id = c.id;

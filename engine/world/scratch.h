@@ -14,6 +14,7 @@
 #include "pincer/engine/world/contact.h"
 #include "pincer/engine/world/islands.h"
 #include "pincer/engine/world/stage_clock.h"
+#include "pincer/engine/world/tree_scratch.h"
 #include "pincer/engine/world/world_sleep.h"
 
 namespace pincer::engine {
@@ -93,10 +94,37 @@ struct JointGroupScratch {
   HeldScratch held;            // of a group that is a held body, instead of rows, A, lambda
 };
 
+// A stop of a coordinate, its dry friction, or a drive at its limit: a contact, where it is needed, see joint_rows.h. As a mover its velocities are those of
+// the coordinate: along z of a stop, out of it; along x of a brake.
+enum class JointRowKind : unsigned char { kLower, kUpper, kFriction, kDrive };
+struct JointRowScratch : MoverScratch {
+  JointRowKind kind = JointRowKind::kLower;
+  int tree = -1;          // -1: what doesn't move, the other side of all of them
+  int element = 0;        // coordinate, or drive, of the tree
+  bool wanted = false;    // in this part of the tick
+  double mobility = 0;    // of the coordinate to impulses along it [1/kg ..]
+  double limit = 0;       // of a brake: the most that it gives [N s]
+  double grip = 0;        // of a brake: W_nn of its own mover
+  double compliance = 0;  // of a drive: 1/m^
+  // Of a stop that the joint hits in this part of the tick: it is left out, and cuts the tick.
+  enum class Hit : unsigned char { kNone, kBounces, kLands } hit = Hit::kNone;
+  double acceleration = 0;  // out of the stop, without it [m/s^2, rad/s^2]
+  bool isBrake() const { return kind == JointRowKind::kFriction || kind == JointRowKind::kDrive; }
+};
+// A drive in this part of the tick.
+struct DriveScratch {
+  DriveInput input;  // at the end of it
+  DriveMemory mode = DriveMemory::kWithin;
+  DriveTick law;                 // without limits
+  double mass = 0, impulse = 0;  // m^ and p of that, where it isn't in the tree's own
+  double force = 0;              // its mean [N, N m]
+};
+
 // Two bodies that may hit each other within the tick.
 struct ImpactPair {
   int a = 0, b = 0;
   bool lands = false;  // without bouncing, where it didn't touch; what touches goes on touching
+  int stop = -1;       // of WorldScratch::joint_rows: the joint of link a = b hits it; -1: two bodies hit each other
 };
 
 // Of a contact between bodies, while overlap is undone (push_out.h).
@@ -129,16 +157,21 @@ struct WorldScratch {
   std::vector<ImpactPair> pushed_pairs;  // get that fast in this tick (notePushedPairs); capacity as contacts
   std::vector<ImpactPair> impact_pairs;  // hit each other in this part of the tick, or may (impact.h)
   std::vector<JointGroupScratch> joint_groups;
-  bool flings = false;                         // some body's `flung` isn't 0
-  std::vector<bool> struck;                    // per body: an impact reaches it
-  std::vector<bool> pushed;                    // per body: it is deep in another, or was pushed out of one (push_out.h)
-  std::vector<PushedContact> pushed_contacts;  // as `contacts`
-  std::vector<KeptMemory> kept;                // of contacts that stand still
-  int still_bodies = 0;                        // awake ones that could sleep: nothing of their state changed in this tick
-  WorldState before, coarse;                   // the tick's start, and its end in half as many parts
-  double bounce = 1;                           // share of the restitution that acts in an impact: less where all of it would add energy
-  std::vector<PointInput> point_inputs;        // at the end of this part of the tick
-  std::vector<MotionInput> motion_inputs;      // likewise, one per driven body
+  std::vector<TreeScratch> trees;
+  std::vector<JointRowScratch> joint_rows;                       // three per coordinate of all trees, one per drive, and what doesn't move
+  std::vector<DriveScratch> drives;                              // of the world
+  int joint_contacts = 0;                                        // of `contacts`, the last ones
+  JointRowScratch::Hit stops_hit = JointRowScratch::Hit::kNone;  // what may cut this part of the tick: nothing, bounces, landings as well
+  bool flings = false;                                           // some body's `flung` isn't 0
+  std::vector<bool> struck;                                      // per body: an impact reaches it
+  std::vector<bool> pushed;                                      // per body: it is deep in another, or was pushed out of one (push_out.h)
+  std::vector<PushedContact> pushed_contacts;                    // as `contacts`
+  std::vector<KeptMemory> kept;                                  // of contacts that stand still
+  int still_bodies = 0;                                          // awake ones that could sleep: nothing of their state changed in this tick
+  WorldState before, coarse;                                     // the tick's start, and its end in half as many parts
+  double bounce = 1;                       // share of the restitution that acts in an impact: less where all of it would add energy
+  std::vector<PointInput> point_inputs;    // at the end of this part of the tick
+  std::vector<MotionInput> motion_inputs;  // likewise, one per driven body
   std::vector<int> first_row;
   std::vector<double> mu, q, r, u;
   contact::PatchCache patches;
@@ -158,6 +191,7 @@ void forEachContact(const WorldScratch& scratch, F f) {
 
 inline const MoverScratch& mover(const WorldScratch& scratch, const Side& side) {
   if (side.kind == SideKind::kPoint) return scratch.points[side.index];
+  if (side.kind == SideKind::kJoint) return scratch.joint_rows[side.index];
   return scratch.bodies[side.index];
 }
 

@@ -12,6 +12,7 @@ constexpr double kOnCone = 1 - 1e-9;    // of mu r_n, from which friction counts
 constexpr double kResidue = 1e-9;       // of the velocity with which a contact opens, ten times the solver's tolerance
 
 double inverseMassOf(const WorldModel& model, const WorldScratch& scratch, const Side& side) {
+  if (side.kind == SideKind::kJoint) return scratch.joint_rows[side.index].mobility;
   return side.kind == SideKind::kBody ? model.bodies[side.index].inverse_mass : scratch.points[side.index].inverse_mass.sum() * (1.0 / 3);
 }
 

@@ -64,8 +64,10 @@ class IslandSolve {
   static ContactProblem problemOf(Island& island, IslandScratch& s) {
     const auto n = static_cast<std::size_t>(island.contacts);
     const std::span<const ContactSide> sides(s.sides[static_cast<std::size_t>(island.place)].data(), 2 * n);
-    return {{island.first_row, n + 1}, {island.mu, n}, sides, VectorMap(island.q, island.rows), island.movers,
-            island.settling > 0,       island.calm};
+    ContactProblem problem{{island.first_row, n + 1}, {island.mu, n}, sides, VectorMap(island.q, island.rows), island.movers,
+                           island.settling > 0,       island.calm};
+    if (island.has_many_sides) takeManySides(island, s, problem);
+    return problem;
   }
 
   // What a loop of bodies asks for is fitted to what pushed in the last tick, once more to the impulses found if that fails; then contacts give way.

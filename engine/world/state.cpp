@@ -7,6 +7,7 @@
 #include "pincer/contact/functions/invariants.h"
 #include "pincer/engine/motion/free_motion.h"
 #include "pincer/engine/world/joints.h"
+#include "pincer/engine/world/tree_motion.h"
 
 namespace pincer::engine {
 namespace {
@@ -82,6 +83,7 @@ WorldState makeState(const WorldModel& model, const std::vector<BodyStart>& star
                     "bodies where the joint holds them.",
                     model.bodies[joint.a].name, gap[0], gap[1], kLargestJointGap));
   }
+  readTrees(model, state);
   state.contacts.resize(static_cast<std::size_t>(model.options.max_contacts));
   return state;
 }
@@ -115,6 +117,7 @@ double kineticEnergy(const WorldModel& model, const WorldState& state) {
     const BodyState& s = state.bodies[i];
     energy += 0.5 * (model.bodies[i].mass * s.v_W.squaredNorm() + s.L_W.dot(bodyAngularVelocity(model, state, static_cast<int>(i))));
   }
+  if (!model.trees.empty()) energy += armatureEnergy(model, state);
   return energy;
 }
 
@@ -126,6 +129,7 @@ double potentialEnergy(const WorldModel& model, const WorldState& state, const V
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
     energy -= model.bodies[i].mass * gravity_W.dot(state.bodies[i].X_WI.p);
   }
+  if (!model.trees.empty()) energy += springEnergy(model, state);
   return energy;
 }
 
@@ -147,6 +151,15 @@ std::uint64_t hashOf(const WorldState& state) {
     if (p.twist == 0 && p.twist_rate == 0) continue;  // of fingers that don't twist
     hash.add(p.twist);
     hash.add(p.twist_rate);
+  }
+  for (const auto* numbers : {&state.tree_q, &state.tree_v}) {
+    for (const double x : *numbers) hash.add(x);
+  }
+  for (const BrakeMemory memory : state.brakes) hash.add(static_cast<std::uint64_t>(memory));
+  for (std::size_t d = 0; d < state.drives.size(); ++d) {
+    hash.add(state.controls[d].value);
+    hash.add(state.controls[d].rate);
+    hash.add(static_cast<std::uint64_t>(state.drives[d]) << 1 | static_cast<std::uint64_t>(state.controls[d].moves));
   }
   for (int i = 0; i < state.contact_count; ++i) add(hash, state.contacts[i]);
   return hash.value();

@@ -10,14 +10,17 @@
 #include "pincer/engine/world/far_contacts.h"
 #include "pincer/engine/world/impact.h"
 #include "pincer/engine/world/island_sleep.h"
+#include "pincer/engine/world/joint_rows.h"
 #include "pincer/engine/world/push_out.h"
 #include "pincer/engine/world/rest.h"
 #include "pincer/engine/world/stages.h"
+#include "pincer/engine/world/tree_motion.h"
 
 namespace pincer::engine {
 namespace {
 
 constexpr double kFarTurn = 0.5;                                            // of what touches, in one part of a tick [rad]
+constexpr int kMostRevisions = 4;                                           // of which joint rows are needed, in an attempt
 constexpr int kMostTurningParts = 64;                                       // that a tick is cut into for that
 constexpr std::int64_t kPerBody = 300, kPerPair = 100, kPerContact = 1000;  // multiplications besides the solver's
 constexpr double kShortestPart = 1e-9;                                      // of a tick: a hit sooner than that is a hit at once
@@ -38,6 +41,9 @@ bool isFinite(const WorldState& state) {
   double sum = 0;  // a NaN or infinity anywhere survives the sum
   for (const BodyState& b : state.bodies) sum += b.X_WI.p.sum() + b.X_WI.q.coeffs().sum() + b.v_W.sum() + b.L_W.sum();
   for (const Vec3& w_W : state.driven_w_W) sum += w_W.sum();
+  for (const auto* numbers : {&state.tree_q, &state.tree_v}) {
+    for (const double x : *numbers) sum += x;
+  }
   for (const PointState& p : state.points) sum += p.p_W.sum() + p.v_W.sum() + p.twist + p.twist_rate;
   return std::isfinite(sum);
 }
@@ -210,8 +216,13 @@ class Tick {
   // cuts it again.
   double cutAt(double t) {
     constexpr int kMostCuts = 4;
-    constexpr double kSooner = 0.999;
+    constexpr double kSooner = 0.999, kSameTime = 1e-14;
     attempt(t);
+    for (int n = 0; n < kMostCuts && !isSpent() && hitsStop(); ++n) {
+      const double again = timeOfImpact(model_, state_, scratch_);
+      if (!(std::abs(again - t) > kSameTime * t && again < model_.options.h)) break;
+      attempt(t = again);
+    }
     for (int n = 0; n < kMostCuts && !isSpent() && somethingPushesImpacts(); ++n) {
       const double sooner = timeOfImpact(model_, state_, scratch_);
       if (!(sooner < kSooner * t && sooner > kShortestPart * model_.options.h)) break;
@@ -223,6 +234,8 @@ class Tick {
   bool somethingLands() const {
     return std::any_of(scratch_.impact_pairs.begin(), scratch_.impact_pairs.end(), [](const ImpactPair& p) { return p.lands; });
   }
+
+  bool hitsStop() const { return !scratch_.impact_pairs.empty() && scratch_.impact_pairs.front().stop >= 0; }
 
   bool somethingPushesImpacts() const {
     return std::any_of(scratch_.impact_pairs.begin(), scratch_.impact_pairs.end(),
@@ -286,11 +299,13 @@ class Tick {
     scratch_.h = h;
     setInputs(h);
     if (isSomethingAsleep(scratch_) && h != model_.options.h) wakeAll(scratch_);
+    if (!model_.trees.empty()) startTrees(landings);
     do {
       predict(model_, state_, scratch_);
       mark(scratch_, Stage::kPredict);
       collideBodies(model_, state_, scratch_);
       mark(scratch_, Stage::kCollideBodies);
+      if (!model_.trees.empty()) putJointRows(model_, state_, scratch_);
       if (source_) source_->addContacts(scratch_);
     } while (isSomethingAsleep(scratch_) && wakeTouched(scratch_));
     if (mayHit()) {
@@ -299,13 +314,28 @@ class Tick {
       scratch_.impact_pairs.clear();
       if (impactsWait(model_, state_, scratch_)) report_.status |= kImpactsCut;
     }
+    solveAttempt();
+    for (int n = 0; n < kMostRevisions && !model_.trees.empty() && reviseJointRows(model_, state_, scratch_); ++n) {
+      predictTrees(model_, state_, scratch_);
+      putJointRows(model_, state_, scratch_);
+      solveAttempt();
+    }
+    mark(scratch_, Stage::kSolve);
+    chargeSurroundings();
+  }
+
+  void startTrees(bool landings) {
+    using Hit = JointRowScratch::Hit;
+    scratch_.stops_hit = !mayHit() ? Hit::kNone : landings && landings_ < kMostLandings ? Hit::kLands : Hit::kBounces;
+    startJointRows(model_, state_, scratch_);
+  }
+
+  void solveAttempt() {
     prepareContacts(model_, state_, scratch_);
     do {
       solveContacts(model_, scratch_);
       gatherImpulses(model_, scratch_);
     } while (haveFarClosed(model_, scratch_));
-    mark(scratch_, Stage::kSolve);
-    chargeSurroundings();
   }
 
   // What a part of a tick costs besides its solve.
@@ -326,6 +356,7 @@ class Tick {
     const double share = h < left_ ? h / left_ : 1;
     for (std::size_t i = 0; i < scratch_.point_inputs.size(); ++i)
       setPoint(state_.points[i], inputs_.points[i], share, scratch_.points[i], scratch_.point_inputs[i]);
+    for (std::size_t d = 0; d < scratch_.drives.size(); ++d) setControl(d, share);
     for (std::size_t i = 0; i < model_.bodies.size() && model_.driven_count > 0; ++i) {
       if (model_.bodies[i].driven) setMotion(static_cast<std::size_t>(model_.bodies[i].motion), state_.bodies[i], share);
     }
@@ -337,6 +368,25 @@ class Tick {
     if (!point.input_ok) report_.status |= kInputNotFinite;
     if (share < 1)
       out.p_target_W = cubicBetween(now.p_target_W, now.v_target_W, end.p_target_W, end.v_target_W, left_, share, out.v_target_W);
+  }
+
+  // A control that moves goes from where it was to where it is to be along the cubic with both rates.
+  void setControl(std::size_t d, double share) {
+    const DriveInput& before = state_.controls[d];
+    DriveInput& out = scratch_.drives[d].input;
+    out = before;
+    out.moves = false;
+    if (d >= inputs_.controls.size()) return;
+    const DriveInput& end = inputs_.controls[d];
+    if (!std::isfinite(end.value) || !std::isfinite(end.rate)) {
+      report_.status |= kInputNotFinite;
+      return;
+    }
+    out = end;
+    if (!end.moves || !(share < 1)) return;
+    Vec3 rate = Vec3::Zero();
+    out.value = cubicBetween({before.value, 0, 0}, {before.rate, 0, 0}, {end.value, 0, 0}, {end.rate, 0, 0}, left_, share, rate).x();
+    out.rate = rate.x();
   }
 
   void setMotion(std::size_t i, const BodyState& now, double share) {

@@ -10,6 +10,8 @@
 #include "pincer/engine/world/colliders.h"
 #include "pincer/engine/world/held_body.h"
 #include "pincer/engine/world/impact.h"
+#include "pincer/engine/world/joint_rows.h"
+#include "pincer/engine/world/tree_motion.h"
 
 namespace pincer::engine {
 namespace {
@@ -35,7 +37,7 @@ struct Moment {
   Motion motion;
 };
 
-Moment momentOf(const WorldModel& model, const WorldState& state, const WorldScratch& scratch, int i, double t) {
+Moment momentOf(const WorldModel& model, const WorldState& state, WorldScratch& scratch, int i, double t) {
   PINCER_ASSERT(scratch.h > 0 && t >= 0);
   const BodyModel& body = model.bodies[i];
   const BodyState& s = state.bodies[i];
@@ -50,6 +52,10 @@ Moment momentOf(const WorldModel& model, const WorldState& state, const WorldScr
     const int n = body.joint_group;
     const BodyState at = heldBodyAt(model, model.joint_groups[n], scratch.joint_groups[n], now, s, scratch.h, t);
     return {at.X_WI, {at.v_W, angularVelocity(body.rotation, at.X_WI.q, at.L_W)}};
+  }
+  if (body.tree >= 0) {
+    const LinkMoment link = linkAt(model, state, scratch, i, t);
+    return {link.X_WI, link.motion};
   }
   const Vec3 dv_W = now.free.v_W + body.inverse_mass * now.impulse_W - s.v_W;
   const double share = now.closing ? 1 : t / scratch.h;     // of the change of velocity that has happened
@@ -157,7 +163,11 @@ class ClosingPair {
 
 double timeOfImpact(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
   double first = std::numeric_limits<double>::infinity();
-  for (const ImpactPair& pair : scratch.impact_pairs) first = std::min(first, ClosingPair(model, state, scratch, pair).time());
+  for (const ImpactPair& pair : scratch.impact_pairs) {
+    const double t = pair.stop >= 0 ? timeOfStop(model, state, scratch, scratch.joint_rows[static_cast<std::size_t>(pair.stop)])
+                                    : ClosingPair(model, state, scratch, pair).time();
+    first = std::min(first, t);
+  }
   return first;
 }
 

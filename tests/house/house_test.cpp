@@ -46,7 +46,7 @@ std::vector<std::string> linesOf(const fs::path& file) {
 // The rooms of each folder and wing, from the bottom up: a room sees itself and those before it.
 const std::map<std::string, std::vector<std::string>> kRooms = {
     {"contact", {"functions", "io", "mesh", "surface", "remesh", "curve", "shape"}},
-    {"engine", {"motion", "solve", "world"}},
+    {"engine", {"motion", "solve", "tree", "world"}},
     {"grasp", {"coupling", "tick", "baseline", "passivity", "quality"}},
     {"devices", {"arm", "cld", "usb", "falcon", "haply", "gate", "window", "emulate"}},
     {"tasks", {"run", "lab", "judge", "view", "app"}},
@@ -160,7 +160,7 @@ TEST(FrontDoor, ListsWhatStandsInIt) {
     if (line.find(')') != std::string::npos) break;
   }
   EXPECT_EQ(listed, publicHeaders());
-  EXPECT_LE(listed.size(), 43u);
+  EXPECT_LE(listed.size(), 44u);
 }
 
 // In a library's folder nothing stands but its public headers and its CMakeLists.txt.
@@ -182,7 +182,7 @@ TEST(FrontDoor, LeadsToNothingPrivate) {
 // A user pays for each in every source. What has to grow says why here.
 TEST(FrontDoor, StepPullsInFewHeaders) {
   const std::map<std::string, std::size_t> most = {
-      {"tasks/run/pincer.h", 39}, {"grasp/step.h", 16}, {"engine/step.h", 9}, {"contact/smooth_mesh.h", 5}};
+      {"tasks/run/pincer.h", 40}, {"grasp/step.h", 17}, {"engine/step.h", 10}, {"contact/smooth_mesh.h", 5}};
   for (const auto& [header, count] : most) {
     std::set<std::string> pulled;
     pullIn(header, pulled);

@@ -1,0 +1,48 @@
+// sparse_ldl: the factor of a matrix in which a column sees only those on its path to the root (tree_pattern.h).
+//
+//   M = L^T D L,   L_ij != 0 only for j on the path of i,   L_ii = 1;     outboard first, so that nothing fills in
+//
+// Packed: rows by columns' paths. L takes M's place, the entries of D too.
+// Source: R. Featherstone, Int. J. Robotics Res. 24 (2005) 487-500.
+#pragma once
+#include <span>
+#include <vector>
+
+#include "pincer/engine/tree.h"
+
+namespace pincer::engine {
+
+struct TreeFactor {
+  explicit TreeFactor(const TreeModel& tree)
+      : entries(static_cast<std::size_t>(tree.entries)), root_inverse(static_cast<std::size_t>(tree.columnCount())) {}
+  std::vector<double> entries;       // M, then L and D
+  std::vector<double> root_inverse;  // D^-1/2
+};
+
+// A column's share in a length l: dl/dt = sum of share u.
+struct ColumnShare {
+  int column = 0;
+  double share = 0;
+};
+
+// The place of columns i and j in the packed matrix, j on the path of i or i itself.
+inline std::size_t entryOf(const TreeModel& tree, int i, int j) {
+  return static_cast<std::size_t>(tree.row[static_cast<std::size_t>(i)] + tree.depth[static_cast<std::size_t>(j)]);
+}
+
+// M += weight c c^T, where all columns of c lie on one path.
+void addSquare(const TreeModel& tree, std::span<const ColumnShare> c, double weight, std::span<double> M);
+
+// Factorises in place. False: M isn't positive definite, some column moves no mass.
+bool factorise(const TreeModel& tree, TreeFactor& factor);
+
+// x <- M^-1 x
+void solve(const TreeModel& tree, const TreeFactor& factor, std::span<double> x);
+
+// row <- row L^-1 D^-1/2, where the row is 0 but on the path of `tip`: a row of A of the contact problem, W = A A^T = J M^-1 J^T.
+void scaleRow(const TreeModel& tree, const TreeFactor& factor, int tip, std::span<double> row);
+
+// x <- L^-1 D^-1/2 x: of movers' scaled velocities A^T r the columns' rates.
+void unscale(const TreeModel& tree, const TreeFactor& factor, std::span<double> x);
+
+}  // namespace pincer::engine

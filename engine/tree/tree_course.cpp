@@ -1,0 +1,270 @@
+#include "pincer/engine/tree/tree_course.h"
+
+#include <algorithm>
+
+#include "pincer/contact/assert.h"
+#include "pincer/engine/tree/slot.h"
+
+namespace pincer::engine {
+namespace {
+
+void addTimes(double factor, const std::vector<double>& x, std::vector<double>& sum) {
+  for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += factor * x[i];
+}
+
+// What a spring, a damper or a drive is at one place of the tree.
+struct Element {
+  std::span<const ColumnShare> c;  // how its length changes with the columns
+  double l = 0;
+  const DriveTick& law;
+};
+
+// f(element, course) of each spring and damper of a joint, then of each drive, but of those that are a constant force at most.
+template <class F>
+void forEachElement(const TreeModel& tree, const TreePush& push, const TreePlace& place, std::span<const double> q, TreeCourse& course,
+                    F f) {
+  for (std::size_t i = 0; i < tree.coordinates.size(); ++i) {
+    const TreeCoordinate& own = tree.coordinates[i];
+    if (!(own.damping > 0 || own.traits.stiffness > 0)) continue;
+    const ColumnShare share{own.column, place.coordinates[i].share};
+    const DriveTick law{.stiffness = own.traits.stiffness, .damping = own.damping, .target = own.traits.rest};
+    f(Element{std::span(&share, 1), own.q < 0 ? 0 : q[slot(own.q)], law}, course.springs[i]);
+  }
+  for (std::size_t d = 0; d < tree.drives.size(); ++d) {
+    if (!(push.drives[d].stiffness > 0 || push.drives[d].damping > 0)) continue;
+    columnShares(tree, place, tree.drives[d], course.shares);
+    f(Element{course.shares, lengthOf(tree, tree.drives[d], q), push.drives[d]}, course.drives[d]);
+  }
+}
+
+// The forces that stay, by columns: they need no law.
+void fillConstantForces(const TreeModel& tree, const TreePush& push, const TreePlace& place, TreeCourse& course,
+                        std::vector<double>& force) {
+  std::fill(force.begin(), force.end(), 0.0);
+  for (std::size_t i = 0; i < push.constant.size(); ++i)
+    force[slot(tree.coordinates[i].column)] += place.coordinates[i].share * push.constant[i];
+  for (std::size_t d = 0; d < tree.drives.size(); ++d) {
+    if (push.drives[d].force == 0) continue;
+    columnShares(tree, place, tree.drives[d], course.shares);
+    for (const ColumnShare& c : course.shares) force[slot(c.column)] += c.share * push.drives[d].force;
+  }
+}
+
+double along(std::span<const ColumnShare> c, std::span<const double> u) {
+  double rate = 0;
+  for (const ColumnShare& share : c) rate += share.share * u[slot(share.column)];
+  return rate;
+}
+
+// 1 / (c^T M^-1 c), of the factor of M in course.stage_factor.
+double leastInertia(const TreeModel& tree, std::span<const ColumnShare> c, TreeCourse& course) {
+  std::vector<double>& row = course.slope;
+  std::fill(row.begin(), row.end(), 0.0);
+  int tip = -1;
+  for (const ColumnShare& share : c) {
+    row[slot(share.column)] += share.share;
+    tip = std::max(tip, share.column);
+  }
+  scaleRow(tree, course.stage_factor, tip, row);
+  double sum = 0;
+  for (int i = tip; i >= 0; i = tree.before[slot(i)]) sum += row[slot(i)] * row[slot(i)];
+  return 1 / sum;
+}
+
+// M^ and its factor at q_m, the elements' laws from where the tick starts, and their impulses by columns in course.step. True if all are soft.
+bool fillMiddle(const TreeModel& tree, const TreePush& push, std::span<const double> q, std::span<const double> u, double h,
+                TreeCourse& course) {
+  fillInertia(tree, course.mid, course.composite, course.factor.entries);
+  course.stage_factor.entries = course.factor.entries;
+  std::fill(course.step.begin(), course.step.end(), 0.0);
+  bool are_soft = true, is_factorised = false;
+  forEachElement(tree, push, course.mid, q, course, [&](const Element& element, ElementCourse& out) {
+    if (!is_factorised) factorise(tree, course.stage_factor);
+    is_factorised = true;
+    const DriveTick& law = element.law;
+    const ElementTick tick{law.stiffness, law.damping,    element.l - law.target, along(element.c, u),
+                           law.way,       law.start_rate, law.end_rate,           h};
+    out.rate = tick.rate;
+    out.least_inertia = leastInertia(tree, element.c, course);
+    out.soft = isSoft(tick.k, tick.d, out.least_inertia, h);
+    are_soft = are_soft && out.soft;
+    out.implied = out.soft ? softLaw(tick) : stiffLaw(tick, out.least_inertia);
+    addSquare(tree, element.c, out.implied.mass, course.factor.entries);
+    for (const ColumnShare& c : element.c) course.step[slot(c.column)] += c.share * out.implied.impulse;
+  });
+  course.sound = factorise(tree, course.factor);
+  return are_soft;
+}
+
+// Dv = M^^-1 (h (tau - C(q_m, u)) + p) at the rates course.u; into `change`.
+void respond(const TreeModel& tree, const BaseCourse& base, const TreePush& push, double h, TreeCourse& course,
+             std::vector<double>& change) {
+  moveLinks(tree, base.mid, course.q, course.u, course.mid);
+  fillBias(tree, course.mid, base.mid, push.gravity_W, push.forces, course.u, course.biases, course.C);
+  for (std::size_t c = 0; c < change.size(); ++c) change[c] = h * (course.force[c] - course.C[c]) + course.step[c];
+  solve(tree, course.factor, change);
+}
+
+void goByTheMiddle(const TreeModel& tree, const BaseCourse& base, const TreePush& push, std::span<const double> u, double h,
+                   TreeCourse& course) {
+  fillConstantForces(tree, push, course.mid, course, course.force);
+  std::copy(u.begin(), u.end(), course.u.begin());
+  respond(tree, base, push, h, course, course.slope);
+  addTimes(0.5, course.slope, course.u);
+  respond(tree, base, push, h, course, course.slope);
+  moveLinks(tree, base.mid, course.q, u, course.mid);
+  for (std::size_t c = 0; c < u.size(); ++c) {
+    course.u_free[c] = u[c] + course.slope[c];
+    course.way_free[c] = h * (u[c] + 0.5 * course.slope[c]);
+  }
+}
+
+// Where a drive's target is at share s of the tick, and how fast: the cubic with its two rates.
+struct Target {
+  double place, rate;
+};
+Target targetAt(const DriveTick& d, double s, double h) {
+  const double a = d.start_rate, b = d.end_rate, mean = h > 0 ? d.way / h : 0;
+  const double bend = 3 * mean - 2 * a - b, twist = a + b - 2 * mean;
+  return {d.target + h * s * (a + s * (bend + s * twist)), a + s * (2 * bend + 3 * s * twist)};
+}
+
+// One look of Runge and Kutta: the columns' accelerations where course.q and course.u are, into course.slope.
+void lookAt(const TreeModel& tree, const TreeBase& base, const TreePush& push, double s, double h, TreeCourse& course) {
+  placeLinks(tree, base, course.q, course.stage);
+  moveLinks(tree, base, course.q, course.u, course.stage);
+  fillConstantForces(tree, push, course.stage, course, course.force);
+  fillBias(tree, course.stage, base, push.gravity_W, push.forces, course.u, course.biases, course.C);
+  for (std::size_t c = 0; c < course.slope.size(); ++c) course.slope[c] = course.force[c] - course.C[c];
+  forEachElement(tree, push, course.stage, course.q, course, [&](const Element& element, const ElementCourse&) {
+    const Target target = targetAt(element.law, s, h);
+    const double spring = element.law.stiffness * (target.place - element.l);
+    const double force = spring + element.law.damping * (target.rate - along(element.c, course.u));
+    for (const ColumnShare& c : element.c) course.slope[slot(c.column)] += c.share * force;
+  });
+  fillInertia(tree, course.stage, course.composite, course.stage_factor.entries);
+  if (!factorise(tree, course.stage_factor)) course.sound = false;
+  solve(tree, course.stage_factor, course.slope);
+}
+
+// How steps from the start change where the columns go by u: of a ball's three, theta' = u - theta x u/2 + theta x (theta x u)/12.
+void stepRates(const TreeModel& tree, std::span<const double> step, std::span<const double> u, std::span<double> out) {
+  std::copy(u.begin(), u.end(), out.begin());
+  for (const TreeLink& link : tree.links) {
+    if (link.kind != JointKind::kBall) continue;
+    const std::size_t c = slot(tree.coordinates[slot(link.first_v)].column);
+    const Eigen::Map<const Vec3> theta(&step[c]), w(&u[c]);
+    const Vec3 across = theta.cross(w);
+    Eigen::Map<Vec3> rates(&out[c]);
+    rates = w - 0.5 * across + theta.cross(across) / 12;
+  }
+}
+
+void goByRungeKutta(const TreeModel& tree, const BaseCourse& base, const TreePush& push, std::span<const double> q,
+                    std::span<const double> u, double h, TreeCourse& course) {
+  const std::array<const TreeBase*, 4> bases{&base.start, &base.mid, &base.mid, &base.end};
+  constexpr std::array kShares{0.0, 0.5, 0.5, 1.0};
+  constexpr std::array kWeights{1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6};
+  std::fill(course.step.begin(), course.step.end(), 0.0);
+  std::fill(course.way_free.begin(), course.way_free.end(), 0.0);
+  std::copy(u.begin(), u.end(), course.u.begin());
+  std::copy(u.begin(), u.end(), course.u_free.begin());
+  for (std::size_t k = 0; k < kShares.size(); ++k) {
+    growCoordinates(tree, q, course.step, course.q);
+    lookAt(tree, *bases[k], push, kShares[k], h, course);
+    stepRates(tree, course.step, course.u, course.force);
+    addTimes(h * kWeights[k], course.force, course.way_free);
+    addTimes(h * kWeights[k], course.slope, course.u_free);
+    if (k + 1 == kShares.size()) break;
+    for (std::size_t c = 0; c < u.size(); ++c) {
+      course.step[c] = h * kShares[k + 1] * course.force[c];
+      course.u[c] = u[c] + h * kShares[k + 1] * course.slope[c];
+    }
+  }
+}
+
+}  // namespace
+
+TreeCourse::TreeCourse(const TreeModel& tree)
+    : mid(tree),
+      factor(tree),
+      springs(tree.coordinates.size()),
+      drives(tree.drives.size()),
+      u_free(tree.before.size()),
+      way_free(tree.before.size()),
+      end(tree),
+      biases(tree.links.size()),
+      composite(tree.links.size()),
+      stage(tree),
+      stage_factor(tree),
+      C(tree.before.size()),
+      q(slot(tree.q_count)),
+      u(tree.before.size()),
+      step(tree.before.size()),
+      force(tree.before.size()),
+      slope(tree.before.size()) {
+  std::size_t most = 1;
+  for (const TreeDrive& drive : tree.drives) most = std::max(most, drive.terms.size());
+  shares.reserve(most);
+}
+
+void predictTree(const TreeModel& tree, const BaseCourse& base, const TreePush& push, std::span<const double> q, std::span<const double> u,
+                 double h, TreeCourse& course) {
+  PINCER_ASSERT(h > 0 && push.drives.size() == tree.drives.size());
+  for (std::size_t c = 0; c < u.size(); ++c) course.step[c] = 0.5 * h * u[c];
+  growCoordinates(tree, q, course.step, course.q);
+  placeLinks(tree, base.mid, course.q, course.mid);
+  moveLinks(tree, base.mid, course.q, u, course.mid);
+  const bool are_soft = fillMiddle(tree, push, q, u, h, course);
+  course.fine = are_soft && push.may_be_fine;
+  if (course.fine) {
+    goByRungeKutta(tree, base, push, q, u, h, course);
+  } else {
+    goByTheMiddle(tree, base, push, u, h, course);
+  }
+}
+
+void placeFreeEnd(const TreeModel& tree, const BaseCourse& base, std::span<const double> q, TreeCourse& course) {
+  growCoordinates(tree, q, course.way_free, course.q);
+  placeLinks(tree, base.end, course.q, course.end);
+  moveLinks(tree, base.end, course.q, course.u_free, course.end);
+}
+
+void advanceTree(const TreeModel& tree, const TreeBase& base, const TreeGain& gain, double t, std::span<const double> q,
+                 std::span<const double> u, TreeCourse& course, std::span<double> q_out, std::span<double> u_out) {
+  PINCER_ASSERT(gain.h > 0 && t >= 0);
+  const double share = t / gain.h;
+  for (std::size_t c = 0; c < u.size(); ++c) {
+    const double u_end = course.u_free[c] + gain.gained[c];
+    const double way = course.way_free[c] + 0.5 * gain.h * gain.gained[c];
+    // What the way is besides that of the rates at the start grows with the square of the time.
+    const double part = share == 1 ? way : t * u[c] + share * share * (way - gain.h * u[c]);
+    course.step[c] = gain.closing ? t * u_end : part;
+    u_out[c] = gain.closing ? u_end : u[c] + share * (u_end - u[c]);
+  }
+  growCoordinates(tree, q, course.step, q_out);
+  placeLinks(tree, base, q_out, course.end);
+  moveLinks(tree, base, q_out, u_out, course.end);
+}
+
+double lengthOf(const TreeModel& tree, const TreeDrive& drive, std::span<const double> q) {
+  double l = 0;
+  for (const TreeDrive::Term& term : drive.terms) l += term.factor * q[slot(tree.coordinates[slot(term.coordinate)].q)];
+  return l;
+}
+
+void columnShares(const TreeModel& tree, const TreePlace& place, const TreeDrive& drive, std::vector<ColumnShare>& out) {
+  out.clear();
+  for (const TreeDrive::Term& term : drive.terms) {
+    const int column = tree.coordinates[slot(term.coordinate)].column;
+    const double share = term.factor * place.coordinates[slot(term.coordinate)].share;
+    const auto same = std::find_if(out.begin(), out.end(), [&](const ColumnShare& c) { return c.column == column; });
+    if (same == out.end()) {
+      out.push_back({column, share});
+    } else {
+      same->share += share;
+    }
+  }
+}
+
+}  // namespace pincer::engine

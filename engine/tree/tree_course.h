@@ -1,0 +1,96 @@
+// tree_course: a tick of a tree, contacts apart.
+//
+//   q_m = q (+) h u/2: geometry, M, J;     u+ = u + Du;     q+ = q (+) h (u + u+)/2;     M^ = M + sum of c c^T m^
+//   M^ Du = h (tau - C(q_m, u + h a/2)) + p + J^T r,        M^ h a = h (tau - C(q_m, u)) + p
+//
+// q_m is without forces, so that what rests is found where it is. m^ and p of springs, dampers and drives: drive_law.h; tau of what is constant.
+// Where all of those are soft the free course, r = 0, is that of Runge and Kutta of 4th order (balls by exponentials: H. Munthe-Kaas, Appl. Numer.
+// Math. 29 (1999) 115-127): contacts add M^^-1 J^T r to its end, and half the way of that.
+#pragma once
+#include <span>
+#include <vector>
+
+#include "pincer/engine/tree/drive_law.h"
+#include "pincer/engine/tree/sparse_ldl.h"
+#include "pincer/engine/tree/tree_bias.h"
+#include "pincer/engine/tree/tree_inertia.h"
+
+namespace pincer::engine {
+
+// A drive in this tick: F = force + stiffness (target - l) + damping (target' - l').
+struct DriveTick {
+  double stiffness = 0, damping = 0, force = 0;
+  double target = 0, way = 0, start_rate = 0, end_rate = 0;  // at the start; how far it goes, and how fast
+};
+
+// What pushes a tree.
+struct TreePush {
+  Vec3 gravity_W = Vec3::Zero();
+  std::span<const LinkForce> forces{};  // one per link, or none
+  std::span<const DriveTick> drives{};  // one per drive of the tree
+  std::span<const double> constant{};   // forces that stay all through the tick, by coordinates, or none
+  bool may_be_fine = true;              // the free course by Runge and Kutta, if all is soft
+};
+
+// The base at the start, the middle and the end of the tick.
+struct BaseCourse {
+  TreeBase start, mid, end;
+};
+
+// A spring or drive along its length at the start of the tick; what it adds to M and to the impulses.
+struct ElementCourse {
+  double rate = 0;
+  double least_inertia = 0;  // m; 0 where nobody had to look
+  bool soft = true;
+  ImpliedInertia implied;
+};
+
+struct TreeCourse {
+  explicit TreeCourse(const TreeModel& tree);
+
+  bool sound = true;                           // M^ was positive definite
+  bool fine = false;                           // by Runge and Kutta
+  TreePlace mid;                               // at q_m, with the motion of u there
+  TreeFactor factor;                           // of M^ there
+  std::vector<ElementCourse> springs, drives;  // of coordinates; of drives
+  std::vector<double> u_free, way_free;        // by columns: rates at the end, steps until then
+  TreePlace end;                               // as placeFreeEnd or advanceTree left it
+  // Scratch.
+  std::vector<LinkBias> biases;
+  std::vector<CompositeInertia> composite;
+  TreePlace stage;
+  TreeFactor stage_factor;
+  std::vector<double> C, q, u, step, force, slope;
+  std::vector<ColumnShare> shares;
+};
+
+// The free course of a tree that is at q (q_count) and goes by u (columns). Allocates nothing. h > 0.
+void predictTree(const TreeModel& tree, const BaseCourse& base, const TreePush& push, std::span<const double> q, std::span<const double> u,
+                 double h, TreeCourse& course);
+
+// Places and motions at the end of the free course, in `course.end`.
+void placeFreeEnd(const TreeModel& tree, const BaseCourse& base, std::span<const double> q, TreeCourse& course);
+
+// How the tick went once impulses have changed the columns' rates at its end by `gained`. `closing`: all the way goes by the rates at the end, for
+// what lands.
+struct TreeGain {
+  std::span<const double> gained{};
+  double h = 0;
+  bool closing = false;
+};
+// At `t` after the tick's start, 0 .. h: q and the columns' rates, places and motions in `course.end`. Neither `q_out` nor `u_out` may be `q` or `u`.
+void advanceTree(const TreeModel& tree, const TreeBase& base, const TreeGain& gain, double t, std::span<const double> q,
+                 std::span<const double> u, TreeCourse& course, std::span<double> q_out, std::span<double> u_out);
+
+// What an element gave along its length over the tick, where that goes by `rate_end` in the end [N s, N m s]; the drive's constant force comes on top.
+inline double impulseOf(const ElementCourse& element, double rate_end) {
+  return element.implied.impulse - element.implied.mass * (rate_end - element.rate);
+}
+
+// Length of a drive at q.
+double lengthOf(const TreeModel& tree, const TreeDrive& drive, std::span<const double> q);
+
+// How a drive's length changes with the columns' rates, at this place; `out` keeps its memory. Columns that two terms share stand once.
+void columnShares(const TreeModel& tree, const TreePlace& place, const TreeDrive& drive, std::vector<ColumnShare>& out);
+
+}  // namespace pincer::engine

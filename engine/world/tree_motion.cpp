@@ -1,0 +1,249 @@
+#include "pincer/engine/world/tree_motion.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "pincer/contact/elementary.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/engine/motion/driven_motion.h"
+#include "pincer/engine/motion/free_motion.h"
+#include "pincer/engine/world/joint_rows.h"
+#include "pincer/engine/world/rest.h"
+
+namespace pincer::engine {
+namespace {
+
+bool isDriven(const WorldModel& model, const TreeModel& tree) { return tree.base >= 0 && model.bodies[tree.base].driven; }
+
+TreeBase baseNow(const WorldModel& model, const WorldState& state, const TreeModel& tree) {
+  if (tree.base < 0) return {};
+  const BodyState& s = state.bodies[tree.base];
+  TreeBase base{s.X_WI, {}};
+  if (isDriven(model, tree)) base.motion = {s.v_W, state.driven_w_W[model.bodies[tree.base].motion]};
+  return base;
+}
+
+// The middle of a driven base is predicted as that of all driven bodies is.
+BaseCourse baseCourse(const WorldModel& model, const WorldState& state, const WorldScratch& scratch, const TreeModel& tree) {
+  const TreeBase start = baseNow(model, state, tree);
+  if (!isDriven(model, tree)) return {start, start, start};
+  const BodyScratch& body = scratch.bodies[tree.base];
+  const Vec3 a_W = (body.free.v_W - body.start.v_W) / scratch.h, alpha_W = (body.free.w_W - body.start.w_W) / scratch.h;
+  const Motion mean{0.5 * (body.start.v_W + body.free.v_W), 0.5 * (body.start.w_W + body.free.w_W)};
+  return {{start.X_WB, body.start, a_W, alpha_W}, {body.X_WI_mid, mean, a_W, alpha_W}, {body.X_WB_end, body.free, a_W, alpha_W}};
+}
+
+void takeForces(const WorldScratch& scratch, const TreeModel& tree, TreeScratch& s) {
+  for (std::size_t l = 0; l < tree.links.size(); ++l) {
+    const BodyForce* const force = forceOn(scratch, static_cast<std::size_t>(tree.links[l].body));
+    s.forces[l] = force ? LinkForce{force->f_W, force->tau_W} : LinkForce{};
+  }
+}
+
+// Of a link: `free` where something can touch it.
+void showLink(const WorldModel& model, const WorldState& state, const TreeModel& tree, int l, const TreeScratch& s, BodyScratch& out) {
+  const int body = tree.links[l].body;
+  out.X_WI_mid = linkPose(s.course.mid, l);
+  out.start = {state.bodies[body].v_W, bodyAngularVelocity(model, state, body)};
+  out.free_angular_impulse_W.setZero();
+  if (!tree.may_touch) return;
+  out.X_WB_mid = out.X_WI_mid * model.bodies[body].X_IB;
+  out.R_WB_mid = out.X_WB_mid.q.toRotationMatrix();
+  out.free = out.end = s.course.end.links[l].motion;
+  out.inverse_inertia_W = inverseInertia(model.bodies[body].rotation, out.X_WI_mid.q);
+}
+
+BodyState stateOf(const WorldModel& model, const TreeModel& tree, const TreePlace& place, int l) {
+  const BodyModel& body = model.bodies[tree.links[l].body];
+  const Motion& motion = place.links[l].motion;
+  const Pose X_WI = linkPose(place, l);
+  return {X_WI, motion.v_W, X_WI.q * body.moments.cwiseProduct(X_WI.q.conjugate() * motion.w_W)};
+}
+
+// The motion of a link's centre in the middle that rates `u` give, the base at rest.
+Motion motionBy(const TreeModel& tree, const TreePlace& place, int l, std::span<const double> u) {
+  Motion sum;
+  forEachCoordinateOf(tree, l, [&](std::size_t i) {
+    const Motion unit = unitMotion(tree, place, i, place.links[l].p_OL);
+    const double rate = place.coordinates[i].share * u[tree.coordinates[i].column];
+    sum.v_W += rate * unit.v_W;
+    sum.w_W += rate * unit.w_W;
+  });
+  return sum;
+}
+
+void gatherMover(const MoverScratch& mover, TreeScratch& s) {
+  if (!mover.touched) return;
+  s.rest_speed = s.touched ? std::min(s.rest_speed, mover.rest_speed) : mover.rest_speed;
+  s.touched = true;
+  s.closing = s.closing || mover.closing;
+}
+
+// As if a link were alone and its impulses were all that its joints leave of them.
+void showAnswer(const WorldModel& model, const TreeModel& tree, const TreeScratch& s, WorldScratch& scratch) {
+  for (int l = 0; l < static_cast<int>(tree.links.size()); ++l) {
+    const int i = tree.links[l].body;
+    BodyScratch& body = scratch.bodies[i];
+    const Motion gained = motionBy(tree, s.course.mid, l, s.gained);
+    body.impulse_W = model.bodies[i].mass * gained.v_W;
+    const Quat& q_WI = body.X_WI_mid.q;
+    body.angular_impulse_W = q_WI * model.bodies[i].moments.cwiseProduct(q_WI.conjugate() * gained.w_W);
+    body.touched = true;
+    body.closing = s.closing;
+  }
+}
+
+bool isSlow(const Motion& m, double reach, double limit) {
+  return m.v_W.squaredNorm() <= limit * limit && reach * reach * m.w_W.squaredNorm() <= limit * limit;
+}
+
+// A tree that hardly moves, now and a tick ago, that nothing leads elsewhere, and on which nothing pushes but impulses of the last tick.
+bool comesToRest(const WorldModel& model, const WorldScratch& scratch, const TreeModel& tree, const TreeScratch& s) {
+  const double limit = s.touched ? s.rest_speed : kRestSpeed;
+  if (limit == 0 || isDriven(model, tree)) return false;
+  const auto leads = [](const DriveTick& drive) { return drive.way != 0 || drive.end_rate != 0; };
+  if (std::any_of(s.drives.begin(), s.drives.end(), leads)) return false;
+  for (std::size_t l = 0; l < tree.links.size(); ++l) {
+    const BodyModel& body = model.bodies[tree.links[l].body];
+    const double reach = std::min(body.bounding_radius, 1.0) + (tree.links[l].X_LJ.p).norm();
+    if (!isSlow(s.course.end.links[l].motion, reach, limit) || !isSlow(scratch.bodies[tree.links[l].body].start, reach, limit))
+      return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+TreeScratch::TreeScratch(const TreeModel& tree)
+    : drives(tree.drives.size()), forces(tree.links.size()), constant(tree.coordinates.size()), course(tree) {
+  for (std::vector<double>* columns : {&impulse, &gained, &row}) columns->resize(static_cast<std::size_t>(tree.columnCount()));
+  q.resize(static_cast<std::size_t>(tree.q_count));
+}
+
+void predictTrees(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
+  for (std::size_t t = 0; t < model.trees.size(); ++t) {
+    const TreeModel& tree = model.trees[t];
+    TreeScratch& s = scratch.trees[t];
+    s.base = baseCourse(model, state, scratch, tree);
+    const bool is_pushed = !scratch.forces.empty();
+    if (is_pushed) takeForces(scratch, tree, s);
+    const TreePush push{.gravity_W = scratch.gravity_W,
+                        .forces = is_pushed ? std::span<const LinkForce>(s.forces) : std::span<const LinkForce>{},
+                        .drives = s.drives,
+                        .constant = s.constant};
+    predictTree(tree, s.base, push, treeCoordinates(tree, state), treeRates(tree, state), scratch.h, s.course);
+    std::fill(s.gained.begin(), s.gained.end(), 0.0);
+    s.touched = s.closing = false;
+    if (tree.may_touch) placeFreeEnd(tree, s.base, treeCoordinates(tree, state), s.course);
+    for (int l = 0; l < static_cast<int>(tree.links.size()); ++l) showLink(model, state, tree, l, s, scratch.bodies[tree.links[l].body]);
+  }
+}
+
+void predictTreeImpacts(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
+  for (std::size_t t = 0; t < model.trees.size(); ++t) {
+    const TreeModel& tree = model.trees[t];
+    TreeScratch& s = scratch.trees[t];
+    const TreeBase base = baseNow(model, state, tree);
+    s.base = {base, base, base};
+    placeLinks(tree, base, treeCoordinates(tree, state), s.course.mid);
+    moveLinks(tree, base, treeCoordinates(tree, state), treeRates(tree, state), s.course.mid);
+    fillInertia(tree, s.course.mid, s.course.composite, s.course.factor.entries);
+    s.course.sound = factorise(tree, s.course.factor);
+    const std::span<const double> u = treeRates(tree, state);
+    std::copy(u.begin(), u.end(), s.course.u_free.begin());
+    std::fill(s.course.way_free.begin(), s.course.way_free.end(), 0.0);
+    s.course.end = s.course.mid;
+    for (int l = 0; l < static_cast<int>(tree.links.size()); ++l) showLink(model, state, tree, l, s, scratch.bodies[tree.links[l].body]);
+  }
+}
+
+void gatherTrees(const WorldModel& model, WorldScratch& scratch) {
+  for (std::size_t t = 0; t < model.trees.size(); ++t) {
+    TreeScratch& s = scratch.trees[t];
+    s.touched = s.closing = false;
+    s.rest_speed = 0;
+    std::fill(s.impulse.begin(), s.impulse.end(), 0.0);
+    for (std::size_t l = 0; l < model.trees[t].links.size(); ++l) {
+      const BodyScratch& body = scratch.bodies[model.trees[t].links[l].body];
+      gatherMover(body, s);
+      if (body.touched) addWrench(model.trees[t], s.course.mid, static_cast<int>(l), body.impulse_W, body.angular_impulse_W, s.impulse);
+    }
+  }
+  for (const JointRowScratch& row : scratch.joint_rows) {
+    if (!row.touched || row.tree < 0) continue;
+    TreeScratch& s = scratch.trees[row.tree];
+    gatherMover(row, s);
+    addAlong(model, row, row.isBrake() ? row.impulse_W.x() : row.impulse_W.z(), s);
+  }
+  for (std::size_t t = 0; t < model.trees.size(); ++t) {
+    TreeScratch& s = scratch.trees[t];
+    s.gained = s.impulse;
+    if (!s.touched) continue;
+    solve(model.trees[t], s.course.factor, s.gained);
+    showAnswer(model, model.trees[t], s, scratch);
+  }
+}
+
+void advanceTrees(const WorldModel& model, WorldState& state, WorldScratch& scratch) {
+  for (std::size_t t = 0; t < model.trees.size(); ++t) {
+    const TreeModel& tree = model.trees[t];
+    TreeScratch& s = scratch.trees[t];
+    const std::span<double> q = treeCoordinates(tree, state), u = treeRates(tree, state);
+    advanceTree(tree, s.base.end, {s.gained, scratch.h, s.closing}, scratch.h, q, u, s.course, s.q, s.row);
+    s.rests = comesToRest(model, scratch, tree, s);
+    if (s.rests) {
+      std::fill(u.begin(), u.end(), 0.0);
+    } else {
+      std::copy(s.q.begin(), s.q.end(), q.begin());
+      std::copy(s.row.begin(), s.row.end(), u.begin());
+    }
+    for (int l = 0; l < static_cast<int>(tree.links.size()); ++l) {
+      const int i = tree.links[l].body;
+      BodyState& body = state.bodies[i];
+      if (s.rests) {
+        body.v_W.setZero();
+        body.L_W.setZero();
+        scratch.bodies[i].end = {};
+      } else {
+        body = stateOf(model, tree, s.course.end, l);
+        scratch.bodies[i].end = s.course.end.links[l].motion;
+      }
+    }
+  }
+}
+
+void strikeTrees(const WorldModel& model, WorldState& state, WorldScratch& scratch) {
+  for (std::size_t t = 0; t < model.trees.size(); ++t) {
+    const TreeModel& tree = model.trees[t];
+    TreeScratch& s = scratch.trees[t];
+    if (!s.touched) continue;
+    const std::span<double> u = treeRates(tree, state);
+    for (std::size_t c = 0; c < u.size(); ++c) u[c] += s.gained[c];
+    moveLinks(tree, s.base.start, treeCoordinates(tree, state), u, s.course.mid);
+    for (int l = 0; l < static_cast<int>(tree.links.size()); ++l) {
+      BodyState& body = state.bodies[tree.links[l].body];
+      const BodyState now = stateOf(model, tree, s.course.mid, l);
+      body.v_W = now.v_W;
+      body.L_W = now.L_W;
+    }
+  }
+}
+
+LinkMoment linkAt(const WorldModel& model, const WorldState& state, WorldScratch& scratch, int body, double t) {
+  PINCER_ASSERT(scratch.h > 0 && t >= 0);
+  const TreeModel& tree = model.trees[model.bodies[body].tree];
+  TreeScratch& s = scratch.trees[model.bodies[body].tree];
+  TreeBase base = s.base.start;
+  if (isDriven(model, tree)) {
+    const DrivenPlace place = drivenPlace({base.X_WB, base.motion}, {s.base.end.X_WB, s.base.end.motion}, scratch.h, t / scratch.h);
+    base.X_WB = place.X_WB;
+    base.motion = place.motion;
+  }
+  advanceTree(tree, base, {s.gained, scratch.h, s.closing}, t, treeCoordinates(tree, state), treeRates(tree, state), s.course, s.q, s.row);
+  const int l = model.bodies[body].link;
+  return {linkPose(s.course.end, l), s.course.end.links[l].motion};
+}
+
+}  // namespace pincer::engine

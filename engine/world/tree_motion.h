@@ -1,0 +1,43 @@
+// tree_motion: trees in a tick, between what the engine knows of bodies and what trees know of their coordinates (engine/tree/tree_course.h).
+//
+//   gained = M^^-1 (sum over links J^T (impulse, moment) + impulses along joints),   u+ = u_free + gained
+//
+// Links are bodies to all else: their motions at the start, without contact at the end, and at the end stand in BodyScratch, their poses in the state.
+#pragma once
+#include <span>
+
+#include "pincer/engine/state.h"
+#include "pincer/engine/world/scratch.h"
+
+namespace pincer::engine {
+
+// Free courses; links' places in the middle and motions. After drives and constant forces are set (joint_rows.h) and driven bodies are predicted.
+void predictTrees(const WorldModel& model, const WorldState& state, WorldScratch& scratch);
+// The same where no time passes: M without drives, springs and dampers.
+void predictTreeImpacts(const WorldModel& model, const WorldState& state, WorldScratch& scratch);
+
+// What the gathered impulses on links and joints do to the trees; links' own impulses with what their joints answer.
+void gatherTrees(const WorldModel& model, WorldScratch& scratch);
+
+// To the end of this part of the tick.
+void advanceTrees(const WorldModel& model, WorldState& state, WorldScratch& scratch);
+
+// After an impact: the velocities of what was struck.
+void strikeTrees(const WorldModel& model, WorldState& state, WorldScratch& scratch);
+
+// Where a link is `t` after the start of this part of the tick, once its contacts are solved, and how it moves.
+struct LinkMoment {
+  Pose X_WI;
+  Motion motion;
+};
+LinkMoment linkAt(const WorldModel& model, const WorldState& state, WorldScratch& scratch, int body, double t);
+
+// Makes room for trees in a state whose bodies are placed, reads their coordinates and rates off these, and puts the links where the joints hold them.
+// Throws InputError where a coordinate isn't where the one that it follows has it.
+void readTrees(const WorldModel& model, WorldState& state);
+
+// Of the coordinates' armatures, and of their springs [J].
+double armatureEnergy(const WorldModel& model, const WorldState& state);
+double springEnergy(const WorldModel& model, const WorldState& state);
+
+}  // namespace pincer::engine

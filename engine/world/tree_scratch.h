@@ -1,0 +1,42 @@
+// tree_scratch: working memory of a tree in a tick.
+#pragma once
+#include <span>
+#include <vector>
+
+#include "pincer/engine/state.h"
+#include "pincer/engine/tree/tree_course.h"
+
+namespace pincer::engine {
+
+struct TreeScratch {
+  explicit TreeScratch(const TreeModel& tree);
+
+  BaseCourse base;
+  std::vector<DriveTick> drives;  // of this part of the tick
+  std::vector<LinkForce> forces;  // applied to links
+  std::vector<double> constant;   // forces of joints that slide against dry friction, by coordinates
+  TreeCourse course;
+  // Of what touches: contacts' impulses and what they change, by columns.
+  std::vector<double> impulse, gained;
+  bool touched = false, closing = false;  // some contact pushes on a link or a joint; one of those closes in this tick
+  double rest_speed = 0;                  // see MoverScratch
+  bool rests = false;                     // nothing of it changed in this part of the tick
+  // Between uses.
+  std::vector<double> row, q;
+};
+
+// A tree's share of the state.
+inline std::span<const double> treeCoordinates(const TreeModel& tree, const WorldState& state) {
+  return std::span(state.tree_q).subspan(static_cast<std::size_t>(tree.first_q), static_cast<std::size_t>(tree.q_count));
+}
+inline std::span<const double> treeRates(const TreeModel& tree, const WorldState& state) {
+  return std::span(state.tree_v).subspan(static_cast<std::size_t>(tree.first_v), tree.before.size());
+}
+inline std::span<double> treeCoordinates(const TreeModel& tree, WorldState& state) {
+  return std::span(state.tree_q).subspan(static_cast<std::size_t>(tree.first_q), static_cast<std::size_t>(tree.q_count));
+}
+inline std::span<double> treeRates(const TreeModel& tree, WorldState& state) {
+  return std::span(state.tree_v).subspan(static_cast<std::size_t>(tree.first_v), tree.before.size());
+}
+
+}  // namespace pincer::engine
