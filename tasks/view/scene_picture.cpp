@@ -45,7 +45,7 @@ ScenePicture::ScenePicture(const grasp::GraspModel& model, const grasp::GraspSta
 
 Image ScenePicture::draw(const grasp::GraspState& state, const grasp::GraspScratch* scratch, const CameraChoice& camera, bool forces) {
   surface_->makeCurrent();
-  captureGrasp(model_, state, scratch ? *scratch : *untouched_, {}, snapshot_);
+  captureGrasp(model_, state, scratch ? *scratch : std::as_const(*untouched_), {}, snapshot_);
   ViewChoice choice;
   choice.contacts = choice.forces = choice.cones = forces;
   const Camera usual = painter_->camera();

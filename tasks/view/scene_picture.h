@@ -2,6 +2,7 @@
 #pragma once
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "pincer/tasks/view/image.h"
 #include "pincer/tasks/view/painter.h"

@@ -71,7 +71,8 @@ SweepJob jobOf(const SweepArguments& arguments) {
     sweep.grid = gridOf(arguments, kMostStudyCases);
     return isStudy(arguments.what) ? oneFingerSweep(arguments.what, sweep) : studySweep(arguments.what, sweep);
   }
-  return sceneSweep(parseSceneOrBuiltin(arguments.what), sceneText(arguments.what), {gridOf(arguments, kMostSceneCases), arguments.measures});
+  return sceneSweep(parseSceneOrBuiltin(arguments.what), sceneText(arguments.what),
+                    {gridOf(arguments, kMostSceneCases), arguments.measures});
 }
 
 void printTable(const SweepTable& table, const SweepArguments& arguments) {
@@ -111,9 +112,10 @@ int runCases(SweepJob& job, const SweepArguments& arguments, SweepStore* store) 
 }
 
 int merge(const SweepArguments& arguments) {
-  if (arguments.merged.empty()) refuseUsage("sweep merge: the folders of the shards are required");
+  if (arguments.merged.empty()) refuseUsage("sweep merge: a folder for each shard is required");
   if (arguments.out.empty()) refuseUsage("sweep merge: --out is required");
-  if (!arguments.vary.empty() || !arguments.cases.empty()) refuseUsage("sweep merge: takes folders, --out and --format; --vary is for running");
+  if (!arguments.vary.empty() || !arguments.cases.empty())
+    refuseUsage("sweep merge: takes folders, --out and --format; --vary is for running");
   const StoredSweep whole = mergeSweeps(arguments.merged);
   makeDirectory(arguments.out);
   writeSweepStore(arguments.out, whole.definition, whole.shard, whole.table);
@@ -148,7 +150,8 @@ int printMachineFile(const SweepArguments& arguments) {
 
 int sweep(SweepArguments& arguments) {
   if (arguments.what == "merge") return merge(arguments);
-  if (!arguments.merged.empty()) refuseUsage(fmt::format("sweep: \"{}\" isn't expected: one scene or study at a time", arguments.merged.front()));
+  if (!arguments.merged.empty())
+    refuseUsage(fmt::format("sweep: \"{}\" isn't expected: one scene or study at a time", arguments.merged.front()));
   if (arguments.vary.empty() == arguments.cases.empty()) refuseUsage("sweep: --vary is required, or --cases; not both");
   if (!arguments.machines.empty()) return printMachineFile(arguments);
   if (!arguments.shard.empty()) arguments.options.shard = asUsage([&] { return parseShard(arguments.shard); });
@@ -174,12 +177,15 @@ void addSweepCommand(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<SweepArguments>();
   CLI::App* command = app.add_subcommand("sweep", "A scene or study for many values of some of its numbers");
   command
-      ->add_option("what", arguments->what,
-                   "Scene file (JSON), name of a built-in scene, sphere-pickup, cylinder-alignment, manipulation, or a study with one finger; or "
-                   "merge")
+      ->add_option(
+          "what", arguments->what,
+          "Scene file (JSON), name of a built-in scene, sphere-pickup, cylinder-alignment, manipulation, or a study with one finger; or "
+          "merge")
       ->required();
   command->add_option("folders", arguments->merged, "Of merge: the shards' folders, in any order");
-  command->add_option("--vary", arguments->vary, "PATH=FROM:TO:N, PATH=FROM:TO:N:log or PATH=A,B,C; any number of times")->expected(1)->take_all();
+  command->add_option("--vary", arguments->vary, "PATH=FROM:TO:N, PATH=FROM:TO:N:log or PATH=A,B,C; any number of times")
+      ->expected(1)
+      ->take_all();
   command->add_flag("--zip", arguments->zip, "Take the values of all --vary in step, instead of every combination");
   command->add_option("--cases", arguments->cases, "In place of --vary: a CSV file, paths in its first line, then a case per line");
   command->add_option("--measure", arguments->measures,
@@ -189,7 +195,8 @@ void addSweepCommand(CLI::App& app, int& exit_code) {
   command->add_option("--threads", arguments->options.threads, "That work at once; the table is the same")
       ->check(wholeWithin(1, 256))
       ->capture_default_str();
-  command->add_option("--out", arguments->out, "Directory for the table, its picture (PNG, SVG), and sweep.db, from which --resume goes on");
+  command->add_option("--out", arguments->out,
+                      "Directory for the table, its picture (PNG, SVG), and sweep.db, from which --resume goes on");
   command->add_option("--format", arguments->format, "Of the table")
       ->check(CLI::IsMember(std::vector<std::string>(kFormatNames.begin(), kFormatNames.end())))
       ->capture_default_str();

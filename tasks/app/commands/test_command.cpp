@@ -92,7 +92,7 @@ int replayLog(const std::string& log) {
 
 int runTest(const TestArguments& arguments) {
   if (!arguments.replay.empty()) return replayLog(arguments.replay);
-  if (arguments.paths.empty()) refuseUsage("test: scenes or folders of scenes are required");
+  if (arguments.paths.empty()) refuseUsage("test: a scene or a folder of scenes is required");
   const std::vector<std::string> files = findSceneTests(arguments.paths);
   SceneTestOptions options;
   options.jobs = arguments.jobs;

@@ -10,8 +10,8 @@ namespace pincer::tasks {
 constexpr std::size_t kMostStudyCases = 1000;
 
 struct StudySweep {
-  SweepGrid grid;         // paths in the study file (pincer run manipulation --write-study FILE)
-  int participants = 4;               // at each point, 1 .. 1000; the same people at every one
+  SweepGrid grid;        // paths in the study file (pincer run manipulation --write-study FILE)
+  int participants = 4;  // at each point, 1 .. 1000; the same people at every one
   std::uint64_t seed = 1;
 };
 

@@ -32,8 +32,10 @@ class SweepRun {
     for (std::size_t i = 0; i < job.table.points.size(); ++i) {
       if (!options.shard.has(i)) continue;
       ++total_;
-      if (job.table.results[i].done) ++done_;
-      else cases_.push_back(i);
+      if (job.table.results[i].done)
+        ++done_;
+      else
+        cases_.push_back(i);
     }
   }
 
@@ -53,16 +55,8 @@ class SweepRun {
   }
 
  private:
-  CaseResult measured(std::size_t point) const {
-    try {
-      return plain(job_.measure(point, interrupted_));
-    } catch (const InputError& error) {
-      return failedCase(job_.table, error);
-    }
-  }
-
   void runOne(std::size_t point) {
-    CaseResult result = measured(point);
+    CaseResult result = measuredCase(job_, point, interrupted_);
     if (interrupted_) return;  // half a run
     const std::lock_guard lock(mutex_);
     if (options_.finished) options_.finished(point, result);
@@ -100,6 +94,14 @@ SweepShard parseShard(const std::string& text) {
   const bool is_whole = has_two && second.ec == std::errc() && second.ptr == end;
   if (is_whole && shard.count >= 1 && shard.count <= kMostShards && shard.index >= 1 && shard.index <= shard.count) return shard;
   throw InputError(fmt::format("--shard {}: write I/N, the I-th of N shares, 1 <= I <= N <= {}; for example 2/7", text, kMostShards));
+}
+
+CaseResult measuredCase(const SweepJob& job, std::size_t point, const std::atomic<bool>& interrupted) {
+  try {
+    return plain(job.measure(point, interrupted));
+  } catch (const InputError& error) {
+    return failedCase(job.table, error);
+  }
 }
 
 std::string fingerprint(std::string_view text) {

@@ -54,12 +54,15 @@ SweepShard parseShard(const std::string& text);
 struct SweepOptions {
   int threads = 2;
   SweepShard shard = {};
-  std::function<void(std::int64_t done, std::int64_t total)> progress = {};          // from any thread, one at a time
+  std::function<void(std::int64_t done, std::int64_t total)> progress = {};        // from any thread, one at a time
   std::function<void(std::size_t point, const CaseResult& result)> finished = {};  // likewise: a case is whole
 };
 
 // Fills in the results of the shard's cases that aren't done. Passes on what `finished` throws, and what `measure` throws but InputError.
 void runSweep(SweepJob& job, const SweepOptions& options, const std::atomic<bool>& interrupted);
+
+// One case, whole: with its error where it can't be run.
+CaseResult measuredCase(const SweepJob& job, std::size_t point, const std::atomic<bool>& interrupted);
 
 // 64 bits over a text as 16 hexadecimal digits (FNV-1a), to tell whether a scene or study is the same.
 std::string fingerprint(std::string_view text);

@@ -44,8 +44,12 @@ class Hdf5File {
     must(H5Tset_cset(text_, H5T_CSET_UTF8));
   }
 
-  void addGroup(const std::string& name) { const Handle group(H5Gcreate2(file_, name.c_str(), H5P_DEFAULT, groups_, H5P_DEFAULT), H5Gclose); }
-  void add(const std::string& name, const std::vector<double>& values) { add(name, H5T_NATIVE_DOUBLE, values.size(), values.data(), H5T_IEEE_F64LE); }
+  void addGroup(const std::string& name) {
+    const Handle group(H5Gcreate2(file_, name.c_str(), H5P_DEFAULT, groups_, H5P_DEFAULT), H5Gclose);
+  }
+  void add(const std::string& name, const std::vector<double>& values) {
+    add(name, H5T_NATIVE_DOUBLE, values.size(), values.data(), H5T_IEEE_F64LE);
+  }
   void add(const std::string& name, const std::vector<std::string>& values) {
     std::vector<const char*> texts;
     for (const std::string& value : values) texts.push_back(value.c_str());

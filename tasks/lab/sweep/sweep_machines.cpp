@@ -34,7 +34,8 @@ std::string shellText(const std::vector<std::string>& arguments) {
 std::string parallelFile(const MachinePlan& plan) {
   std::string text = fmt::format(
       "# A shard of the sweep per line. On this machine:   parallel --joblog {0}/joblog --retries 3 < FILE\n"
-      "# On several, with pincer and {0} at the same paths: parallel --sshlogin HOST1,HOST2 --workdir $PWD --joblog {0}/joblog --retries 3 < FILE\n"
+      "# On several, with pincer and {0} at the same paths: parallel --sshlogin HOST1,HOST2 --workdir $PWD --joblog {0}/joblog --retries 3 "
+      "< FILE\n"
       "# What was killed goes on when the same is run again. When all are done:\n"
       "#   {1}\n",
       quotedWord(plan.out), mergeCommand(plan));

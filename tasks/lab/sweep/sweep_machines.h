@@ -11,7 +11,7 @@ struct MachinePlan {
   std::vector<std::string> command;  // the sweep: program, `sweep` and all arguments but those that this adds
   std::string out;                   // DIR
   int shards = 2;
-  int threads = 1;                   // per job
+  int threads = 1;                     // per job
   std::string time_limit = "1:00:00";  // per job, as Slurm has it
 };
 

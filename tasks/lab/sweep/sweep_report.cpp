@@ -147,8 +147,10 @@ std::vector<std::string> writeSweep(const SweepTable& table, const std::string& 
   makeDirectory(directory);
   constexpr std::array kEndings = {"csv", "json", "h5"};
   std::vector<std::string> paths{fmt::format("{}/sweep.{}", directory, kEndings[static_cast<std::size_t>(format)])};
-  if (format == SweepFormat::kHdf5) writeSweepHdf5(table, paths[0]);
-  else writeAtomically(paths[0], format == SweepFormat::kJson ? sweepJson(table) : sweepCsv(table));
+  if (format == SweepFormat::kHdf5)
+    writeSweepHdf5(table, paths[0]);
+  else
+    writeAtomically(paths[0], format == SweepFormat::kJson ? sweepJson(table) : sweepCsv(table));
   const bool is_plotted = std::find(table.plotted.begin(), table.plotted.end(), true) != table.plotted.end();
   if (table.parameters.size() > 2 || !is_plotted) return paths;
   Gnuplot gnuplot;

@@ -109,7 +109,8 @@ void readResults(const Database& d, SweepTable& table) {
   Statement select(d, fmt::format("SELECT \"case\"{}, state_hash, error FROM result ORDER BY \"case\"", columnsOf(table, "")));
   while (select.step()) {
     const auto point = static_cast<std::size_t>(select.integer(0));
-    if (point >= table.points.size()) throw InputError(fmt::format("{}: case {} of {} can't be. The file is damaged.", d.path(), point, table.points.size()));
+    if (point >= table.points.size())
+      throw InputError(fmt::format("{}: case {} of {} can't be. The file is damaged.", d.path(), point, table.points.size()));
     int column = 1;
     std::vector<double> values;
     for (std::size_t i = 0; i < table.parameters.size(); ++i) values.push_back(select.real(column++));
@@ -126,7 +127,8 @@ constexpr std::int64_t kMostCases = 1'000'000;  // more than any sweep has: a da
 
 StoredSweep read(const Database& d, const std::string& directory) {
   if (d.integer("PRAGMA application_id") != kSweepId) throw InputError(d.path() + ": is no sweep that `pincer sweep --out` wrote.");
-  if (d.integer("PRAGMA user_version") != kSweepFormat) throw InputError(d.path() + ": was written by another version of pincer. Run the sweep again.");
+  if (d.integer("PRAGMA user_version") != kSweepFormat)
+    throw InputError(d.path() + ": was written by another version of pincer. Run the sweep again.");
   StoredSweep sweep;
   sweep.directory = directory;
   Statement row(d, "SELECT what, definition, cases, shard, shards FROM sweep");
@@ -144,7 +146,9 @@ StoredSweep read(const Database& d, const std::string& directory) {
   return sweep;
 }
 
-std::string shardText(const SweepShard& shard) { return shard.count == 1 ? "the whole" : fmt::format("shard {}/{}", shard.index, shard.count); }
+std::string shardText(const SweepShard& shard) {
+  return shard.count == 1 ? "the whole" : fmt::format("shard {}/{}", shard.index, shard.count);
+}
 
 // Cases that the shard has and that aren't done.
 std::size_t openCases(const StoredSweep& sweep) {
@@ -161,8 +165,10 @@ class SweepStore::Impl {
       : directory_(directory), definition_(job.definition), shard_(shard), lock_(fileOf(directory)) {
     job.table.results.resize(job.table.points.size());
     const bool is_there = std::filesystem::exists(fileOf(directory));
-    if (is_there) takeUp(job, resume);
-    else writeSweepStore(directory, definition_, shard_, job.table);
+    if (is_there)
+      takeUp(job, resume);
+    else
+      writeSweepStore(directory, definition_, shard_, job.table);
     database_ = std::make_unique<Database>(fileOf(directory), Database::Mode::kWrite);
     database_->run("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL");
     insert_ = std::make_unique<ResultInsert>(*database_, job.table);
@@ -185,15 +191,19 @@ class SweepStore::Impl {
 
  private:
   void takeUp(SweepJob& job, bool resume) {
-    if (!resume) throw InputError(fmt::format("{}: a sweep is there already. Go on with it by --resume, or choose another folder.", fileOf(directory_)));
+    if (!resume)
+      throw InputError(
+          fmt::format("{}: a sweep is there already. Go on with it by --resume, or choose another folder.", fileOf(directory_)));
     const StoredSweep there = readSweep(directory_);
     if (there.definition != definition_) {
-      throw InputError(fmt::format("{}: is another sweep, or was made by another build of pincer. Choose another folder, or give the same command "
-                                   "to the same build.",
-                                   fileOf(directory_)));
+      throw InputError(
+          fmt::format("{}: is another sweep, or was made by another build of pincer. Choose another folder, or give the same command "
+                      "to the same build.",
+                      fileOf(directory_)));
     }
     if (there.shard.index != shard_.index || there.shard.count != shard_.count)
-      throw InputError(fmt::format("{}: is {}, not {}. Each shard has a folder of its own.", fileOf(directory_), shardText(there.shard), shardText(shard_)));
+      throw InputError(fmt::format("{}: is {}, not {}. Each shard has a folder of its own.", fileOf(directory_), shardText(there.shard),
+                                   shardText(shard_)));
     job.table.results = there.table.results;
   }
 
@@ -246,14 +256,19 @@ StoredSweep mergeSweeps(const std::vector<std::string>& directories) {
   std::vector<std::string> from(static_cast<std::size_t>(count));
   for (const std::string& directory : directories) {
     StoredSweep part = readSweep(directory);
-    if (part.definition != whole.definition) throw InputError(fmt::format("{} and {}: aren't shards of one sweep, or were made by different builds of pincer.", directories[0], directory));
+    if (part.definition != whole.definition)
+      throw InputError(
+          fmt::format("{} and {}: aren't shards of one sweep, or were made by different builds of pincer.", directories[0], directory));
     if (part.shard.count != count || part.shard.index < 1 || part.shard.index > count)
-      throw InputError(fmt::format("{} is {}, but {} is one of {}. Merge shards of one division.", directory, shardText(part.shard), directories[0], count));
+      throw InputError(fmt::format("{} is {}, but {} is one of {}. Merge shards of one division.", directory, shardText(part.shard),
+                                   directories[0], count));
     std::string& first = from[static_cast<std::size_t>(part.shard.index - 1)];
-    if (!first.empty()) throw InputError(fmt::format("{} is there twice: in {} and in {}. Leave one out.", shardText(part.shard), first, directory));
+    if (!first.empty())
+      throw InputError(fmt::format("{} is there twice: in {} and in {}. Leave one out.", shardText(part.shard), first, directory));
     first = directory;
     if (const std::size_t open = openCases(part); open > 0)
-      throw InputError(fmt::format("{}: {} lacks {} of its cases. Give its command again with --resume.", directory, shardText(part.shard), open));
+      throw InputError(
+          fmt::format("{}: {} lacks {} of its cases. Give its command again with --resume.", directory, shardText(part.shard), open));
     for (std::size_t i = 0; i < part.table.results.size(); ++i) {
       if (!part.shard.has(i)) continue;
       whole.table.points[i] = std::move(part.table.points[i]);

@@ -63,7 +63,9 @@ std::vector<double> rangeOf(const std::string& text, const std::vector<std::stri
 
 void checkPaths(const std::vector<std::string>& paths) {
   for (std::size_t i = 0; i < paths.size(); ++i) {
-    if (std::find(paths.begin(), paths.begin() + static_cast<std::ptrdiff_t>(i), paths[i]) == paths.begin() + static_cast<std::ptrdiff_t>(i)) continue;
+    if (std::find(paths.begin(), paths.begin() + static_cast<std::ptrdiff_t>(i), paths[i]) ==
+        paths.begin() + static_cast<std::ptrdiff_t>(i))
+      continue;
     throw InputError(fmt::format("sweep: {} is given twice. Name two numbers, or give all values at once: A,B,C", paths[i]));
   }
 }
@@ -97,7 +99,8 @@ std::vector<double> caseOf(const std::string& file, std::int64_t line, const std
   for (const std::string& cell : cells) {
     char* end = nullptr;
     const double value = std::strtod(cell.c_str(), &end);
-    if (cell.empty() || *end != '\0' || !std::isfinite(value)) throw InputError(fmt::format("{}:{}: \"{}\" isn't a number.", file, line, printable(cell)));
+    if (cell.empty() || *end != '\0' || !std::isfinite(value))
+      throw InputError(fmt::format("{}:{}: \"{}\" isn't a number.", file, line, printable(cell)));
     values.push_back(value);
   }
   return values;
@@ -156,7 +159,8 @@ SweepGrid readCases(const std::string& path, std::size_t most) {
   SweepGrid grid;
   std::string_view line;
   if (file.nextLine(line)) grid.paths = cellsOf(line);
-  if (grid.paths.empty() || grid.paths.front().empty()) throw InputError(fmt::format("{}:1: the first line names the numbers, as sphere.mass,duration", path));
+  if (grid.paths.empty() || grid.paths.front().empty())
+    throw InputError(fmt::format("{}:1: the first line names the numbers, as sphere.mass,duration", path));
   checkPaths(grid.paths);
   while (file.nextLine(line)) {
     if (trimmed(line).empty()) continue;

@@ -15,5 +15,6 @@ void bindInputs(pybind11::module_& module);
 void bindStep(pybind11::module_& module);
 void bindRollout(pybind11::module_& module);
 void bindRender(pybind11::module_& module);
+void bindTables(pybind11::module_& module);
 
 }  // namespace pincer::python

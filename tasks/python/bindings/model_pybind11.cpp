@@ -48,6 +48,7 @@ void bindModel(py::module_& module) {
   py::class_<Model, std::shared_ptr<Model>>(module, "Model",
                                             "A scene, built and checked once, then constant; any number of states may step it.")
       .def_readonly("name", &Model::name, "Path or name that it was loaded from.")
+      .def_readonly("text", &Model::text, "Of the scene, as it was read.")
       .def_property_readonly(
           "description", [](const Model& m) { return m.scene.description; }, "For people.")
       .def_property_readonly("bodies", &bodyNames, "Names of the bodies, in the order of State.position.")

@@ -22,4 +22,5 @@ PYBIND11_MODULE(_core, module) {
   bindStep(module);
   bindRollout(module);
   bindRender(module);
+  bindTables(module);
 }

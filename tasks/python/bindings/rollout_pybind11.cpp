@@ -11,11 +11,6 @@ using Models = std::vector<std::shared_ptr<Model>>;
 using Doubles = py::array_t<double, py::array::c_style>;
 using Flags = py::array_t<std::int32_t, py::array::c_style>;
 
-bool stoppedByUser() {
-  const py::gil_scoped_acquire gil;
-  return PyErr_CheckSignals() != 0;
-}
-
 // States that a rollout has for its time; given back whatever happens.
 class Lent {
  public:
@@ -74,7 +69,7 @@ void run(tasks::RolloutPool& pool, const Models& models, const std::vector<State
   job.chunk = chunk_size;
   const bool whole = [&] {
     const py::gil_scoped_release no_gil;
-    return pool.run(job, stoppedByUser);
+    return pool.run(job, interruptedByUser);
   }();
   if (!whole) throw py::error_already_set();
 }

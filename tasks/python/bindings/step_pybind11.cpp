@@ -8,12 +8,6 @@
 namespace pincer::python {
 namespace {
 
-// True once the user has pressed Ctrl-C; the exception is Python's then.
-bool wasInterrupted() {
-  const py::gil_scoped_acquire gil;
-  return PyErr_CheckSignals() != 0;
-}
-
 tasks::StepsReport step(const Model& model, State& state, std::int64_t nstep, const Inputs* inputs) {
   if (&state.model() != &model) throw InputError("step: the state is one of another model. Make it with pincer.State(model).");
   if (inputs && inputs->model.get() != &model)
@@ -22,7 +16,7 @@ tasks::StepsReport step(const Model& model, State& state, std::int64_t nstep, co
   bool interrupted = false;
   const auto report = [&] {
     const py::gil_scoped_release no_gil;
-    return state.step(inputs, nstep, [&] { return interrupted = wasInterrupted(); });
+    return state.step(inputs, nstep, [&] { return interrupted = interruptedByUser(); });
   }();
   if (interrupted) throw py::error_already_set();
   return report;

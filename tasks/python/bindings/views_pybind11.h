@@ -32,6 +32,12 @@ inline std::vector<double> numbersOf(const py::object& value, py::ssize_t size, 
   return {array.data(), array.data() + size};
 }
 
+// True once the user has pressed Ctrl-C; the exception is Python's then. For work that has let go of the interpreter lock.
+inline bool interruptedByUser() {
+  const py::gil_scoped_acquire gil;
+  return PyErr_CheckSignals() != 0;
+}
+
 inline py::array_t<double> arrayOf(const Vec3& v) { return py::array_t<double>(3, v.data()); }
 
 }  // namespace pincer::python

@@ -27,9 +27,12 @@ from pincer._core import (
 )
 from pincer._load import load
 from pincer._render import render
-from pincer._rollout import Rollout, RolloutResult, rollout
+from pincer._rollout import Rollout, RolloutResult, rollout, save_rollout
+from pincer._sweep import sweep
+from pincer._tables import Session, Sweep, read_session, read_sweep
 
 __all__ = [
-    "Body", "Camera", "Finger", "InputError", "Inputs", "Model", "Renderer", "Rollout", "RolloutResult", "State", "Status", "StepReport",
-    "__version__", "load", "remedies", "render", "rollout", "step", "version_text",
+    "Body", "Camera", "Finger", "InputError", "Inputs", "Model", "Renderer", "Rollout", "RolloutResult", "Session", "State", "Status",
+    "StepReport", "Sweep", "__version__", "load", "read_session", "read_sweep", "remedies", "render", "rollout", "save_rollout", "step",
+    "sweep", "version_text",
 ]

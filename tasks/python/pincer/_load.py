@@ -13,13 +13,18 @@ def load(scene, *, name="scene"):
     name:  of a dict's scene in messages; files that it names are relative to the folder of `name`.
     Raises InputError that says what is wrong, where, and what helps.
     """
-    if isinstance(scene, dict):
-        try:
-            text = json.dumps(scene, indent=1, default=_plain, allow_nan=False)
-        except ValueError as error:
-            raise _core.InputError(f"{name}: a number of the scene isn't finite, or a value isn't one of JSON's: {error}.") from None
-        return _core.load_text(text, name)
-    return _core.load_file(os.fspath(scene))
+    name, text = scene_text(scene, name)
+    return _core.load_text(text, name) if text else _core.load_file(name)
+
+
+def scene_text(scene, name="scene"):
+    """Name and text of a dict's scene; of a file or built-in scene its path or name, and no text."""
+    if not isinstance(scene, dict):
+        return os.fspath(scene), ""
+    try:
+        return name, json.dumps(scene, indent=1, default=_plain, allow_nan=False)
+    except ValueError as error:
+        raise _core.InputError(f"{name}: a number of the scene isn't finite, or a value isn't one of JSON's: {error}.") from None
 
 
 def _plain(value):

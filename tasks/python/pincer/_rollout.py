@@ -120,3 +120,32 @@ def _outputs(models, nbatch, nstep, out):
                                    f"{np.dtype(kind)}, C-contiguous and writeable.")
         arrays.append(array)
     return RolloutResult(*arrays)
+
+
+def save_rollout(path, model, result, controls=None):
+    """Writes a rollout as an HDF5 file with robomimic's groups: data/demo_0, ... each with states, actions, obs/<sensor>, dones.
+
+    Needs h5py. Attributes: data has "total" and "env_args" (JSON: the scene); each demo has "num_samples" and "model_file" (the scene's text).
+    """
+    import json
+
+    try:
+        import h5py
+    except ImportError:
+        raise ImportError("save_rollout needs h5py (Debian: python3-h5py).") from None
+    nbatch, nstep = result.status.shape
+    with h5py.File(path, "w") as file:
+        data = file.create_group("data")
+        data.attrs["total"] = nbatch * nstep
+        data.attrs["env_args"] = json.dumps({"env_name": model.name, "type": 3, "env_kwargs": {"tick": model.tick}})
+        for row in range(nbatch):
+            demo = data.create_group(f"demo_{row}")
+            demo.attrs["num_samples"] = nstep
+            demo.attrs["model_file"] = model.text
+            demo["states"] = result.state[row]
+            if controls is not None:
+                demo["actions"] = np.broadcast_to(controls, (nbatch, nstep, model.ncontrol))[row]
+            demo["dones"] = np.arange(1, nstep + 1) == nstep
+            demo["status"] = result.status[row]
+            for k, name in enumerate(model.sensors):
+                demo[f"obs/{name}"] = result.sensordata[row, :, k]

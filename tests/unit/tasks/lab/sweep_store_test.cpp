@@ -1,15 +1,16 @@
 // Sweeps that are kept: what was killed goes on, shards join to the bytes of the whole.
+#include "pincer/tasks/lab/sweep/sweep_store.h"
+
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <random>
 
-#include "pincer/contact/error.h"
 #include "pincer/tasks/app/app.h"
 #include "pincer/tasks/lab/sweep/scene_sweep.h"
 #include "pincer/tasks/lab/sweep/sweep_machines.h"
-#include "pincer/tasks/lab/sweep/sweep_store.h"
+#include "pincer/tests/support/error_of.h"
 #include "pincer/tests/support/run_app.h"
 #include "pincer/tests/support/temporary_directory.h"
 
@@ -17,21 +18,12 @@ namespace pincer::tasks {
 namespace {
 
 using tests::contains;
+using tests::errorOf;
 using tests::readFile;
 using tests::TemporaryDirectory;
 
 const std::atomic<bool> kNever{false};
 constexpr std::size_t kCases = 13;
-
-template <class Body>
-std::string errorOf(const Body& body) {
-  try {
-    body();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
-}
 
 // Three numbers, and one case that can't be run.
 SweepJob someJob() {
@@ -148,7 +140,8 @@ TEST(SweepMachines, QuoteWhatAShellWouldTake) {
 TEST(SweepCommand, RunsShardsAndMergesThem) {
   const TemporaryDirectory dir;
   const auto sweep = [&](std::vector<std::string> more) {
-    std::vector<std::string> all{"sweep", "s4_pinch", "--vary", "sphere.mass=0.1,-1,0.2", "--vary", "duration=0.003", "--measure", "sphere.p_z"};
+    std::vector<std::string> all{"sweep",  "s4_pinch",       "--vary",    "sphere.mass=0.1,-1,0.2",
+                                 "--vary", "duration=0.003", "--measure", "sphere.p_z"};
     all.insert(all.end(), more.begin(), more.end());
     return tests::runPincer(all);
   };
@@ -161,8 +154,8 @@ TEST(SweepCommand, RunsShardsAndMergesThem) {
   EXPECT_EQ(sweep({"--out", dir / "h5", "--format", "hdf5"}).exit_code, kExitCheckFailed);
   sweep({"--out", dir / "h5-again", "--format", "hdf5"});
   EXPECT_EQ(readFile(dir / "h5/sweep.h5"), readFile(dir / "h5-again/sweep.h5"));
-  for (const std::vector<std::string>& wrong :
-       std::vector<std::vector<std::string>>{{"--shard", "3/2", "--out", "x"}, {"--shard", "1/2"}, {"--resume"}, {"--cases", "c.csv"}, {"extra"}}) {
+  for (const std::vector<std::string>& wrong : std::vector<std::vector<std::string>>{
+           {"--shard", "3/2", "--out", "x"}, {"--shard", "1/2"}, {"--resume"}, {"--cases", "c.csv"}, {"extra"}}) {
     EXPECT_EQ(sweep(wrong).exit_code, kExitUsage) << wrong[0];
   }
 }

@@ -1,7 +1,10 @@
 // Sweeps: what a path names, which values are taken, and that the table tells the physics whoever worked on it.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 
 #include "pincer/tasks/app/app.h"
 #include "pincer/tasks/lab/experiments/localisation.h"
@@ -246,7 +249,8 @@ TEST(SweepCommand, WritesTableAndPicture) {
   EXPECT_TRUE(contains(done.out, "sphere.p_z [m]")) << done.out;
   EXPECT_EQ(tests::runPincer({"sweep", "s4_pinch"}).exit_code, kExitUsage);
   EXPECT_EQ(tests::runPincer({"sweep", "s4_pinch", "--vary", "sphere.mass=much"}).exit_code, kExitUsage);
-  const auto three = tests::runPincer({"sweep", "s4_pinch", "--vary", "duration=0.01", "--vary", "tick=0.001", "--vary", "sphere.mass=1,2"});
+  const auto three =
+      tests::runPincer({"sweep", "s4_pinch", "--vary", "duration=0.01", "--vary", "tick=0.001", "--vary", "sphere.mass=1,2"});
   EXPECT_EQ(three.exit_code, kExitOk) << three.error;
   const auto again = tests::runPincer({"sweep", "s4_pinch", "--vary", "duration=1", "--out", dir / "out"});
   EXPECT_EQ(again.exit_code, kExitBadInput);
