@@ -8,6 +8,7 @@
 
 #include "pincer/contact/io/counted.h"
 #include "pincer/tasks/lab/sweep/sweep_parts.h"
+#include "pincer/tasks/run/files/fingerprint.h"
 #include "pincer/tasks/run/scene/json_change.h"
 #include "pincer/tasks/run/simulation.h"
 

@@ -104,12 +104,6 @@ CaseResult measuredCase(const SweepJob& job, std::size_t point, const std::atomi
   }
 }
 
-std::string fingerprint(std::string_view text) {
-  std::uint64_t hash = 14695981039346656037u;  // FNV-1a's offset basis and prime
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211u;
-  return fmt::format("{:016x}", hash);
-}
-
 void runSweep(SweepJob& job, const SweepOptions& options, const std::atomic<bool>& interrupted) {
   job.table.results.resize(job.table.points.size());
   SweepRun(job, options, interrupted).run();

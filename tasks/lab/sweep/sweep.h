@@ -64,9 +64,6 @@ void runSweep(SweepJob& job, const SweepOptions& options, const std::atomic<bool
 // One case, whole: with its error where it can't be run.
 CaseResult measuredCase(const SweepJob& job, std::size_t point, const std::atomic<bool>& interrupted);
 
-// 64 bits over a text as 16 hexadecimal digits (FNV-1a), to tell whether a scene or study is the same.
-std::string fingerprint(std::string_view text);
-
 std::string sweepText(const SweepTable& table);
 std::string sweepCsv(const SweepTable& table);
 std::string sweepJson(const SweepTable& table);

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "pincer/contact/error.h"
+#include "pincer/tasks/run/files/fingerprint.h"
 #include "pincer/tasks/run/session/build_info.h"
 
 namespace pincer::tasks {

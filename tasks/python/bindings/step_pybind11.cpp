@@ -44,7 +44,7 @@ std::vector<std::string> remediesOf(std::uint32_t status) {
 
 py::object statusOf(const tasks::StepsReport& report) { return py::module_::import("pincer._core").attr("Status")(report.status); }
 
-std::string reprOf(const tasks::StepsReport& report) {
+std::string stepRepr(const tasks::StepsReport& report) {
   return fmt::format("<pincer.StepReport: {} ticks, status {}, {} contacts{}>", report.ticks, report.status, report.contacts,
                      report.asleep ? ", asleep" : "");
 }
@@ -68,7 +68,7 @@ void bindStep(py::module_& module) {
       .def_readonly("contacts", &StepsReport::contacts, "In the last tick.")
       .def_readonly("parts", &StepsReport::parts, "That the last tick was cut into.")
       .def_readonly("asleep", &StepsReport::asleep, "The last tick only repeated the one before.")
-      .def("__repr__", &reprOf);
+      .def("__repr__", &stepRepr);
   module.def(
       "step", &step, py::arg("model"), py::arg("state"), py::arg("nstep") = 1, py::arg("inputs") = py::none(),
       "nstep ticks of the model. Fingers and driven bodies follow the scene's trajectories but where inputs or targets say otherwise. "
