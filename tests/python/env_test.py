@@ -17,7 +17,9 @@ def test_keeps_the_contract(task):
 
 @pytest.mark.parametrize("task", TASKS)
 def test_rows_are_the_single_environment_and_begin_anew(task):
-    pincer.env.check_vector_env(lambda n, mode: pincer.env.make_vec(task, n, autoreset_mode=mode, threads=2), lambda: pincer.env.make(task))
+    pincer.env.check_vector_env(
+        lambda n, mode: pincer.env.make_vec(task, n, autoreset_mode=mode, threads=2), lambda: pincer.env.make(task)
+    )
 
 
 @pytest.mark.parametrize("task", TASKS)
@@ -29,7 +31,12 @@ def test_the_scripted_policy_succeeds(task):
         while not succeeded:
             observation, reward, terminated, truncated, info = env.step(policy(observation))
             succeeded = info["is_success"]
-            assert succeeded or not (terminated or truncated), (task, seed, observation["achieved_goal"], observation["desired_goal"])
+            assert succeeded or not (terminated or truncated), (
+                task,
+                seed,
+                observation["achieved_goal"],
+                observation["desired_goal"],
+            )
         assert reward == 0
 
 
@@ -44,9 +51,12 @@ def test_the_checker_finds_what_is_wrong():
         env.broken = broken
         return env
 
-    for broken, what in ((lambda o, r, e, t, i: (o, np.float64(np.nan), e, t, i), "finite float"),
-                         (lambda o, r, e, t, i: (o["observation"], r, e, t, i), "observation_space"),
-                         (lambda o, r, e, t, i: (o, r, int(e), t, i), "bools"), (lambda o, r, e, t, i: (o, r - 1, e, t, i), "compute_reward")):
+    for broken, what in (
+        (lambda o, r, e, t, i: (o, np.float64(np.nan), e, t, i), "finite float"),
+        (lambda o, r, e, t, i: (o["observation"], r, e, t, i), "observation_space"),
+        (lambda o, r, e, t, i: (o, r, int(e), t, i), "bools"),
+        (lambda o, r, e, t, i: (o, r - 1, e, t, i), "compute_reward"),
+    ):
         with pytest.raises(AssertionError, match=what):
             pincer.env.check_env(lambda broken=broken: wrong(broken))
 
@@ -57,8 +67,13 @@ def test_goals_and_mistakes():
     assert observation["desired_goal"].tolist() == [0, 0, 0.07]
     goals = np.array([[0, 0, 0.02], [0, 0, 0.2]])
     assert env.compute_reward(np.zeros((2, 3)) + [0, 0, 0.02], goals, {}).tolist() == [0, -1]
-    for make in (lambda: pincer.env.make("Pincer-v7"), lambda: pincer.env.make(TASKS[0], render_mode="human"),
-                 lambda: pincer.env.make(TASKS[0], reward_type="x"), lambda: env.step(np.zeros(3)), lambda: env.reset(seed=-1)):
+    for make in (
+        lambda: pincer.env.make("Pincer-v7"),
+        lambda: pincer.env.make(TASKS[0], render_mode="human"),
+        lambda: pincer.env.make(TASKS[0], reward_type="x"),
+        lambda: env.step(np.zeros(3)),
+        lambda: env.reset(seed=-1),
+    ):
         with pytest.raises(pincer.InputError):
             make()
 

@@ -23,8 +23,15 @@ def test_example(example, program, tmp_path):
     if example.stem.startswith("08"):
         pytest.importorskip("pandas")
     env = {**os.environ, "PYTHONPATH": str(BUILD / "python"), "TMPDIR": str(tmp_path)}
-    done = subprocess.run([sys.executable, str(example), program], env=env, cwd=SOURCE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-                          check=False)
+    done = subprocess.run(
+        [sys.executable, str(example), program],
+        env=env,
+        cwd=SOURCE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        check=False,
+    )
     if "OpenGL" in done.stdout and done.returncode != 0:
         pytest.skip("no OpenGL here")
     assert done.returncode == 0, done.stdout
@@ -35,11 +42,31 @@ def test_pip_installs_it(tmp_path):
     subprocess.run([sys.executable, "-m", "venv", "--system-site-packages", str(tmp_path / "venv")], check=True)
     env = {**os.environ, "PINCER_BUILD_DIR": str(BUILD)}
     env.pop("PYTHONPATH", None)
-    done = subprocess.run([str(tmp_path / "venv/bin/pip"), "install", "--no-index", "--no-deps", "--no-build-isolation", str(SOURCE / "tasks/python")],
-                          env=env, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+    done = subprocess.run(
+        [
+            str(tmp_path / "venv/bin/pip"),
+            "install",
+            "--no-index",
+            "--no-deps",
+            "--no-build-isolation",
+            str(SOURCE / "tasks/python"),
+        ],
+        env=env,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        check=False,
+    )
     assert done.returncode == 0, done.stdout
     code = "import pincer; m = pincer.load('s4_pinch'); s = pincer.State(m); pincer.step(m, s, 10); print(pincer.__file__, s.hash())"
-    said = subprocess.run([str(tmp_path / "venv/bin/python"), "-c", code], env=env, cwd=tmp_path, stdout=subprocess.PIPE, text=True, check=True).stdout
+    said = subprocess.run(
+        [str(tmp_path / "venv/bin/python"), "-c", code],
+        env=env,
+        cwd=tmp_path,
+        stdout=subprocess.PIPE,
+        text=True,
+        check=True,
+    ).stdout
     assert str(pathlib.Path(tmp_path, "venv")) in said
 
 

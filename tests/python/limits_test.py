@@ -32,7 +32,9 @@ def measured_overhead(repetitions):
 def scene_of(name):
     import json
 
-    return json.loads("\n".join(line for line in pincer.load(name).text.splitlines() if not line.lstrip().startswith("//")))
+    return json.loads(
+        "\n".join(line for line in pincer.load(name).text.splitlines() if not line.lstrip().startswith("//"))
+    )
 
 
 def test_a_step_costs_little_more_than_in_cpp():
@@ -127,8 +129,10 @@ def test_one_state_in_two_threads_is_refused(pinch):
 
 def test_control_c_ends_a_long_step_and_a_rollout():
     for call in ("pincer.step(model, state, 10**9)", "pool.run([model], [state], 10**9, None, None, None, None, 0)"):
-        code = ("import pincer, signal\nmodel = pincer.load('mug')\nstate = pincer.State(model)\npool = pincer._core.Pool(2)\nprint('go', flush=True)\n"
-                f"try:\n    {call}\nexcept KeyboardInterrupt:\n    print('ended', state.tick > 0)\n")
+        code = (
+            "import pincer, signal\nmodel = pincer.load('mug')\nstate = pincer.State(model)\npool = pincer._core.Pool(2)\nprint('go', flush=True)\n"
+            f"try:\n    {call}\nexcept KeyboardInterrupt:\n    print('ended', state.tick > 0)\n"
+        )
         env = {**os.environ, "PYTHONPATH": os.path.dirname(os.path.dirname(pincer.__file__))}
         child = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True, env=env)
         assert child.stdout.readline() == "go\n"

@@ -10,7 +10,9 @@ import pincer
 
 def scene_of(name):
     """A built-in scene as a dict, its comments left out."""
-    return json.loads("\n".join(line for line in pincer.load(name).text.splitlines() if not line.lstrip().startswith("//")))
+    return json.loads(
+        "\n".join(line for line in pincer.load(name).text.splitlines() if not line.lstrip().startswith("//"))
+    )
 
 
 def best_of(repetitions, work):
@@ -35,9 +37,13 @@ def main():
 
     each, _ = best_of(7, one_by_one)
     together, _ = best_of(7, lambda: pincer.step(model, state, ticks))
-    print(f"S4, awake: a tick of many in a call {1e6 * together / ticks:.2f} us, a call each {1e6 * each / ticks:.2f} us, "
-          f"so a call costs {1e6 * (each - together) / ticks:.2f} us")
-    print(f"  steps per second from Python, one thread: {ticks / each:,.0f} (nstep=1), {ticks / together:,.0f} (nstep={ticks})")
+    print(
+        f"S4, awake: a tick of many in a call {1e6 * together / ticks:.2f} us, a call each {1e6 * each / ticks:.2f} us, "
+        f"so a call costs {1e6 * (each - together) / ticks:.2f} us"
+    )
+    print(
+        f"  steps per second from Python, one thread: {ticks / each:,.0f} (nstep=1), {ticks / together:,.0f} (nstep={ticks})"
+    )
     rows, steps = 64, 5000
     states = [pincer.State(model) for _ in range(rows)]
     rates = {}
@@ -46,7 +52,9 @@ def main():
             least, _ = best_of(5, lambda: pool.rollout(model, states, nstep=steps))
         rates[threads] = rows * steps / least
         print(f"  rollout {rows} x {steps}, {threads} threads: {rates[threads]:,.0f} steps per second")
-    print(f"  two threads do {rates[2] / rates[1]:.2f} x the work of one ({len(os.sched_getaffinity(0))} processors; load {os.getloadavg()[0]:.1f})")
+    print(
+        f"  two threads do {rates[2] / rates[1]:.2f} x the work of one ({len(os.sched_getaffinity(0))} processors; load {os.getloadavg()[0]:.1f})"
+    )
     least, _ = best_of(3, lambda: pincer.load("s4_pinch"))
     snapshot, _ = best_of(100, state.copy)
     print(f"  load {1e6 * least:.0f} us, State.copy {1e6 * snapshot:.1f} us")

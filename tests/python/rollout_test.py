@@ -36,7 +36,9 @@ def test_a_row_is_what_steps_make():
     for t in range(30):
         inputs.finger_position = controls[1, t].reshape(-1, 3)
         pincer.step(model, state, inputs=inputs)
-        assert np.array_equal(result.state[1, t], np.concatenate([[state.time], state.position.ravel(), state.velocity.ravel()]))
+        assert np.array_equal(
+            result.state[1, t], np.concatenate([[state.time], state.position.ravel(), state.velocity.ravel()])
+        )
         assert np.array_equal(result.sensordata[1, t], [state.measure(name) for name in model.sensors])
     assert state.hash() == result.final[1].hash()
 
@@ -47,8 +49,14 @@ def test_outputs_are_filled_in_place_and_shapes_checked(pinch):
     with pincer.Rollout(threads=2) as pool:
         result = pool.rollout(pinch, [pincer.State(pinch)] * 3, nstep=steps, out=(state, None, status))
         assert result.state is state and result.status is status and not status.any() and state[:, -1, 0].min() > 0
-        for wrong in (dict(nstep=0), dict(), dict(controls=np.zeros((3, 4, 5))), dict(controls=np.zeros((2, 4, 6))),
-                      dict(nstep=10, out=(state[:, ::-1], None, None)), dict(nstep=10, out=(state.astype(np.float32), None, None))):
+        for wrong in (
+            dict(nstep=0),
+            dict(),
+            dict(controls=np.zeros((3, 4, 5))),
+            dict(controls=np.zeros((2, 4, 6))),
+            dict(nstep=10, out=(state[:, ::-1], None, None)),
+            dict(nstep=10, out=(state.astype(np.float32), None, None)),
+        ):
             with pytest.raises(pincer.InputError):
                 pool.rollout(pinch, [pincer.State(pinch)] * 3, **wrong)
     with pytest.raises(pincer.InputError, match="closed"):
@@ -67,7 +75,9 @@ def test_each_row_may_have_a_model_of_its_own(pinch):
         models.append(pincer.load(scene))
     result = pincer.rollout(models, [pincer.State(m) for m in models], nstep=50, threads=2)
     heights = result.state[:, -1, 3]
-    assert heights[2] < heights[1] - 1e-4 and abs(heights[0] - heights[1]) < 1e-9  # 0.2 kg are beyond the friction limit
+    assert (
+        heights[2] < heights[1] - 1e-4 and abs(heights[0] - heights[1]) < 1e-9
+    )  # 0.2 kg are beyond the friction limit
     with pytest.raises(pincer.InputError, match="isn't one of its model"):
         pincer.rollout(models, [pincer.State(models[0])] * 3, nstep=5)
     with pytest.raises(pincer.InputError, match="differ in their numbers"):

@@ -11,9 +11,30 @@ import pytest
 
 import pincer
 
-SCENES = ["s1_tumbling_box", "s2_slide_to_roll", "s3_incline_stick", "s3_incline_slide", "s4_pinch", "s4_pinch_098", "s5_lift", "s7_bounce",
-          "pickup", "roll_between_fingers", "turn_ball", "turn_knob", "slide_plate_out", "pull_card", "stacking", "peg_in_hole", "egg",
-          "pen_spin", "two_jaw_gripper", "mug", "conveyed_ball", "pushed_cube"]
+SCENES = [
+    "s1_tumbling_box",
+    "s2_slide_to_roll",
+    "s3_incline_stick",
+    "s3_incline_slide",
+    "s4_pinch",
+    "s4_pinch_098",
+    "s5_lift",
+    "s7_bounce",
+    "pickup",
+    "roll_between_fingers",
+    "turn_ball",
+    "turn_knob",
+    "slide_plate_out",
+    "pull_card",
+    "stacking",
+    "peg_in_hole",
+    "egg",
+    "pen_spin",
+    "two_jaw_gripper",
+    "mug",
+    "conveyed_ball",
+    "pushed_cube",
+]
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -21,7 +42,9 @@ def test_the_bits_are_those_of_the_program(name, program):
     model = pincer.load(name)
     ticks = min(model.ticks, 600)
     duration = ticks * model.tick
-    said = subprocess.run([program, "sim", name, "--json", "--duration", repr(round(duration, 9))], stdout=subprocess.PIPE, check=False)
+    said = subprocess.run(
+        [program, "sim", name, "--json", "--duration", repr(round(duration, 9))], stdout=subprocess.PIPE, check=False
+    )
     state = pincer.State(model)
     pincer.step(model, state, nstep=ticks)
     result = json.loads(said.stdout)
@@ -86,7 +109,11 @@ def test_a_pickled_state_goes_on_with_the_same_bits(name):
 def test_a_pickle_of_another_build_is_refused(pinch):
     state = pincer.State(pinch)
     model, data = state.__getstate__()
-    for changed, why in ((data.replace(b"pincer state", b"pincer stale", 1), "another build"), (data[:-9], "cut off"), (data + b"x", "longer")):
+    for changed, why in (
+        (data.replace(b"pincer state", b"pincer stale", 1), "another build"),
+        (data[:-9], "cut off"),
+        (data + b"x", "longer"),
+    ):
         with pytest.raises(pincer.InputError, match=why):
             pincer.State.__new__(pincer.State).__setstate__((model, changed))
     with pytest.raises(pincer.InputError, match="another model"):
@@ -101,7 +128,9 @@ def test_inputs_move_fingers_forces_and_gravity(pinch):
     pincer.step(pinch, untold)
     assert state.hash() == untold.hash()
     inputs.gravity = [0, 0, 0]
-    free = pincer.load({"version": 1, "duration": 1, "bodies": [{"name": "b", "shape": {"type": "sphere", "radius": 0.01}, "mass": 2}]})
+    free = pincer.load(
+        {"version": 1, "duration": 1, "bodies": [{"name": "b", "shape": {"type": "sphere", "radius": 0.01}, "mass": 2}]}
+    )
     state, inputs = pincer.State(free), pincer.Inputs(free)
     inputs.gravity = 0
     inputs.body_force[0, 0] = 4  # a = 2 m/s^2, exact for a constant force
@@ -149,7 +178,9 @@ def test_what_is_wrong_is_said(pinch, tmp_path, program):
     with pytest.raises(pincer.InputError, match='Did you mean "s4_pinch"'):
         pincer.load("s4_pinsh")
     scene = tmp_path / "a.json"
-    scene.write_text('{"version": 1, "duration": 1,\n "bodies": [{"mass": -1, "shape": {"type": "sphere", "radius": 1}}]}')
+    scene.write_text(
+        '{"version": 1, "duration": 1,\n "bodies": [{"mass": -1, "shape": {"type": "sphere", "radius": 1}}]}'
+    )
     with pytest.raises(pincer.InputError) as error:
         pincer.load(scene)
     said = subprocess.run([program, "sim", str(scene)], stderr=subprocess.PIPE, text=True, check=False).stderr
@@ -189,11 +220,21 @@ def test_random_states_and_inputs_never_crash():
     model = pincer.load("pickup")
     for _ in range(40):
         state, inputs = pincer.State(model), pincer.Inputs(model)
-        for table in (inputs.finger_position, inputs.finger_force, inputs.body_force, inputs.finger_rotation, inputs.finger_velocity):
+        for table in (
+            inputs.finger_position,
+            inputs.finger_force,
+            inputs.body_force,
+            inputs.finger_rotation,
+            inputs.finger_velocity,
+        ):
             if table.size and random.random() < 0.5:
-                table.flat[random.integers(table.size)] = random.choice([np.inf, -np.inf, np.nan, 1e308, 1e-320, -3.0, 0.1])
+                table.flat[random.integers(table.size)] = random.choice(
+                    [np.inf, -np.inf, np.nan, 1e308, 1e-320, -3.0, 0.1]
+                )
         try:
-            state.body(int(random.integers(model.nbody))).position = random.normal(size=7) * 10.0 ** random.integers(-3, 4)
+            state.body(int(random.integers(model.nbody))).position = random.normal(size=7) * 10.0 ** random.integers(
+                -3, 4
+            )
         except pincer.InputError:
             pass
         report = pincer.step(model, state, nstep=20, inputs=inputs)

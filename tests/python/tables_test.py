@@ -11,8 +11,25 @@ import pincer
 @pytest.fixture(scope="module")
 def session(program, tmp_path_factory):
     out = tmp_path_factory.mktemp("session")
-    subprocess.run([program, "run", "sphere-pickup", "--repetitions", "1", "--friction", "0.9", "--condition", "cld+force", "--seed", "7",
-                    "--out", str(out / "a")], stdout=subprocess.DEVNULL, check=True)
+    subprocess.run(
+        [
+            program,
+            "run",
+            "sphere-pickup",
+            "--repetitions",
+            "1",
+            "--friction",
+            "0.9",
+            "--condition",
+            "cld+force",
+            "--seed",
+            "7",
+            "--out",
+            str(out / "a"),
+        ],
+        stdout=subprocess.DEVNULL,
+        check=True,
+    )
     return out / "a/session.db"
 
 
@@ -21,7 +38,11 @@ def test_a_session_is_read(session, program, tmp_path):
     assert read.state == "complete" and read.warning == "" and len(read.trials) == 1
     assert read.info["task"][0] == "sphere-pickup" and read.info["version"][0] == pincer.__version__
     subprocess.run([program, "export", str(session), "--out", str(tmp_path)], stdout=subprocess.DEVNULL, check=True)
-    rows = [line.split(",") for line in (tmp_path / "sample.csv").read_text().splitlines()] if (tmp_path / "sample.csv").exists() else None
+    rows = (
+        [line.split(",") for line in (tmp_path / "sample.csv").read_text().splitlines()]
+        if (tmp_path / "sample.csv").exists()
+        else None
+    )
     if rows:
         assert list(read.samples.dtype.names) == rows[0] and len(read.samples) == len(rows) - 1
     assert (np.diff(read.samples["time_s"]) > 0).all()
@@ -51,7 +72,11 @@ def test_pictures_show_what_moves(pinch):
     near = pincer.render(pinch, state, 200, 150, pincer.Camera(target=[0, 0, 0.12], distance=0.1))
     assert not np.array_equal(near, pincer.render(pinch, state, 200, 150))
     two = [pincer.Renderer(pinch, 64, 48), pincer.Renderer(pinch, 32, 24)]
-    assert [r.render(state).shape for r in two] == [(48, 64, 3), (24, 32, 3)] and two[0].render(state).shape == (48, 64, 3)
+    assert [r.render(state).shape for r in two] == [(48, 64, 3), (24, 32, 3)] and two[0].render(state).shape == (
+        48,
+        64,
+        3,
+    )
     for camera, size in ((pincer.Camera(pitch=2), 64), (pincer.Camera(distance=0), 64), (None, 3)):
         with pytest.raises(pincer.InputError):
             pincer.render(pinch, state, size, 64, camera)

@@ -36,16 +36,29 @@ def _run(*command):
     try:
         subprocess.run([str(word) for word in command], check=True)
     except FileNotFoundError:
-        raise SystemExit(f"pincer: {command[0]} is missing. Install what .ci/packages lists for \"build\".") from None
+        raise SystemExit(f'pincer: {command[0]} is missing. Install what .ci/packages lists for "build".') from None
     except subprocess.CalledProcessError:
-        raise SystemExit("pincer: the build failed; its messages are above. It needs the packages that .ci/packages lists for \"build\".") from None
+        raise SystemExit(
+            'pincer: the build failed; its messages are above. It needs the packages that .ci/packages lists for "build".'
+        ) from None
 
 
 def _build(folder):
     """Builds the module with CMake in `folder`; returns the package's folder."""
     folder = pathlib.Path(folder)
     if not (folder / "build.ninja").exists():
-        _run("cmake", "-S", SOURCES, "-B", folder, "-G", "Ninja", "-DPINCER_TESTS=OFF", "-DPINCER_PYTHON=ON", f"-DPython_EXECUTABLE={sys.executable}")
+        _run(
+            "cmake",
+            "-S",
+            SOURCES,
+            "-B",
+            folder,
+            "-G",
+            "Ninja",
+            "-DPINCER_TESTS=OFF",
+            "-DPINCER_PYTHON=ON",
+            f"-DPython_EXECUTABLE={sys.executable}",
+        )
     _run("cmake", "--build", folder, "--target", "pincer_python")
     return folder / "python" / "pincer"
 
@@ -60,7 +73,9 @@ def _pack(package, wheel_directory):
     info = f"pincer-{VERSION}.dist-info"
     files = {f"pincer/{path.relative_to(package)}": path.read_bytes() for path in sorted(_files(package))}
     files[f"{info}/METADATA"] = METADATA.encode()
-    files[f"{info}/WHEEL"] = f"Wheel-Version: 1.0\nGenerator: pincer_build\nRoot-Is-Purelib: false\nTag: {_tag()}\n".encode()
+    files[
+        f"{info}/WHEEL"
+    ] = f"Wheel-Version: 1.0\nGenerator: pincer_build\nRoot-Is-Purelib: false\nTag: {_tag()}\n".encode()
     record = "".join(_record(path, data) for path, data in files.items()) + f"{info}/RECORD,,\n"
     with zipfile.ZipFile(pathlib.Path(wheel_directory) / name, "w", zipfile.ZIP_DEFLATED) as wheel:
         for path, data in files.items():

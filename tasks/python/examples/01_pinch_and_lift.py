@@ -5,16 +5,23 @@
 # %%
 import pincer
 
-model = pincer.load({
-    "version": 1,
-    "duration": 10,
-    "bodies": [
-        {"name": "floor", "shape": {"type": "half_space"}},
-        {"name": "cube", "shape": {"type": "box", "size": [0.04, 0.04, 0.04]}, "mass": 0.1, "position": [0, 0, 0.02],
-         "material": {"mu_s": 0.8, "torsion_radius": 0.004}},
-    ],
-    "fingers": [{"name": "thumb", "position": [-0.035, 0, 0.02]}, {"name": "index", "position": [0.035, 0, 0.02]}],
-})
+model = pincer.load(
+    {
+        "version": 1,
+        "duration": 10,
+        "bodies": [
+            {"name": "floor", "shape": {"type": "half_space"}},
+            {
+                "name": "cube",
+                "shape": {"type": "box", "size": [0.04, 0.04, 0.04]},
+                "mass": 0.1,
+                "position": [0, 0, 0.02],
+                "material": {"mu_s": 0.8, "torsion_radius": 0.004},
+            },
+        ],
+        "fingers": [{"name": "thumb", "position": [-0.035, 0, 0.02]}, {"name": "index", "position": [0.035, 0, 0.02]}],
+    }
+)
 state = pincer.State(model)
 thumb, index, cube = state.finger("thumb"), state.finger("index"), state.body("cube")
 

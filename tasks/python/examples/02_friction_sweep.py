@@ -11,7 +11,9 @@ import numpy as np
 import pincer
 
 out = pathlib.Path(tempfile.mkdtemp())
-sweep = pincer.sweep("s4_pinch", {"sphere.material.mu_s": "0.2:0.3:41", "duration": 0.1}, measures=["sphere.p_z"], out=out)
+sweep = pincer.sweep(
+    "s4_pinch", {"sphere.material.mu_s": "0.2:0.3:41", "duration": 0.1}, measures=["sphere.p_z"], out=out
+)
 mu, height = sweep.table["sphere.material.mu_s"], sweep.table["sphere.p_z [m]"]
 
 # %%

@@ -26,8 +26,24 @@ print(len(frames), "frames of", frames[0].shape)
 # %%
 if shutil.which("ffmpeg"):
     video = pathlib.Path(tempfile.mkdtemp()) / "pickup.mp4"
-    command = ["ffmpeg", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s", "320x240", "-r", str(per_second), "-i", "-",
-               "-pix_fmt", "yuv420p", str(video)]
+    command = [
+        "ffmpeg",
+        "-loglevel",
+        "error",
+        "-f",
+        "rawvideo",
+        "-pix_fmt",
+        "rgb24",
+        "-s",
+        "320x240",
+        "-r",
+        str(per_second),
+        "-i",
+        "-",
+        "-pix_fmt",
+        "yuv420p",
+        str(video),
+    ]
     subprocess.run(command, input=b"".join(frame.tobytes() for frame in frames), check=True)
     print(video, video.stat().st_size, "bytes")
     assert video.stat().st_size > 5000

@@ -13,12 +13,24 @@ ANGLE, TRUE_MU, TICKS = np.radians(30), 0.37, 500
 
 def incline(mu):
     g = 9.81
-    return pincer.load({
-        "version": 1, "duration": 1, "gravity": [g * np.sin(ANGLE), 0, -g * np.cos(ANGLE)],
-        "bodies": [{"name": "floor", "shape": {"type": "half_space"}},
-                   {"name": "block", "shape": {"type": "box", "size": [0.04, 0.04, 0.02]}, "mass": 0.2, "position": [0, 0, 0.01],
-                    "material": {"mu_s": mu}}],
-        "pairs": [{"bodies": ["floor", "block"], "material": {"mu_s": mu}}]})
+    return pincer.load(
+        {
+            "version": 1,
+            "duration": 1,
+            "gravity": [g * np.sin(ANGLE), 0, -g * np.cos(ANGLE)],
+            "bodies": [
+                {"name": "floor", "shape": {"type": "half_space"}},
+                {
+                    "name": "block",
+                    "shape": {"type": "box", "size": [0.04, 0.04, 0.02]},
+                    "mass": 0.2,
+                    "position": [0, 0, 0.01],
+                    "material": {"mu_s": mu},
+                },
+            ],
+            "pairs": [{"bodies": ["floor", "block"], "material": {"mu_s": mu}}],
+        }
+    )
 
 
 def ways(mus):

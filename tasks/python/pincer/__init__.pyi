@@ -152,8 +152,13 @@ class StepReport:
     def asleep(self) -> bool: ...
 
 class Camera:
-    def __init__(self, target: Optional[ArrayLike] = None, distance: Optional[float] = None, yaw: Optional[float] = None,
-                 pitch: Optional[float] = None) -> None: ...
+    def __init__(
+        self,
+        target: Optional[ArrayLike] = None,
+        distance: Optional[float] = None,
+        yaw: Optional[float] = None,
+        pitch: Optional[float] = None,
+    ) -> None: ...
 
 class Renderer:
     def __init__(self, model: Model, width: int = 640, height: int = 480) -> None: ...
@@ -172,9 +177,17 @@ class Rollout:
     def __enter__(self) -> Rollout: ...
     def __exit__(self, *_: object) -> None: ...
     def close(self) -> None: ...
-    def rollout(self, model: Union[Model, Sequence[Model]], states: Union[State, Sequence[State]], controls: Optional[ArrayLike] = None, *,
-                nstep: Optional[int] = None, out: Optional[Outputs] = None, chunk_size: Optional[int] = None,
-                final: bool = False) -> RolloutResult: ...
+    def rollout(
+        self,
+        model: Union[Model, Sequence[Model]],
+        states: Union[State, Sequence[State]],
+        controls: Optional[ArrayLike] = None,
+        *,
+        nstep: Optional[int] = None,
+        out: Optional[Outputs] = None,
+        chunk_size: Optional[int] = None,
+        final: bool = False
+    ) -> RolloutResult: ...
 
 class Session:
     path: str
@@ -198,15 +211,39 @@ class Sweep:
 def load(scene: Scene, *, name: str = "scene") -> Model: ...
 def step(model: Model, state: State, nstep: int = 1, inputs: Optional[Inputs] = None) -> StepReport: ...
 def remedies(status: int) -> list[str]: ...
-def rollout(model: Union[Model, Sequence[Model]], states: Union[State, Sequence[State]], controls: Optional[ArrayLike] = None, *,
-            nstep: Optional[int] = None, out: Optional[Outputs] = None, threads: Optional[int] = None, chunk_size: Optional[int] = None,
-            final: bool = False) -> RolloutResult: ...
+def rollout(
+    model: Union[Model, Sequence[Model]],
+    states: Union[State, Sequence[State]],
+    controls: Optional[ArrayLike] = None,
+    *,
+    nstep: Optional[int] = None,
+    out: Optional[Outputs] = None,
+    threads: Optional[int] = None,
+    chunk_size: Optional[int] = None,
+    final: bool = False
+) -> RolloutResult: ...
 def save_rollout(path: str, model: Model, result: RolloutResult, controls: Optional[ArrayLike] = None) -> None: ...
-def render(model: Model, state: State, width: int = 640, height: int = 480, camera: Optional[Camera] = None, *,
-           forces: bool = True) -> NDArray[np.uint8]: ...
-def sweep(scene: Scene, vary: Mapping[str, Union[str, ArrayLike]], *, measures: Sequence[str] = (), zip: bool = False, threads: int = 2,
-          out: Union[None, str, "PathLike[str]"] = None, resume: bool = False, client: Any = None,
-          chunk_size: Optional[int] = None) -> Sweep: ...
+def render(
+    model: Model,
+    state: State,
+    width: int = 640,
+    height: int = 480,
+    camera: Optional[Camera] = None,
+    *,
+    forces: bool = True
+) -> NDArray[np.uint8]: ...
+def sweep(
+    scene: Scene,
+    vary: Mapping[str, Union[str, ArrayLike]],
+    *,
+    measures: Sequence[str] = (),
+    zip: bool = False,
+    threads: int = 2,
+    out: Union[None, str, "PathLike[str]"] = None,
+    resume: bool = False,
+    client: Any = None,
+    chunk_size: Optional[int] = None
+) -> Sweep: ...
 def read_session(path: Union[str, "PathLike[str]"], *, stride: int = 1) -> Session: ...
 def read_sweep(directory: Union[str, "PathLike[str]"]) -> Sweep: ...
 def version_text() -> str: ...

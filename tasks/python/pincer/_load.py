@@ -24,7 +24,9 @@ def scene_text(scene, name="scene"):
     try:
         return name, json.dumps(scene, indent=1, default=_plain, allow_nan=False)
     except ValueError as error:
-        raise _core.InputError(f"{name}: a number of the scene isn't finite, or a value isn't one of JSON's: {error}.") from None
+        raise _core.InputError(
+            f"{name}: a number of the scene isn't finite, or a value isn't one of JSON's: {error}."
+        ) from None
 
 
 def _plain(value):

@@ -26,8 +26,8 @@ class RolloutResult(NamedTuple):
 class Rollout:
     """A pool of threads that is kept between rollouts.
 
-        with pincer.Rollout(threads=2) as pool:
-            result = pool.rollout(model, states, controls)
+    with pincer.Rollout(threads=2) as pool:
+        result = pool.rollout(model, states, controls)
     """
 
     __slots__ = ("_pool",)
@@ -91,9 +91,13 @@ def _shapes(models, states, controls, nstep):
     controls = np.ascontiguousarray(controls, dtype=np.float64)
     wanted = models[0].ncontrol
     if controls.ndim not in (2, 3) or controls.shape[-1] != wanted or controls.shape[-2] < 1:
-        raise _core.InputError(f"rollout: controls has shape {controls.shape}; (nbatch, nstep, {wanted}) or (nstep, {wanted}) is needed.")
+        raise _core.InputError(
+            f"rollout: controls has shape {controls.shape}; (nbatch, nstep, {wanted}) or (nstep, {wanted}) is needed."
+        )
     if nstep is not None and nstep != controls.shape[-2]:
-        raise _core.InputError(f"rollout: nstep = {nstep}, but controls has {controls.shape[-2]} steps. Leave nstep out.")
+        raise _core.InputError(
+            f"rollout: nstep = {nstep}, but controls has {controls.shape[-2]} steps. Leave nstep out."
+        )
     if nbatch is None:
         nbatch = controls.shape[0] if controls.ndim == 3 else len(models)
     if controls.ndim == 3 and controls.shape[0] != nbatch:
@@ -109,15 +113,21 @@ def _outputs(models, nbatch, nstep, out):
     if len(sizes) != 1:
         raise _core.InputError("rollout: the models differ in their numbers of bodies, fingers or recorded quantities.")
     nstate, nsensor, _ = sizes.pop()
-    wanted = [((nbatch, nstep, nstate), np.float64), ((nbatch, nstep, nsensor), np.float64), ((nbatch, nstep), np.int32)]
+    wanted = [
+        ((nbatch, nstep, nstate), np.float64),
+        ((nbatch, nstep, nsensor), np.float64),
+        ((nbatch, nstep), np.int32),
+    ]
     given = (None, None, None) if out is None else tuple(out)[:3]
     arrays = []
     for (shape, kind), array, name in zip(wanted, given, ("state", "sensordata", "status")):
         if array is None:
             array = np.empty(shape, dtype=kind)
         elif array.shape != shape or array.dtype != kind or not array.flags.c_contiguous or not array.flags.writeable:
-            raise _core.InputError(f"rollout: out's {name} has shape {array.shape} and type {array.dtype}; it needs {shape}, "
-                                   f"{np.dtype(kind)}, C-contiguous and writeable.")
+            raise _core.InputError(
+                f"rollout: out's {name} has shape {array.shape} and type {array.dtype}; it needs {shape}, "
+                f"{np.dtype(kind)}, C-contiguous and writeable."
+            )
         arrays.append(array)
     return RolloutResult(*arrays)
 

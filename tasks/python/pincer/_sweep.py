@@ -11,7 +11,9 @@ from pincer._load import scene_text
 from pincer._tables import Sweep
 
 
-def sweep(scene, vary, *, measures=(), zip=False, threads=2, out=None, resume=False, client=None, chunk_size=None):  # noqa: A002
+def sweep(
+    scene, vary, *, measures=(), zip=False, threads=2, out=None, resume=False, client=None, chunk_size=None
+):  # noqa: A002
     """Runs the scene once for every combination of values, and returns a Sweep.
 
     scene:    name of a built-in scene, path of a scene file, or a dict
@@ -26,7 +28,10 @@ def sweep(scene, vary, *, measures=(), zip=False, threads=2, out=None, resume=Fa
     """
     name, text = scene_text(scene)
     paths = list(vary)
-    lists = [_core.values_of(values) if isinstance(values, str) else [float(v) for v in np.atleast_1d(values)] for values in vary.values()]
+    lists = [
+        _core.values_of(values) if isinstance(values, str) else [float(v) for v in np.atleast_1d(values)]
+        for values in vary.values()
+    ]
     points = _zipped(paths, lists) if zip else [list(point) for point in itertools.product(*lists)]
     job = (name, text, paths, points, list(measures))
     folder = "" if out is None else os.fspath(out)
@@ -42,7 +47,9 @@ def _zipped(paths, lists):
     cases = max(len(values) for values in lists)
     for path, values in builtins.zip(paths, lists):
         if len(values) not in (1, cases):
-            raise _core.InputError(f"sweep: {path} has {len(values)} values beside {cases}. Give as many, or one for all.")
+            raise _core.InputError(
+                f"sweep: {path} has {len(values)} values beside {cases}. Give as many, or one for all."
+            )
     return [[values[0 if len(values) == 1 else k] for values in lists] for k in range(cases)]
 
 
@@ -58,12 +65,20 @@ def _on_cluster(job, client, chunk_size, folder):
     cases = list(range(len(job[3])))
     chunk = chunk_size or max(1, len(cases) // (8 * max(1, len(client.ncores()))))
     shared = client.scatter(job, broadcast=True)
-    futures = [client.submit(_run_cases, shared, cases[k : k + chunk], pure=False, retries=5) for k in range(0, len(cases), chunk)]
+    futures = [
+        client.submit(_run_cases, shared, cases[k : k + chunk], pure=False, retries=5)
+        for k in range(0, len(cases), chunk)
+    ]
     rows = sorted(row for part in client.gather(futures) for row in part)
     if folder:
         name, text, paths, points, measures = job
         _core.write_sweep(folder, name, text, paths, points, measures, rows)
     raw = _core.sweep_table(*job)
-    raw.update(case=[r[0] for r in rows], points=[job[3][r[0]] for r in rows], values=[r[1] for r in rows], state_hash=[r[2] for r in rows],
-               error=[r[3] for r in rows])
+    raw.update(
+        case=[r[0] for r in rows],
+        points=[job[3][r[0]] for r in rows],
+        values=[r[1] for r in rows],
+        state_hash=[r[2] for r in rows],
+        error=[r[3] for r in rows],
+    )
     return Sweep(raw)

@@ -22,7 +22,9 @@ def _frame(table):
     try:
         import pandas
     except ImportError:
-        raise ImportError("frame() needs pandas (Debian: python3-pandas). Without it use the structured array itself.") from None
+        raise ImportError(
+            "frame() needs pandas (Debian: python3-pandas). Without it use the structured array itself."
+        ) from None
     return pandas.DataFrame({name: table[name] for name in table.dtype.names or ()})
 
 

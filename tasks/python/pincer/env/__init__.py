@@ -11,7 +11,17 @@ from pincer.env.policies import SCRIPTED
 from pincer.env.tasks import TASKS
 from pincer.env.vector import AutoresetMode, GraspVectorEnv
 
-__all__ = ["AutoresetMode", "GraspEnv", "GraspVectorEnv", "SCRIPTED", "TASKS", "check_env", "check_vector_env", "make", "make_vec"]
+__all__ = [
+    "AutoresetMode",
+    "GraspEnv",
+    "GraspVectorEnv",
+    "SCRIPTED",
+    "TASKS",
+    "check_env",
+    "check_vector_env",
+    "make",
+    "make_vec",
+]
 
 
 def make(task, **options):
@@ -31,7 +41,12 @@ def _register():
         return
     for name in TASKS:
         if name not in gymnasium.registry:
-            gymnasium.register(name, entry_point="pincer.env:GraspEnv", vector_entry_point="pincer.env:GraspVectorEnv", kwargs={"task": name})
+            gymnasium.register(
+                name,
+                entry_point="pincer.env:GraspEnv",
+                vector_entry_point="pincer.env:GraspVectorEnv",
+                kwargs={"task": name},
+            )
 
 
 _register()

@@ -43,7 +43,9 @@ class Core:
 
     def __init__(self, name, rows, reward_type, threads):
         if reward_type not in ("sparse", "dense"):
-            raise pincer.InputError(f'reward_type = "{reward_type}": "sparse" (-1, 0 on success) or "dense" (minus the distance).')
+            raise pincer.InputError(
+                f'reward_type = "{reward_type}": "sparse" (-1, 0 on success) or "dense" (minus the distance).'
+            )
         self.task = task_named(name)
         self.reward_type = reward_type
         self.model = pincer.load(self.task.scene(), name=name)
@@ -61,11 +63,17 @@ class Core:
 
     def spaces(self):
         """(observation space, action space) of one row."""
+
         def unbounded(size):
             return spaces.Box(-np.inf, np.inf, (size,), np.float64)
 
-        observation = spaces.Dict({"observation": unbounded(len(self.model.sensors)), "achieved_goal": unbounded(self.task.goal_size),
-                                   "desired_goal": unbounded(self.task.goal_size)})
+        observation = spaces.Dict(
+            {
+                "observation": unbounded(len(self.model.sensors)),
+                "achieved_goal": unbounded(self.task.goal_size),
+                "desired_goal": unbounded(self.task.goal_size),
+            }
+        )
         return observation, spaces.Box(-1.0, 1.0, (6,), np.float32)
 
     def reset(self, row, seed, options):
@@ -102,7 +110,11 @@ class Core:
         return -distance if self.reward_type == "dense" else -(distance > self.task.tolerance).astype(np.float64)
 
     def observations(self):
-        return {"observation": self.sensors.copy(), "achieved_goal": self.task.achieved(self.sensors).copy(), "desired_goal": self.goals.copy()}
+        return {
+            "observation": self.sensors.copy(),
+            "achieved_goal": self.task.achieved(self.sensors).copy(),
+            "desired_goal": self.goals.copy(),
+        }
 
     def successes(self):
         return self.task.distance(self.task.achieved(self.sensors), self.goals) <= self.task.tolerance

@@ -50,9 +50,13 @@ def check_env(make, steps=40):
         _check_step(env, returned)
     again, other = _trace(env, 3, actions), _trace(make(), 3, actions)
     for a, b, c in zip(first, again, other):
-        assert all(_same(x, y) and _same(x, z) for x, y, z in zip(a, b, c)), "the same seed and actions give another episode"
+        assert all(
+            _same(x, y) and _same(x, z) for x, y, z in zip(a, b, c)
+        ), "the same seed and actions give another episode"
     goal = first[0][0]["desired_goal"]
-    assert not _same(env.reset()[0]["desired_goal"], goal) or _same(env.reset(seed=4)[0]["desired_goal"], goal), "reset() without a seed repeats"
+    assert not _same(env.reset()[0]["desired_goal"], goal) or _same(
+        env.reset(seed=4)[0]["desired_goal"], goal
+    ), "reset() without a seed repeats"
     held = first[1][0]["observation"].copy()
     env.step(actions[0])
     assert _same(first[1][0]["observation"], held), "an observation that was returned changes later"
@@ -84,10 +88,14 @@ def check_vector_env(make, make_single, steps=30):
     trace = [env.step(action) for action in actions]
     for row in range(rows):
         begin, _ = single.reset(seed=10 + row)
-        assert _same(begin, {name: values[row] for name, values in observations.items()}), "rows don't begin as single environments do"
+        assert _same(
+            begin, {name: values[row] for name, values in observations.items()}
+        ), "rows don't begin as single environments do"
         for action, (rows_seen, rewards, terminated, truncated, _) in zip(actions, trace):
             seen, reward, *ends, _ = single.step(action[row])
-            assert _same(seen, {name: values[row] for name, values in rows_seen.items()}), "a row differs from the single environment"
+            assert _same(
+                seen, {name: values[row] for name, values in rows_seen.items()}
+            ), "a row differs from the single environment"
             assert reward == rewards[row] and ends == [terminated[row], truncated[row]], "a row's reward or end differs"
     for mode in AutoresetMode:
         _check_autoreset(make(2, mode), mode)
@@ -104,15 +112,23 @@ def _check_autoreset(env, mode):
             break
     assert truncated.all() and not terminated.any(), "rows run out of time"
     if mode is AutoresetMode.SAME_STEP:
-        assert infos["_final_obs"].all() and infos["_final_info"].all(), "SAME_STEP: final_obs and final_info of ended rows"
+        assert (
+            infos["_final_obs"].all() and infos["_final_info"].all()
+        ), "SAME_STEP: final_obs and final_info of ended rows"
         final = {name: np.stack([row[name] for row in infos["final_obs"]]) for name in observations}
         assert env.observation_space.contains(final), "SAME_STEP: final_obs isn't in the space"
-        assert _same(observations["observation"], begin["observation"]), "SAME_STEP: the observation is of the new beginning"
+        assert _same(
+            observations["observation"], begin["observation"]
+        ), "SAME_STEP: the observation is of the new beginning"
         return
     if mode is AutoresetMode.NEXT_STEP:
         observations, rewards, terminated, truncated, _ = env.step(still + 1)
-        assert _same(observations["observation"], begin["observation"]), "NEXT_STEP: the step after an end begins anew, whatever the action"
-        assert not rewards.any() and not terminated.any() and not truncated.any(), "NEXT_STEP: the beginning has reward 0 and no end"
+        assert _same(
+            observations["observation"], begin["observation"]
+        ), "NEXT_STEP: the step after an end begins anew, whatever the action"
+        assert (
+            not rewards.any() and not terminated.any() and not truncated.any()
+        ), "NEXT_STEP: the beginning has reward 0 and no end"
         return
     try:
         env.step(still)

@@ -67,5 +67,9 @@ def peg_in_hole():
     return act
 
 
-SCRIPTED = {"PincerPinchLift-v0": pinch_lift, "PincerInHandRoll-v0": in_hand_roll, "PincerPegInHole-v0": peg_in_hole,
-            "PincerCylinderTurn-v0": cylinder_turn}
+SCRIPTED = {
+    "PincerPinchLift-v0": pinch_lift,
+    "PincerInHandRoll-v0": in_hand_roll,
+    "PincerPegInHole-v0": peg_in_hole,
+    "PincerCylinderTurn-v0": cylinder_turn,
+}

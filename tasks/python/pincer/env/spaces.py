@@ -42,8 +42,14 @@ except ImportError:
         def __init__(self, low, high, shape=None, dtype=np.float32, seed=None):
             shape = tuple(shape) if shape is not None else np.broadcast(low, high).shape
             super().__init__(shape, np.dtype(dtype), seed)
-            self.low = np.full(shape, low, dtype=dtype) if np.ndim(low) == 0 else np.asarray(low, dtype=dtype).reshape(shape)
-            self.high = np.full(shape, high, dtype=dtype) if np.ndim(high) == 0 else np.asarray(high, dtype=dtype).reshape(shape)
+            self.low = (
+                np.full(shape, low, dtype=dtype) if np.ndim(low) == 0 else np.asarray(low, dtype=dtype).reshape(shape)
+            )
+            self.high = (
+                np.full(shape, high, dtype=dtype)
+                if np.ndim(high) == 0
+                else np.asarray(high, dtype=dtype).reshape(shape)
+            )
 
         def sample(self, mask=None):
             """Uniform where bounded; normal where not."""
@@ -52,16 +58,27 @@ except ImportError:
             low, high = self.low.astype(np.float64), self.high.astype(np.float64)
             bounded = np.isfinite(low) & np.isfinite(high)
             uniform = self.np_random.uniform(np.where(bounded, low, 0), np.where(bounded, high, 1))
-            return np.clip(np.where(bounded, uniform, self.np_random.normal(size=self.shape)), low, high).astype(self.dtype)
+            return np.clip(np.where(bounded, uniform, self.np_random.normal(size=self.shape)), low, high).astype(
+                self.dtype
+            )
 
         def contains(self, value):
             value = np.asarray(value)
-            return bool(np.can_cast(value.dtype, self.dtype) and value.shape == self.shape
-                        and np.all(value >= self.low) and np.all(value <= self.high))
+            return bool(
+                np.can_cast(value.dtype, self.dtype)
+                and value.shape == self.shape
+                and np.all(value >= self.low)
+                and np.all(value <= self.high)
+            )
 
         def __eq__(self, other):
-            return (isinstance(other, Box) and self.shape == other.shape and self.dtype == other.dtype
-                    and np.array_equal(self.low, other.low) and np.array_equal(self.high, other.high))
+            return (
+                isinstance(other, Box)
+                and self.shape == other.shape
+                and self.dtype == other.dtype
+                and np.array_equal(self.low, other.low)
+                and np.array_equal(self.high, other.high)
+            )
 
         def __repr__(self):
             return f"Box({self.low.min()}, {self.high.max()}, {self.shape}, {self.dtype})"
@@ -75,14 +92,21 @@ except ImportError:
 
         def seed(self, seed=None):
             used = super().seed(seed)
-            return {name: space.seed(int(self._np_random.integers(2**31))) for name, space in self.spaces.items()} if used is not None else {}
+            return (
+                {name: space.seed(int(self._np_random.integers(2**31))) for name, space in self.spaces.items()}
+                if used is not None
+                else {}
+            )
 
         def sample(self, mask=None):
             return {name: space.sample(None if mask is None else mask[name]) for name, space in self.spaces.items()}
 
         def contains(self, value):
-            return (isinstance(value, dict) and value.keys() == self.spaces.keys()
-                    and all(space.contains(value[name]) for name, space in self.spaces.items()))
+            return (
+                isinstance(value, dict)
+                and value.keys() == self.spaces.keys()
+                and all(space.contains(value[name]) for name, space in self.spaces.items())
+            )
 
         def __getitem__(self, name):
             return self.spaces[name]

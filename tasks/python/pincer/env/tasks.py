@@ -12,7 +12,10 @@ def _finger(name, position, **more):
 
 def _quantities(body):
     """What an observation is made of, in its order: pose and velocity of the body, then places and forces of the fingers."""
-    names = [f"{body}.{part}" for part in ("p_x", "p_y", "p_z", "q_w", "q_x", "q_y", "q_z", "v_x", "v_y", "v_z", "w_x", "w_y", "w_z")]
+    names = [
+        f"{body}.{part}"
+        for part in ("p_x", "p_y", "p_z", "q_w", "q_x", "q_y", "q_z", "v_x", "v_y", "v_z", "w_x", "w_y", "w_z")
+    ]
     for finger in ("thumb", "index"):
         names += [f"{finger}.{part}" for part in ("target_x", "target_y", "target_z", "f_x", "f_y", "f_z")]
     return names
@@ -46,8 +49,14 @@ class Task:
         return np.linalg.norm(np.asarray(achieved, dtype=np.float64) - np.asarray(desired, dtype=np.float64), axis=-1)
 
     def _scene(self, bodies, fingers, **more):
-        return {"version": 1, "duration": 3600, "bodies": bodies, "fingers": fingers,
-                "record": {"quantities": _quantities(self.body)}, **more}
+        return {
+            "version": 1,
+            "duration": 3600,
+            "bodies": bodies,
+            "fingers": fingers,
+            "record": {"quantities": _quantities(self.body)},
+            **more,
+        }
 
 
 class PinchLift(Task):
@@ -57,10 +66,18 @@ class PinchLift(Task):
 
     def scene(self):
         return self._scene(
-            [{"name": "floor", "shape": {"type": "half_space"}, "material": {"mu_s": 0.6}},
-             {"name": "cube", "shape": {"type": "box", "size": [0.04, 0.04, 0.04]}, "mass": 0.1, "position": [0, 0, 0.02],
-              "material": {"mu_s": 0.8, "torsion_radius": 0.004}}],
-            [_finger("thumb", [-0.035, 0, 0.02]), _finger("index", [0.035, 0, 0.02])])
+            [
+                {"name": "floor", "shape": {"type": "half_space"}, "material": {"mu_s": 0.6}},
+                {
+                    "name": "cube",
+                    "shape": {"type": "box", "size": [0.04, 0.04, 0.04]},
+                    "mass": 0.1,
+                    "position": [0, 0, 0.02],
+                    "material": {"mu_s": 0.8, "torsion_radius": 0.004},
+                },
+            ],
+            [_finger("thumb", [-0.035, 0, 0.02]), _finger("index", [0.035, 0, 0.02])],
+        )
 
     def achieved(self, sensors):
         return sensors[..., 0:3]
@@ -81,9 +98,18 @@ class InHandRoll(Task):
 
     def scene(self):
         return self._scene(
-            [{"name": "ball", "shape": {"type": "sphere", "radius": 0.02}, "mass": 0.05, "position": [0, 0, 0.1],
-              "material": {"mu_s": 0.8, "torsion_radius": 0.004}}],
-            [_finger("thumb", [-0.026, 0, 0.1]), _finger("index", [0.026, 0, 0.1])], gravity=[0, 0, 0])
+            [
+                {
+                    "name": "ball",
+                    "shape": {"type": "sphere", "radius": 0.02},
+                    "mass": 0.05,
+                    "position": [0, 0, 0.1],
+                    "material": {"mu_s": 0.8, "torsion_radius": 0.004},
+                }
+            ],
+            [_finger("thumb", [-0.026, 0, 0.1]), _finger("index", [0.026, 0, 0.1])],
+            gravity=[0, 0, 0],
+        )
 
     def achieved(self, sensors):
         return _turn(sensors)
@@ -102,13 +128,32 @@ class PegInHole(Task):
     tolerance = 0.002
 
     def scene(self):
-        walls = [("west", [0.02, 0.061, 0.04], [-0.0205, 0, 0.02]), ("east", [0.02, 0.061, 0.04], [0.0205, 0, 0.02]),
-                 ("south", [0.021, 0.02, 0.04], [0, -0.0205, 0.02]), ("north", [0.021, 0.02, 0.04], [0, 0.0205, 0.02])]
+        walls = [
+            ("west", [0.02, 0.061, 0.04], [-0.0205, 0, 0.02]),
+            ("east", [0.02, 0.061, 0.04], [0.0205, 0, 0.02]),
+            ("south", [0.021, 0.02, 0.04], [0, -0.0205, 0.02]),
+            ("north", [0.021, 0.02, 0.04], [0, 0.0205, 0.02]),
+        ]
         bodies = [{"name": "floor", "shape": {"type": "half_space"}, "material": {"mu_s": 0.4}}]
-        bodies += [{"name": name, "shape": {"type": "box", "size": size}, "static": True, "position": place, "material": {"mu_s": 0.1}}
-                   for name, size, place in walls]
-        bodies.append({"name": "peg", "shape": {"type": "cylinder", "radius": 0.01, "length": 0.06}, "mass": 0.06, "position": [0, 0, 0.08],
-                       "material": {"mu_s": 0.6, "torsion_radius": 0.003}})
+        bodies += [
+            {
+                "name": name,
+                "shape": {"type": "box", "size": size},
+                "static": True,
+                "position": place,
+                "material": {"mu_s": 0.1},
+            }
+            for name, size, place in walls
+        ]
+        bodies.append(
+            {
+                "name": "peg",
+                "shape": {"type": "cylinder", "radius": 0.01, "length": 0.06},
+                "mass": 0.06,
+                "position": [0, 0, 0.08],
+                "material": {"mu_s": 0.6, "torsion_radius": 0.003},
+            }
+        )
         return self._scene(bodies, [_finger("thumb", [-0.016, 0, 0.09]), _finger("index", [0.016, 0, 0.09])])
 
     def achieved(self, sensors):
@@ -130,10 +175,18 @@ class CylinderTurn(Task):
 
     def scene(self):
         return self._scene(
-            [{"name": "knob", "shape": {"type": "cylinder", "radius": 0.02, "length": 0.03}, "mass": 0.1, "position": [0, 0, 0.1],
-              "material": {"mu_s": 0.8}}],
+            [
+                {
+                    "name": "knob",
+                    "shape": {"type": "cylinder", "radius": 0.02, "length": 0.03},
+                    "mass": 0.1,
+                    "position": [0, 0, 0.1],
+                    "material": {"mu_s": 0.8},
+                }
+            ],
             [_finger("thumb", [-0.022, 0, 0.1]), _finger("index", [0.022, 0, 0.1])],
-            joints=[{"type": "pivot", "body": "knob", "axis": [0, 0, 1], "damping": 0.002}])
+            joints=[{"type": "pivot", "body": "knob", "axis": [0, 0, 1], "damping": 0.002}],
+        )
 
     def achieved(self, sensors):
         return _turn(sensors)
@@ -151,5 +204,9 @@ def _turn(sensors):
     return np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))[..., None]
 
 
-TASKS = {"PincerPinchLift-v0": PinchLift, "PincerInHandRoll-v0": InHandRoll, "PincerPegInHole-v0": PegInHole,
-         "PincerCylinderTurn-v0": CylinderTurn}
+TASKS = {
+    "PincerPinchLift-v0": PinchLift,
+    "PincerInHandRoll-v0": InHandRoll,
+    "PincerPegInHole-v0": PegInHole,
+    "PincerCylinderTurn-v0": CylinderTurn,
+}

@@ -29,7 +29,15 @@ class GraspVectorEnv(_VectorBase):
       DISABLED   nothing begins by itself: reset(options={"reset_mask": bools}) begins the rows of the mask
     """
 
-    def __init__(self, task="PincerPinchLift-v0", num_envs=1, *, autoreset_mode=AutoresetMode.NEXT_STEP, reward_type="sparse", threads=1):
+    def __init__(
+        self,
+        task="PincerPinchLift-v0",
+        num_envs=1,
+        *,
+        autoreset_mode=AutoresetMode.NEXT_STEP,
+        reward_type="sparse",
+        threads=1,
+    ):
         if num_envs < 1:
             raise pincer.InputError(f"num_envs = {num_envs} is out of range [1, inf).")
         self.num_envs = num_envs
@@ -70,7 +78,9 @@ class GraspVectorEnv(_VectorBase):
         if not self._begun.all():
             raise pincer.InputError("step before reset: call reset() first.")
         if self.autoreset_mode is AutoresetMode.DISABLED and self._ended.any():
-            raise pincer.InputError(f"rows {np.flatnonzero(self._ended).tolist()} have ended. Reset them by reset(options={{'reset_mask': ...}}).")
+            raise pincer.InputError(
+                f"rows {np.flatnonzero(self._ended).tolist()} have ended. Reset them by reset(options={{'reset_mask': ...}})."
+            )
         begins = self._ended.copy()  # in NEXT_STEP only
         rewards, terminated, truncated = self._core.step(actions, np.flatnonzero(~begins))
         for values in (rewards, terminated, truncated):
@@ -106,8 +116,13 @@ class GraspVectorEnv(_VectorBase):
         self._ended[:] = False
         final_info = {name: values for name, values in infos.items() if not name.startswith("_")}
         final_info.update({f"_{name}": ended for name in tuple(final_info)})
-        return {**self._infos(np.ones(self.num_envs, dtype=bool)), "final_obs": final_obs, "_final_obs": ended, "final_info": final_info,
-                "_final_info": ended}
+        return {
+            **self._infos(np.ones(self.num_envs, dtype=bool)),
+            "final_obs": final_obs,
+            "_final_obs": ended,
+            "final_info": final_info,
+            "_final_info": ended,
+        }
 
     def _infos(self, mask):
         times = np.array([state.time for state in self._core.states])
