@@ -22,7 +22,7 @@ using tests::errorOf;
 using tests::readFile;
 using tests::TemporaryDirectory;
 
-const std::atomic<bool> kNever{false};
+const std::atomic<bool> kGoesOn{false};
 constexpr std::size_t kCases = 13;
 
 // Three numbers, and one case that can't be run.
@@ -51,7 +51,7 @@ void runWhole(const std::string& directory, const SweepShard& shard = {}) {
   SweepJob job = someJob();
   SweepStore store(directory, job, shard, false);
   SweepOptions options{2, shard, {}, [&](std::size_t point, const CaseResult& result) { store.add(point, result); }};
-  runSweep(job, options, kNever);
+  runSweep(job, options, kGoesOn);
   store.finish(job.table);
 }
 
@@ -60,7 +60,7 @@ TEST(SweepStore, ComesBackAsItWas) {
   runWhole(dir / "a");
   const StoredSweep back = readSweep(dir / "a");
   SweepJob job = someJob();
-  runSweep(job, {}, kNever);
+  runSweep(job, {}, kGoesOn);
   EXPECT_EQ(sweepJson(back.table), sweepJson(job.table));
   EXPECT_EQ(back.definition, job.definition);
   EXPECT_EQ(back.table.failed(), 1u);
