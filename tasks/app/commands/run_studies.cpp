@@ -17,6 +17,7 @@
 #include "pincer/tasks/app/run_options.h"
 #include "pincer/tasks/app/usage.h"
 #include "pincer/tasks/lab/report/study_report.h"
+#include "pincer/tasks/lab/sessions/session_hash.h"
 #include "pincer/tasks/lab/sessions/study_file.h"
 #include "pincer/tasks/lab/sessions/study_session.h"
 #include "pincer/tasks/run/servo/servo_text.h"
@@ -79,6 +80,7 @@ int showStudy(const StudyArguments& arguments, const std::string& directory, con
   const double simulated = static_cast<double>(outcome.servo.ticks) / arguments.run.servo.rate;
   say(throughputText(simulated));
   say(fmt::format("Session: {}", printablePath(session.path())));
+  say(fmt::format("state_hash {}", sessionHash(session)));
   if (outcome.interrupted) {
     say(fmt::format("Interrupted after {}; what is done is safe. Go on: the same task with --resume --out {}",
                     counted(outcome.trials, "trial"), printablePath(directory)));

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <type_traits>
 #include <vector>
 
 #include "pincer/contact/error.h"
@@ -11,28 +10,12 @@
 #include "pincer/tasks/lab/experiments/recorded_hands.h"
 #include "pincer/tasks/lab/experiments/simulated_trial.h"
 #include "pincer/tasks/lab/sessions/manipulation_session.h"
+#include "pincer/tasks/lab/sessions/session_hash.h"
 #include "pincer/tasks/run/session/build_info.h"
 #include "pincer/tasks/run/session/input_codec.h"
 
 namespace pincer::tasks {
 namespace {
-
-// Values of a record's columns as text that tells any two apart, times that were measured left out.
-template <class Record>
-std::vector<std::pair<std::string, std::string>> comparable(const Record& record) {
-  std::vector<std::pair<std::string, std::string>> values;
-  forEachColumn(record, [&]<class Field>(const ColumnName& name, const Field& field) {
-    const std::string column = name.text();
-    if (column == "tick_us" || column == "tick_median_us" || column == "tick_p999_us") return;
-    if constexpr (std::is_floating_point_v<Field>) {
-      values.emplace_back(column,
-                          field != field ? std::string("nan") : fmt::format("{}", field + 0));  // the store has one zero, -0 + 0 as well
-    } else {
-      values.emplace_back(column, fmt::format("{}", field));
-    }
-  });
-  return values;
-}
 
 template <class Record>
 std::string differenceOf(const Record& stored, const Record& fresh) {
