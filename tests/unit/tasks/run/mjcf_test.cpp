@@ -8,8 +8,11 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <functional>
+#include <map>
 #include <numbers>
 #include <set>
+#include <sstream>
 
 #include "pincer/tasks/run/robot/mjcf_grammar.h"
 #include "pincer/tasks/run/robot/robot_pose.h"
@@ -262,6 +265,78 @@ TEST(MjcfGrammar, HasEveryAttributeOnce) {
     });
     EXPECT_EQ(row.verdict == mjcf::Verdict::kRefused, row.read.empty() && !row.reason.empty()) << row.name << ": a refusal says why";
   }
+}
+
+// The published grammar, where PINCER_MJCF_SCHEMA names it: each of its elements, in each of its places, and each of their attributes has a verdict.
+class PublishedGrammar {
+ public:
+  explicit PublishedGrammar(const std::string& path) {
+    std::ifstream in(path);
+    for (std::string line; std::getline(in, line);) readLine(line.substr(0, line.find('#')));
+  }
+
+  struct Element {
+    std::string tag;
+    std::vector<std::string> attributes, children;
+  };
+  std::map<std::string, Element> elements;
+
+ private:
+  void readLine(const std::string& line) {
+    std::istringstream words(line);
+    std::string first, second;
+    words >> first >> second;
+    if (first == "element" || first == "group") {
+      open_ = second;
+      Element& e = elements[first == "group" ? "use " + second : second];
+      is_group_ = first == "group";
+      const auto xml = line.find("xml=");
+      e.tag = xml == std::string::npos ? second : line.substr(xml + 4, line.find_first_of(",)", xml) - xml - 4);
+    } else if (first == "}") {
+      open_.clear();
+    } else if (!open_.empty()) {
+      Element& e = elements[is_group_ ? "use " + open_ : open_];
+      const std::set<std::string> constraints = {"exclusive", "together", "requires", "oneof"};
+      if (first == "child") e.children.push_back(second);
+      if (first == "use") e.attributes.push_back("use " + second);
+      if (second == ":" && !constraints.count(first)) e.attributes.push_back(first);
+    }
+  }
+
+  std::string open_;
+  bool is_group_ = false;
+};
+
+TEST(MjcfGrammar, KnowsThePublishedGrammar) {
+  const char* path = std::getenv("PINCER_MJCF_SCHEMA");
+  if (!path) GTEST_SKIP() << "tests/run --robots=DIR";
+  const PublishedGrammar published(path);
+  ASSERT_GT(published.elements.size(), 100u);
+  int attributes = 0;
+  std::set<std::string> seen;
+  const std::function<void(const std::string&, const mjcf::GrammarRow&)> check = [&](const std::string& name, const mjcf::GrammarRow& row) {
+    if (row.verdict != mjcf::Verdict::kRead || !seen.insert(std::string(row.name) + " " + name).second) return;
+    const std::function<void(const std::string&)> checkAttributes = [&](const std::string& of) {
+      for (const std::string& attribute : published.elements.at(of).attributes) {
+        if (attribute.rfind("use ", 0) == 0) {
+          checkAttributes(attribute);
+          continue;
+        }
+        mjcf::Verdict verdict;
+        EXPECT_TRUE(mjcf::findAttribute(row, attribute, verdict)) << row.name << " " << attribute;
+        ++attributes;
+      }
+    };
+    checkAttributes(name);
+    for (const std::string& listed : published.elements.at(name).children) {
+      const std::string child = name == "mujoco" && listed == "body" ? "worldbody" : listed;  // the world is a body there
+      const mjcf::GrammarRow* inner = mjcf::findRow(row.name, published.elements.at(child).tag);
+      EXPECT_NE(inner, nullptr) << child << " within " << row.name;
+      if (inner) check(child, *inner);
+    }
+  };
+  check("mujoco", *mjcf::findRow("", "mujoco"));
+  EXPECT_GT(attributes, 200);
 }
 
 }  // namespace
