@@ -38,7 +38,7 @@ class BaselineFingers {
 
   // As grasp::step. Allocates nothing.
   GraspReport step(const GraspModel& model, GraspState& state, GraspScratch& scratch, std::span<const FingerInput> inputs,
-                   std::span<const engine::MotionInput> motions = {});
+                   std::span<const engine::MotionInput> motions = {}, std::span<const engine::DriveInput> controls = {});
 
  private:
   std::vector<FingerMethod> methods_;

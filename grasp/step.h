@@ -79,7 +79,8 @@ struct GraspReport : engine::StepReport {
 
 // One tick. `inputs` has one entry per finger. Allocates nothing, throws nothing.
 GraspReport step(const GraspModel& model, GraspState& state, GraspScratch& scratch, std::span<const FingerInput> inputs,
-                 std::span<const engine::MotionInput> motions = {}, const engine::AppliedForces& applied = {});
+                 std::span<const engine::MotionInput> motions = {}, const engine::AppliedForces& applied = {},
+                 std::span<const engine::DriveInput> controls = {});
 
 // The fingers' reports of the last tick, those of its GraspReport; before the first one none touches.
 std::span<const FingerReport> fingersOf(const GraspScratch& scratch);

@@ -244,14 +244,15 @@ BaselineFingers::BaselineFingers(std::vector<FingerMethod> methods)
     : methods_(std::move(methods)), memories_(methods_.size()), reports_(methods_.size()) {}
 
 GraspReport BaselineFingers::step(const GraspModel& model, GraspState& state, GraspScratch& scratch, std::span<const FingerInput> inputs,
-                                  std::span<const engine::MotionInput> motions) {
+                                  std::span<const engine::MotionInput> motions, std::span<const engine::DriveInput> controls) {
   setInputs(model, state, inputs, scratch);
   for (std::size_t i = 0; i < methods_.size(); ++i) {
     if (methods_[i] == FingerMethod::kProxy) continue;
     reports_[i] = BaselineFinger(model, methods_[i], state, memories_[i], scratch, inputs[i], static_cast<int>(i)).run();
   }
   ProxyContacts contacts(model, methods_, state, scratch, inputs);
-  const engine::StepReport report = engine::step(model.world, state.world, scratch.world, {scratch.inputs, motions}, &contacts);
+  const engine::StepReport report =
+      engine::step(model.world, state.world, scratch.world, {scratch.inputs, motions, {}, controls}, &contacts);
   if (report.asleep) return {report, scratch.fingers};
   for (std::size_t i = 0; i < methods_.size(); ++i) {
     const int finger = static_cast<int>(i);

@@ -210,7 +210,8 @@ GraspState makeState(const GraspModel& model, const std::vector<engine::BodyStar
 }
 
 GraspReport step(const GraspModel& model, GraspState& state, GraspScratch& scratch, std::span<const FingerInput> inputs,
-                 std::span<const engine::MotionInput> motions, const engine::AppliedForces& applied) {
+                 std::span<const engine::MotionInput> motions, const engine::AppliedForces& applied,
+                 std::span<const engine::DriveInput> controls) {
   PINCER_DEMAND(inputs.size() == model.fingers.size(), "step: one input per finger");
   PINCER_DEMAND(
       state.fingers.size() == model.fingers.size() && state.trackers.size() == model.fingers.size() * model.world.colliders.size(),
@@ -218,7 +219,8 @@ GraspReport step(const GraspModel& model, GraspState& state, GraspScratch& scrat
   PINCER_DEMAND(scratch.fingers.size() == model.fingers.size(), "step: the scratch is one of this model");
   setInputs(model, state, inputs, scratch);
   FingerContacts contacts(model, state, scratch, inputs);
-  const engine::StepReport report = engine::step(model.world, state.world, scratch.world, {scratch.inputs, motions, applied}, &contacts);
+  const engine::StepReport report =
+      engine::step(model.world, state.world, scratch.world, {scratch.inputs, motions, applied, controls}, &contacts);
   if (report.asleep) return {report, scratch.fingers};  // those of the last tick
   for (int i = 0; i < static_cast<int>(inputs.size()); ++i) {
     reportFinger(model, state, i, scratch);

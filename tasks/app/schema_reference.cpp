@@ -146,6 +146,8 @@ class Reference {
     if (type == "boolean") return "`true` or `false`";
     if (type == "string") return schema.find("pattern") ? "letters, digits, - and _" : "text";
     if (type == "array") return listText(schema, title);
+    const JsonValue* each = schema.find("additionalProperties");
+    if (type == "object" && each && each->kind() == JsonValue::Kind::kObject) return "object: to each name a " + valueText(*each, title);
     if (type == "object")
       return schema.find("properties") && title.empty() ? pairText(schema, title) : fmt::format("[object](#{})", anchor(title));
     schema.reject("has a type that the reference doesn't know.");

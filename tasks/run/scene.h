@@ -37,6 +37,13 @@ struct ScenePair {
   engine::Material material;  // if they touch
 };
 
+// A drive, and what it is told: a control that stays, or that follows keyframes.
+struct SceneDrive {
+  engine::DriveModel model;
+  Trajectory control;  // in x
+  bool moves = false;
+};
+
 struct Recording {
   std::int64_t every = 1;            // ticks between two rows
   std::vector<Quantity> quantities;  // may be empty: nothing is recorded
@@ -52,10 +59,14 @@ struct Scene {
   std::vector<SceneMotion> motions;       // one per driven body, in order
   std::vector<ScenePair> pairs;
   std::vector<engine::JointModel> joints;
+  std::vector<engine::CouplingModel> couplings;
+  std::vector<SceneDrive> drives;
+  std::vector<BodyFrame> frames;
   std::vector<SceneFinger> fingers;
   Recording record;
   std::vector<Expectation> expectations;
-  std::vector<int> body_lines, joint_lines, pair_lines;  // in the file, for messages; empty where there is none
+  std::vector<int> body_lines, joint_lines, coupling_lines, drive_lines,
+      pair_lines;  // in the file, for messages; empty where there is none
 
   std::int64_t ticks() const;  // in `duration`
 };
@@ -81,6 +92,9 @@ void fingerInputs(const Scene& scene, double time, std::span<grasp::FingerInput>
 
 // How every driven body moves at `time`, the end of a tick. One entry per driven body.
 void bodyMotions(const Scene& scene, double time, std::span<engine::MotionInput> motions);
+
+// What every drive is told at `time`, the end of a tick. One entry per drive.
+void driveControls(const Scene& scene, double time, std::span<engine::DriveInput> controls);
 
 // How many whole ticks `seconds` is, or -1 when it is none (to a millionth of a tick).
 std::int64_t wholeTicks(double seconds, double tick);

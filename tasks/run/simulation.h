@@ -27,7 +27,7 @@ class Simulation {
   grasp::GraspScratch& scratch() { return *scratch_; }
   const grasp::GraspScratch& scratch() const { return *scratch_; }                              // as the last tick left it
   std::span<const grasp::FingerReport> fingers() const { return grasp::fingersOf(*scratch_); }  // of the last tick
-  Moment moment() const { return {model_, state_, fingers(), scene_.starts}; }
+  Moment moment() const { return {model_, state_, fingers(), scene_.starts, *scratch_, scene_.frames}; }
   Pose bodyPose(int body) const { return engine::bodyPose(model_.world, state_.world, body); }  // X_WB
 
  private:
@@ -38,6 +38,7 @@ class Simulation {
   std::optional<grasp::BaselineFingers> baselines_;  // where some finger is rendered as published
   std::vector<grasp::FingerInput> inputs_;
   std::vector<engine::MotionInput> motions_;
+  std::vector<engine::DriveInput> controls_;
   std::int64_t ticks_ = 0;
 };
 

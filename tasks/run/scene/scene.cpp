@@ -45,6 +45,37 @@ void readTimes(const JsonValue& json, Scene& scene) {
     duration.reject(fmt::format("isn't a whole number of ticks of {} s.", scene.options.h));
 }
 
+void readJoints(const JsonValue& json, SceneNames& names, Scene& scene) {
+  for (const JsonValue& joint : listOf(json, kMostJoints)) {
+    scene.joints.push_back(readJoint(joint, names, scene));
+    scene.joint_lines.push_back(joint.line());
+  }
+}
+
+// Joints, what ties them together and what drives them, frames.
+void readJointed(const JsonValue& json, SceneNames& names, Scene& scene) {
+  if (const JsonValue* v = json.find("joints")) readJoints(*v, names, scene);
+  if (const JsonValue* v = json.find("couplings")) {
+    for (const JsonValue& coupling : listOf(*v, kMostJoints)) {
+      scene.couplings.push_back(readCoupling(coupling, scene));
+      scene.coupling_lines.push_back(coupling.line());
+    }
+  }
+  std::vector<SceneTendon> tendons;
+  if (const JsonValue* v = json.find("tendons")) {
+    for (const JsonValue& tendon : listOf(*v, kMostJoints)) tendons.push_back(readTendon(tendon, names, scene));
+  }
+  if (const JsonValue* v = json.find("drives")) {
+    for (const JsonValue& drive : listOf(*v, kMostJoints)) {
+      scene.drives.push_back(readDrive(drive, tendons, names, scene));
+      scene.drive_lines.push_back(drive.line());
+    }
+  }
+  if (const JsonValue* v = json.find("frames")) {
+    for (const JsonValue& frame : listOf(*v, kMostJoints)) scene.frames.push_back(readFrame(frame, names, scene));
+  }
+}
+
 }  // namespace
 
 Scene sceneOf(const JsonValue& json, const std::string& name) {
@@ -69,12 +100,7 @@ Scene sceneOf(const JsonValue& json, const std::string& name) {
       scene.pair_lines.push_back(pair.line());
     }
   }
-  if (const JsonValue* v = json.find("joints")) {
-    for (const JsonValue& joint : listOf(*v, kMostJoints)) {
-      scene.joints.push_back(readJoint(joint, names, scene));
-      scene.joint_lines.push_back(joint.line());
-    }
-  }
+  readJointed(json, names, scene);
   if (const JsonValue* v = json.find("fingers")) {
     for (const JsonValue& finger : listOf(*v, kMostFingers)) scene.fingers.push_back(readFinger(finger, names, scene));
   }
@@ -119,6 +145,10 @@ grasp::GraspModel buildWorld(const Scene& scene) {
   engine::WorldBuilder builder = atLine(scene, {}, 0, [&] { return engine::WorldBuilder(scene.options); });
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) atLine(scene, scene.body_lines, i, [&] { builder.addBody(scene.bodies[i]); });
   for (std::size_t i = 0; i < scene.joints.size(); ++i) atLine(scene, scene.joint_lines, i, [&] { builder.addJoint(scene.joints[i]); });
+  for (std::size_t i = 0; i < scene.couplings.size(); ++i)
+    atLine(scene, scene.coupling_lines, i, [&] { builder.addCoupling(scene.couplings[i]); });
+  for (std::size_t i = 0; i < scene.drives.size(); ++i)
+    atLine(scene, scene.drive_lines, i, [&] { builder.addDrive(scene.drives[i].model); });
   for (std::size_t i = 0; i < scene.pairs.size(); ++i) atLine(scene, scene.pair_lines, i, [&] { addPair(scene.pairs[i], builder); });
   std::vector<grasp::FingerModel> fingers;
   for (const SceneFinger& finger : scene.fingers) fingers.push_back(finger.model);

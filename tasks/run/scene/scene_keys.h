@@ -7,8 +7,9 @@ namespace pincer::tasks::keys {
 
 using Word = std::string_view;
 
-inline constexpr std::array<Word, 13> kScene = {"version",     "description", "gravity", "tick",    "duration", "solver", "bodies",
-                                                "combination", "pairs",       "joints",  "fingers", "record",   "expect"};
+inline constexpr std::array<Word, 17> kScene = {"version", "description", "gravity", "tick",   "duration",  "solver",
+                                                "bodies",  "combination", "pairs",   "joints", "couplings", "tendons",
+                                                "drives",  "frames",      "fingers", "record", "expect"};
 inline constexpr std::array<Word, 8> kSolver = {"tolerance",          "accuracy",  "max_contacts", "contact_margin",
                                                 "position_tolerance", "max_parts", "sleep",        "budget"};
 inline constexpr std::array<Word, 13> kBody = {"name",    "shape",    "shapes",   "static",     "mass",     "density",
@@ -21,7 +22,16 @@ inline constexpr std::array<Word, 4> kInertia = {"center", "moments", "products"
 inline constexpr std::array<Word, 2> kCombinations = {"geometric_mean", "maximum"};
 inline constexpr std::array<Word, 1> kBodyTrajectory = {"keyframes"};
 inline constexpr std::array<Word, 3> kBodyKeyframe = {"time", "position", "rotation"};
-inline constexpr std::array<Word, 6> kJoint = {"type", "body", "to", "point", "axis", "damping"};
+inline constexpr std::array<Word, 14> kJoint = {"name",        "type",      "body", "to",      "point",    "axis",     "limits",
+                                                "restitution", "stiffness", "rest", "damping", "friction", "armature", "start"};
+inline constexpr std::array<Word, 3> kCoupling = {"joint", "follows", "polynomial"};
+inline constexpr std::array<Word, 2> kTendon = {"name", "joints"};
+inline constexpr std::array<Word, 11> kDrive = {"name", "joint",  "tendon", "type",   "stiffness", "damping",
+                                                "gain", "offset", "force",  "target", "trajectory"};
+inline constexpr std::array<Word, 4> kDriveTypes = {"position", "velocity", "motor", "affine"};
+inline constexpr std::array<Word, 1> kDriveTrajectory = {"keyframes"};
+inline constexpr std::array<Word, 2> kDriveKeyframe = {"time", "value"};
+inline constexpr std::array<Word, 4> kFrame = {"name", "body", "position", "rotation"};
 inline constexpr std::array<Word, 4> kJointTypes = {"pivot", "slider", "ball", "weld"};
 inline constexpr std::array<Word, 3> kPair = {"bodies", "touch", "material"};
 inline constexpr std::array<Word, 6> kMaterial = {"mu_s", "mu_d", "restitution", "torsion_radius", "rolling_radius", "stribeck_speed"};

@@ -25,7 +25,8 @@ std::string SceneNames::readNext(const JsonValue& json, const std::string& other
   const JsonValue& place = value ? *value : json;
   requireName(name, place);
   if (!index_.emplace(name, static_cast<int>(index_.size())).second) {
-    place.reject(fmt::format("can't be called \"{}\": another body or finger is. Names tell them apart in quantities.", name));
+    place.reject(
+        fmt::format("can't be called \"{}\": another body, joint, drive, frame or finger is. Names tell them apart in quantities.", name));
   }
   return name;
 }
@@ -36,6 +37,12 @@ int SceneNames::bodyNamed(const JsonValue& json, const Scene& scene) const {
   std::vector<std::string_view> bodies;
   for (const engine::BodySpec& body : scene.bodies) bodies.push_back(body.name);
   return static_cast<int>(json.oneOf(bodies));
+}
+
+int SceneNames::jointNamed(const JsonValue& json, const Scene& scene) {
+  std::vector<std::string_view> joints;
+  for (const engine::JointModel& joint : scene.joints) joints.push_back(joint.name);
+  return static_cast<int>(json.oneOf(joints));
 }
 
 }  // namespace pincer::tasks

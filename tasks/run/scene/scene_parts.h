@@ -19,13 +19,15 @@ std::string besideScene(const std::string& file, const std::string& name);
 // Refuses at `place` what isn't letters, digits, - and _, or is too long.
 void requireName(const std::string& name, const JsonValue& place);
 
-// The bodies and fingers of a scene by their names, while it is read.
+// What has a name in a scene, while it is read: bodies, joints, tendons, drives, frames and fingers.
 class SceneNames {
  public:
-  // The name under "name", or `otherwise`, now that of the next body or finger. It must be new in the scene, for quantities go by it.
+  // The name under "name", or `otherwise`, now that of the next part. It must be new in the scene, for quantities go by it.
   std::string readNext(const JsonValue& json, const std::string& otherwise);
   // The index of the body that `json` names; throws with a did-you-mean.
   int bodyNamed(const JsonValue& json, const Scene& scene) const;
+  // The index of the joint, as bodyNamed.
+  static int jointNamed(const JsonValue& json, const Scene& scene);
 
  private:
   std::unordered_map<std::string, int> index_;  // bodies come before fingers
@@ -53,7 +55,16 @@ Pose readHalfSpacePose(const JsonValue& shape);
 SceneMotion readBodyTrajectory(const JsonValue& json, engine::BodyStart& start, const Vec3& start_rotation);
 // Refuses at `time` a last point that doesn't come later than the one before, or that would be reached faster than `fastest` per second.
 void requireOnward(const std::vector<TimedPoint>& points, double fastest, const JsonValue& time);
-engine::JointModel readJoint(const JsonValue& json, const SceneNames& names, const Scene& scene);
+engine::JointModel readJoint(const JsonValue& json, SceneNames& names, const Scene& scene);
+engine::CouplingModel readCoupling(const JsonValue& json, const Scene& scene);
+// A length made of joints' ways, for drives to pull at.
+struct SceneTendon {
+  std::string name;
+  std::vector<engine::DriveTerm> terms;
+};
+SceneTendon readTendon(const JsonValue& json, SceneNames& names, const Scene& scene);
+SceneDrive readDrive(const JsonValue& json, const std::vector<SceneTendon>& tendons, SceneNames& names, const Scene& scene);
+BodyFrame readFrame(const JsonValue& json, SceneNames& names, const Scene& scene);
 ScenePair readPair(const JsonValue& json, const SceneNames& names, const Scene& scene);
 
 // Corners given as "points" or in a "file".

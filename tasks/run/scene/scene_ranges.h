@@ -63,7 +63,22 @@ inline constexpr NumberRule kRollingRadius = {
     .min = 0, .max = 1, .remedy = "In metres; 0 rolls freely, a hundredth of a ball's radius is a soft floor."};
 inline constexpr NumberRule kStribeckSpeed = {
     .min = 1e-6, .max = 100, .remedy = "In m/s: below it friction rises to mu_s; 0: it doesn't.", .or_zero = true};
+
+// Joints and what drives them, of pivots in radians and N m, of sliders in metres and N.
+inline constexpr NumberRule kJointPosition = {.min = -1e4, .max = 1e4, .remedy = "In radians for a pivot, in metres for a slider."};
 inline constexpr NumberRule kJointDamping = {.min = 0, .max = 1e6, .remedy = "In N m s/rad for a pivot, N s/m for a slider."};
+inline constexpr NumberRule kJointStiffness = {.min = 0, .max = 1e9, .remedy = "In N m/rad for a pivot, N/m for a slider; 0: no spring."};
+inline constexpr NumberRule kJointFriction = {.min = 0, .max = 1e6, .remedy = "In N m for a pivot, N for a slider; 0: none."};
+inline constexpr NumberRule kArmature = {.min = 1e-12,
+                                         .max = 1e6,
+                                         .remedy = "In kg m^2 for a pivot, kg for a slider; of a geared motor n^2 times its rotor's.",
+                                         .or_zero = true};
+inline constexpr NumberRule kCoefficient = {.min = -1e6, .max = 1e6, .remedy = "A number of the polynomial c0 + c1 q + c2 q^2 + .."};
+inline constexpr NumberRule kTendonShare = {.min = -1e3, .max = 1e3, .remedy = "The tendon's length grows by so much of the joint's way."};
+inline constexpr NumberRule kDriveGain = {.min = -1e6, .max = 1e6, .remedy = "Force per unit of the control."};
+inline constexpr NumberRule kDriveForce = {.min = -1e6, .max = 1e6, .remedy = "In N m on a pivot, N on a slider."};
+inline constexpr NumberRule kDriveControl = {
+    .min = -1e6, .max = 1e6, .remedy = "A place, a rate or a force: what the drive's type makes of it (docs/scenes.md)."};
 
 // Shapes.
 inline constexpr NumberRule kCreaseAngle = {.min = 1e-6, .max = std::numbers::pi, .remedy = "In radians; 40 degrees are 0.698."};

@@ -23,11 +23,24 @@ std::vector<std::string_view> namesOf(std::span<const QuantityKind> kinds) {
   return names;
 }
 
-std::vector<std::string_view> ownersOf(const Scene& scene) {
+// A family of things that quantities are of, in the order of their names.
+struct Family {
+  std::span<const QuantityKind> kinds;
   std::vector<std::string_view> names;
-  for (const engine::BodySpec& body : scene.bodies) names.push_back(body.name);
-  for (const SceneFinger& finger : scene.fingers) names.push_back(finger.model.name);
-  return names;
+};
+template <class List, class Name>
+Family familyOf(std::span<const QuantityKind> kinds, const List& list, const Name& name) {
+  Family family{kinds, {}};
+  for (const auto& item : list) family.names.push_back(name(item));
+  return family;
+}
+
+std::vector<Family> familiesOf(const Scene& scene) {
+  const auto own = [](const auto& item) { return std::string_view(item.name); };
+  const auto of_model = [](const auto& item) { return std::string_view(item.model.name); };
+  return {familyOf(bodyQuantities(), scene.bodies, own), familyOf(jointQuantities(), scene.joints, own),
+          familyOf(driveQuantities(), scene.drives, of_model), familyOf(frameQuantities(), scene.frames, own),
+          familyOf(fingerQuantities(), scene.fingers, of_model)};
 }
 
 // `reject` throws, with where the text stands before what it is told.
@@ -65,17 +78,41 @@ Quantity findOfFinger(const std::string& text, std::string_view word, const Scen
   return find(text, fingerQuantities(), word, index, reject);
 }
 
+constexpr char kTouching = '|';
+
+// "cube|left.f_x": of what touches between two bodies, on the first.
+Quantity findOfPair(const std::string& text, std::string_view owner, std::string_view word, const Scene& scene, const Reject& reject) {
+  const std::vector<std::string_view> bodies = familiesOf(scene).front().names;
+  const std::size_t bar = owner.find(kTouching);
+  std::array<std::size_t, 2> pair{};
+  for (std::size_t k = 0; k < 2; ++k) {
+    const std::string_view name = k == 0 ? owner.substr(0, bar) : owner.substr(bar + 1);
+    const auto it = std::find(bodies.begin(), bodies.end(), name);
+    if (it == bodies.end()) reject(fmt::format("names no body of this scene by \"{}\".{}", name, suggestion(name, bodies)));
+    pair[k] = static_cast<std::size_t>(it - bodies.begin());
+  }
+  if (pair[0] == pair[1]) reject("names one body twice: it doesn't touch itself.");
+  return find(text, pairQuantities(), word, pairIndex(pair[0], pair[1], bodies.size()), reject);
+}
+
 Quantity findQuantity(const std::string& text, const Scene& scene, const Reject& reject) {
   const std::size_t dot = text.find('.');
   if (dot == std::string::npos) return find(text, worldQuantities(), text, 0, reject);
   const std::string_view owner = std::string_view(text).substr(0, dot);
   const std::string_view word = std::string_view(text).substr(dot + 1);
-  const std::vector<std::string_view> owners = ownersOf(scene);
-  const auto it = std::find(owners.begin(), owners.end(), owner);
-  if (it == owners.end()) reject(fmt::format("names no body or finger of this scene.{}", suggestion(owner, owners)));
-  const std::size_t place = static_cast<std::size_t>(it - owners.begin());
-  const std::size_t bodies = scene.bodies.size();
-  return place < bodies ? find(text, bodyQuantities(), word, place, reject) : findOfFinger(text, word, scene, place - bodies, reject);
+  if (owner.find(kTouching) != std::string_view::npos) return findOfPair(text, owner, word, scene, reject);
+  const std::vector<Family> families = familiesOf(scene);
+  std::vector<std::string_view> owners;
+  for (const Family& family : families) {
+    const auto it = std::find(family.names.begin(), family.names.end(), owner);
+    owners.insert(owners.end(), family.names.begin(), family.names.end());
+    if (it == family.names.end()) continue;
+    const auto index = static_cast<std::size_t>(it - family.names.begin());
+    if (family.kinds.data() == fingerQuantities().data()) return findOfFinger(text, word, scene, index, reject);
+    return find(text, family.kinds, word, index, reject);
+  }
+  reject(fmt::format("names no body, joint, drive, frame or finger of this scene.{}", suggestion(owner, owners)));
+  return {};
 }
 
 Quantity readQuantity(const JsonValue& json, const Scene& scene) {

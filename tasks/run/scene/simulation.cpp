@@ -21,7 +21,8 @@ Simulation::Simulation(Scene scene)
       scratch_(grasp::makeScratch(model_)),
       baselines_(baselinesOf(scene_)),
       inputs_(scene_.fingers.size()),
-      motions_(scene_.motions.size()) {}
+      motions_(scene_.motions.size()),
+      controls_(scene_.drives.size()) {}
 
 engine::StepReport Simulation::tick() {
   fingerInputs(scene_, static_cast<double>(ticks_ + 1) * scene_.options.h, inputs_);
@@ -31,8 +32,9 @@ engine::StepReport Simulation::tick() {
 engine::StepReport Simulation::tick(std::span<const grasp::FingerInput> fingers) {
   ++ticks_;
   bodyMotions(scene_, time(), motions_);
-  if (baselines_) return baselines_->step(model_, state_, *scratch_, fingers, motions_);
-  return grasp::step(model_, state_, *scratch_, fingers, motions_);
+  driveControls(scene_, time(), controls_);
+  if (baselines_) return baselines_->step(model_, state_, *scratch_, fingers, motions_, controls_);
+  return grasp::step(model_, state_, *scratch_, fingers, motions_, {}, controls_);
 }
 
 }  // namespace pincer::tasks
