@@ -143,7 +143,7 @@ bool somethingIsPushed(const WorldModel& model, const WorldScratch& scratch) {
 
 // A massless fingertip behind its spring gives way: in no time it takes no impulse.
 bool givesWay(const WorldModel& model, const Side& side) {
-  if (side.kind == SideKind::kBody) return false;
+  if (side.kind != SideKind::kPoint) return false;
   const DrivenPointModel& point = model.points[side.index];
   return point.mass <= 0 && !point.locked.all();
 }
@@ -185,7 +185,7 @@ void keepStruck(const WorldModel& model, WorldScratch& scratch) {
 
 // A hit that nothing else hangs together with, nearly always the case, is solved to round-off.
 void sharpenSingleImpact(WorldScratch& scratch) {
-  if (scratch.contacts.size() != 1) return;
+  if (scratch.contacts.size() != 1 || scratch.islands.islands.empty() || scratch.islands.islands.front().has_many_sides) return;
   const int rows = scratch.first_row[1];
   double W[kMaxContactRows * kMaxContactRows] = {};
   for (const ContactSide& side : scratch.islands.sides[0]) {

@@ -32,6 +32,7 @@ void remember(const Contact& c, double h, double hovering, ContactMemory& m) {
   m.closing = c.closing;
   m.settling = c.settling;
   if (!m.anchored) return;
+  if (c.a.kind == SideKind::kJoint && !c.stuck) return;  // its anchor is where it came to rest
   withRows(rowsOf(c.material), [&](auto rows) {
     double v_end_C[kMaxContactRows];
     relativeVelocity(c, c.mover_a->end, c.mover_b->end, rows, v_end_C);

@@ -7,6 +7,7 @@
 #include "pincer/engine/motion/driven_motion.h"
 #include "pincer/engine/motion/free_motion.h"
 #include "pincer/engine/world/budget.h"
+#include "pincer/engine/world/drive_rows.h"
 #include "pincer/engine/world/far_contacts.h"
 #include "pincer/engine/world/impact.h"
 #include "pincer/engine/world/island_sleep.h"
@@ -14,6 +15,7 @@
 #include "pincer/engine/world/push_out.h"
 #include "pincer/engine/world/rest.h"
 #include "pincer/engine/world/stages.h"
+#include "pincer/engine/world/state_checks.h"
 #include "pincer/engine/world/tree_motion.h"
 
 namespace pincer::engine {
@@ -27,39 +29,6 @@ constexpr double kShortestPart = 1e-9;                                      // o
 // Hits run through a heap by the hundred, sooner than a tick can follow: where so many touch, what hits after the first few lands.
 constexpr std::size_t kHeap = 100;  // contacts
 constexpr int kMostHeapImpacts = 5;
-
-bool isFinite(const MotionInput& in) {
-  return in.X_WB.p.allFinite() && in.X_WB.q.coeffs().allFinite() && in.motion.v_W.allFinite() && in.motion.w_W.allFinite();
-}
-
-bool isFinite(const PointInput& in) {
-  const Vec3 sum = in.p_target_W + in.v_target_W + in.f_W + in.w_W + in.n_W;  // a NaN or infinity anywhere survives the sum
-  return std::isfinite(sum[0] + sum[1] + sum[2]);
-}
-
-bool isFinite(const WorldState& state) {
-  double sum = 0;  // a NaN or infinity anywhere survives the sum
-  for (const BodyState& b : state.bodies) sum += b.X_WI.p.sum() + b.X_WI.q.coeffs().sum() + b.v_W.sum() + b.L_W.sum();
-  for (const Vec3& w_W : state.driven_w_W) sum += w_W.sum();
-  for (const auto* numbers : {&state.tree_q, &state.tree_v}) {
-    for (const double x : *numbers) sum += x;
-  }
-  for (const PointState& p : state.points) sum += p.p_W.sum() + p.v_W.sum() + p.twist + p.twist_rate;
-  return std::isfinite(sum);
-}
-
-// How far a point of a body, or a driven point, is from where it is in the other state, at most [m].
-double largestDistance(const WorldModel& model, const WorldState& a, const WorldState& b) {
-  double largest = 0;
-  for (std::size_t i = 0; i < model.bodies.size(); ++i) {
-    if (!model.bodies[i].dynamic) continue;
-    const Pose &x = a.bodies[i].X_WI, &y = b.bodies[i].X_WI;
-    const double turn = 2 * (x.q.conjugate() * y.q).vec().norm();
-    largest = std::max(largest, (x.p - y.p).norm() + turn * (model.bodies[i].inner_radius + model.bodies[i].corner_reach));
-  }
-  for (std::size_t i = 0; i < a.points.size(); ++i) largest = std::max(largest, (a.points[i].p_W - b.points[i].p_W).norm());
-  return largest;
-}
 
 class Tick {
  public:
@@ -236,7 +205,6 @@ class Tick {
   }
 
   bool hitsStop() const { return !scratch_.impact_pairs.empty() && scratch_.impact_pairs.front().stop >= 0; }
-
   bool somethingPushesImpacts() const {
     return std::any_of(scratch_.impact_pairs.begin(), scratch_.impact_pairs.end(),
                        [&](const ImpactPair& p) { return scratch_.bodies[p.a].touched || scratch_.bodies[p.b].touched; });
@@ -346,7 +314,6 @@ class Tick {
 
   bool isSpent() const { return engine::isSpent(scratch_); }
   bool mayHit() const { return impacts_ < kMostImpacts && !isSpent(); }
-
   void note() {
     if (!scratch_.solve.converged) report_.status |= kSolverNotConverged;
   }
@@ -370,23 +337,13 @@ class Tick {
       out.p_target_W = cubicBetween(now.p_target_W, now.v_target_W, end.p_target_W, end.v_target_W, left_, share, out.v_target_W);
   }
 
-  // A control that moves goes from where it was to where it is to be along the cubic with both rates.
   void setControl(std::size_t d, double share) {
-    const DriveInput& before = state_.controls[d];
-    DriveInput& out = scratch_.drives[d].input;
-    out = before;
-    out.moves = false;
-    if (d >= inputs_.controls.size()) return;
-    const DriveInput& end = inputs_.controls[d];
-    if (!std::isfinite(end.value) || !std::isfinite(end.rate)) {
-      report_.status |= kInputNotFinite;
-      return;
-    }
-    out = end;
-    if (!end.moves || !(share < 1)) return;
-    Vec3 rate = Vec3::Zero();
-    out.value = cubicBetween({before.value, 0, 0}, {before.rate, 0, 0}, {end.value, 0, 0}, {end.rate, 0, 0}, left_, share, rate).x();
-    out.rate = rate.x();
+    DriveInput end{state_.controls[d].value, state_.controls[d].rate, false};
+    const bool is_given = d < inputs_.controls.size(), is_finite = is_given && isFinite(inputs_.controls[d]);
+    if (is_finite) end = inputs_.controls[d];
+    if (is_given && !is_finite) report_.status |= kInputNotFinite;
+    if (state_.h_last == 0) state_.controls[d] = {end.value - left_ * end.rate, end.rate, end.moves};  // it has come from somewhere
+    scratch_.drives[d].input = controlAt(state_.controls[d], end, left_, share);
   }
 
   void setMotion(std::size_t i, const BodyState& now, double share) {

@@ -155,6 +155,14 @@ bool hangs(const WorldModel& model, const JointGroup& group) {
   return group.count == static_cast<int>(group.bodies.size()) && std::count_if(first, first + group.count, holds) == 1;
 }
 
+// A chain or tree of pivots and sliders: its free course is of 4th order as a tree, of second by elimination (joints.h).
+bool isBetterAsTree(const WorldModel& model, const JointGroup& group) {
+  const auto first = model.joints.begin() + group.first;
+  return group.count > 1 && hangs(model, group) && std::all_of(first, first + group.count, [](const JointModel& joint) {
+           return joint.kind == JointKind::kPivot || joint.kind == JointKind::kSlider;
+         });
+}
+
 // Per group, whether it becomes a tree; ties what drives and couplings bind.
 std::vector<bool> whichBecomeTrees(const WorldModel& model, const std::vector<CouplingModel>& couplings, Ties& ties) {
   std::vector<bool> become(model.joint_groups.size(), false);
@@ -162,7 +170,7 @@ std::vector<bool> whichBecomeTrees(const WorldModel& model, const std::vector<Co
     const JointGroup& group = model.joint_groups[g];
     const auto first = model.joints.begin() + group.first;
     const bool is_large = freedomsOf(model, group) > kMoverFreedoms || 6 * std::ssize(group.bodies) > kMostGroupFreedoms;
-    become[g] = !std::all_of(first, first + group.count, isPlain) || (is_large && hangs(model, group));
+    become[g] = !std::all_of(first, first + group.count, isPlain) || (is_large && hangs(model, group)) || isBetterAsTree(model, group);
   }
   for (const DriveModel& drive : model.drives) {
     for (const DriveTerm& term : drive.terms) {

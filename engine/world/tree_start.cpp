@@ -121,11 +121,27 @@ void placeLinksOf(const WorldModel& model, const TreeModel& tree, WorldState& st
   }
 }
 
-const JointPlace& placeInTree(const WorldModel& model, int joint) {
+const JointPlace& placeOfJoint(const WorldModel& model, int joint) {
   PINCER_DEMAND(isIndex(joint, model.joint_places.size()), "jointPosition, setJoint: the joint is one that addJoint returned");
   const JointPlace& place = model.joint_places[joint];
-  PINCER_DEMAND(place.tree >= 0, "jointPosition, setJoint: the joint is a pivot or slider that a tree has (tree.h)");
+  const JointKind kind = model.joints[place.joint].kind;
+  PINCER_DEMAND(kind == JointKind::kPivot || kind == JointKind::kSlider, "jointPosition, setJoint: the joint is a pivot or a slider");
   return place;
+}
+
+// The coordinate of a joint that no tree has, and its rate, read off its two bodies.
+struct ReadOff {
+  double position, velocity;
+};
+ReadOff readOff(const WorldModel& model, const WorldState& state, const JointModel& joint) {
+  const bool is_held_to_world = joint.b < 0;
+  const Pose X_WK = state.bodies[joint.a].X_WI * joint.X_AJ, X_WJ = is_held_to_world ? joint.X_BJ : state.bodies[joint.b].X_WI * joint.X_BJ;
+  const Vec3 axis_W = X_WJ.q * Vec3::UnitZ(), w_a = bodyAngularVelocity(model, state, joint.a);
+  const Vec3 w_b = is_held_to_world ? Vec3(Vec3::Zero()) : bodyAngularVelocity(model, state, joint.b);
+  if (joint.kind == JointKind::kPivot) return {turnNear(X_WJ.q.conjugate() * X_WK.q, joint.traits.start), axis_W.dot(w_a - w_b)};
+  Vec3 v_W = state.bodies[joint.a].v_W + w_a.cross(X_WK.p - state.bodies[joint.a].X_WI.p);
+  if (!is_held_to_world) v_W -= state.bodies[joint.b].v_W + w_b.cross(X_WK.p - state.bodies[joint.b].X_WI.p);
+  return {axis_W.dot(X_WK.p - X_WJ.p), axis_W.dot(v_W)};
 }
 
 }  // namespace
@@ -168,20 +184,23 @@ double springEnergy(const WorldModel& model, const WorldState& state) {
 }
 
 double jointPosition(const WorldModel& model, const WorldState& state, int joint) {
-  const JointPlace& place = placeInTree(model, joint);
+  const JointPlace& place = placeOfJoint(model, joint);
+  if (place.tree < 0) return readOff(model, state, model.joints[place.joint]).position;
   const TreeModel& tree = model.trees[place.tree];
   return state.tree_q[tree.first_q + tree.coordinates[place.coordinate].q];
 }
 
 double jointVelocity(const WorldModel& model, const WorldState& state, int joint) {
-  const JointPlace& at_joint = placeInTree(model, joint);
+  const JointPlace& at_joint = placeOfJoint(model, joint);
+  if (at_joint.tree < 0) return readOff(model, state, model.joints[at_joint.joint]).velocity;
   const TreeModel& tree = model.trees[at_joint.tree];
   const TreeCoordinate& own = tree.coordinates[at_joint.coordinate];
   return shareOf(tree, own, treeCoordinates(tree, state)) * state.tree_v[tree.first_v + own.column];
 }
 
 void setJoint(const WorldModel& model, WorldState& state, int joint, double position, double velocity) {
-  const JointPlace& at_joint = placeInTree(model, joint);
+  const JointPlace& at_joint = placeOfJoint(model, joint);
+  PINCER_DEMAND(at_joint.tree >= 0, "setJoint: a tree has the joint (tree.h)");
   const TreeModel& tree = model.trees[at_joint.tree];
   const TreeCoordinate& own = tree.coordinates[at_joint.coordinate];
   PINCER_DEMAND(own.leader < 0, "setJoint: the joint follows another one; set that one");

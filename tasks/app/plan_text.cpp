@@ -9,6 +9,7 @@
 #include "pincer/contact/io/counted.h"
 #include "pincer/contact/polytope.h"
 #include "pincer/contact/smooth_mesh.h"
+#include "pincer/tasks/app/plan_joints.h"
 
 namespace pincer::tasks {
 namespace {
@@ -187,6 +188,7 @@ std::vector<PlanLine> describePlan(const grasp::GraspModel& model, const std::ve
         fmt::format("{} - {}", bodies[static_cast<std::size_t>(pair.a)].name, bodies[static_cast<std::size_t>(pair.b)].name);
     lines.push_back({"pair", name, pairForm(model.world, pair)});
   }
+  describeTrees(model.world, lines);
   for (std::size_t i = 0; i < model.fingers.size(); ++i) describeFinger(model, i, methods[i], lines);
   describeMany(model, lines);
   describeSkipped(model, lines);

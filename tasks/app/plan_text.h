@@ -9,7 +9,7 @@ namespace pincer::tasks {
 
 // One thing that runs in a tick, or that the plan leaves out.
 struct PlanLine {
-  std::string part;  // "body", "pair", "finger", "skipped"
+  std::string part;  // "body", "pair", "tree", "joint", "drive", "finger", "skipped"
   std::string name;  // "sphere", "left - sphere"
   std::string form;  // "free rotation: spherical, exact", ...
 };

@@ -32,6 +32,7 @@ constexpr std::array kSceneKeys = {
     KeyBinding{'C', "C", ViewAction::kContacts, "contact points and normals"},
     KeyBinding{'F', "F", ViewAction::kForces, "contact forces"},
     KeyBinding{'K', "K", ViewAction::kCones, "friction cones"},
+    KeyBinding{'J', "J", ViewAction::kJoints, "joints: axes, stops, drives' forces"},
     KeyBinding{'D', "D", ViewAction::kDevices, "where the devices are"},
     KeyBinding{'I', "I", ViewAction::kPads, "fingerpads"},
     KeyBinding{'W', "W", ViewAction::kEdges, "wireframe: the edges of a mesh's triangles"},
@@ -102,12 +103,19 @@ bool toggle(ViewAction action, ViewChoice& choice) {
     bool ViewChoice::*shown;
   };
   constexpr std::array kSwitches = {
-      Switch{ViewAction::kHelp, &ViewChoice::help},       Switch{ViewAction::kTiming, &ViewChoice::timing},
-      Switch{ViewAction::kOverlay, &ViewChoice::overlay}, Switch{ViewAction::kContacts, &ViewChoice::contacts},
-      Switch{ViewAction::kForces, &ViewChoice::forces},   Switch{ViewAction::kCones, &ViewChoice::cones},
-      Switch{ViewAction::kDevices, &ViewChoice::devices}, Switch{ViewAction::kPads, &ViewChoice::pads},
-      Switch{ViewAction::kEdges, &ViewChoice::edges},     Switch{ViewAction::kFacets, &ViewChoice::facets},
-      Switch{ViewAction::kShadows, &ViewChoice::shadows}, Switch{ViewAction::kTransparent, &ViewChoice::transparent},
+      Switch{ViewAction::kHelp, &ViewChoice::help},
+      Switch{ViewAction::kTiming, &ViewChoice::timing},
+      Switch{ViewAction::kOverlay, &ViewChoice::overlay},
+      Switch{ViewAction::kContacts, &ViewChoice::contacts},
+      Switch{ViewAction::kForces, &ViewChoice::forces},
+      Switch{ViewAction::kCones, &ViewChoice::cones},
+      Switch{ViewAction::kJoints, &ViewChoice::joints},
+      Switch{ViewAction::kDevices, &ViewChoice::devices},
+      Switch{ViewAction::kPads, &ViewChoice::pads},
+      Switch{ViewAction::kEdges, &ViewChoice::edges},
+      Switch{ViewAction::kFacets, &ViewChoice::facets},
+      Switch{ViewAction::kShadows, &ViewChoice::shadows},
+      Switch{ViewAction::kTransparent, &ViewChoice::transparent},
   };
   for (const Switch& at : kSwitches) {
     if (at.action != action) continue;

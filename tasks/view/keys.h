@@ -24,6 +24,7 @@ enum class ViewAction : std::uint8_t {
   kContacts,
   kForces,
   kCones,
+  kJoints,
   kDevices,
   kEdges,
   kFacets,

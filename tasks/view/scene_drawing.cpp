@@ -60,6 +60,7 @@ Quat plainOrientation(const Snapshot& start, std::size_t finger) {
 
 SceneDrawing::SceneDrawing(const grasp::GraspModel& model, const Snapshot& start, Renderer& renderer)
     : fingers_(model.fingers),
+      joints_(model.world),
       ball_(renderer.add(ballMesh())),
       rod_(renderer.add(rodMesh())),
       cone_(renderer.add(openConeMesh())),
@@ -127,6 +128,7 @@ DrawList SceneDrawing::compose(const Snapshot& snapshot, const ViewChoice& choic
     if (choice.devices) addDevice(snapshot.fingers[i], i, list);
   }
   const double scale = metresPerNewton(snapshot);
+  if (choice.joints) joints_.add(snapshot, marks(), scale, list);
   for (int i = 0; i < snapshot.contact_count; ++i) addContact(snapshot.contacts[static_cast<std::size_t>(i)], choice, scale, list);
   return list;
 }
@@ -190,10 +192,10 @@ void SceneDrawing::addContact(const ContactSnapshot& contact, const ViewChoice& 
   const Paint paint{.colour = gripColour(contact.sliding), .gloss = 0.5f, .glow = 0.35f};
   if (choice.contacts) {
     list.push_back({ball_, placed({Quat::Identity(), contact.p_W}, Vec3::Constant(0.06 * size)), paint, Layer::kMark});
-    addArrow(contact.p_W, 0.45 * size * contact.n_W, 0.012 * size, {.colour = kNormal, .glow = 0.7f}, list);
+    addMarkArrow(marks(), contact.p_W, 0.45 * size * contact.n_W, 0.012 * size, {.colour = kNormal, .glow = 0.7f}, list);
   }
   if (choice.forces && contact.f_W.norm() > kLeastForce) {
-    addArrow(contact.p_W, metres_per_newton * contact.f_W, 0.035 * size, paint, list);
+    addMarkArrow(marks(), contact.p_W, metres_per_newton * contact.f_W, 0.035 * size, paint, list);
   }
   if (!choice.cones || contact.finger < 0 || !(contact.mu > 0)) return;
   const double height = 0.9 * size / std::sqrt(1 + contact.mu * contact.mu);
@@ -202,14 +204,6 @@ void SceneDrawing::addContact(const ContactSnapshot& contact, const ViewChoice& 
                   placed(pointing(contact.p_W, contact.n_W), stretch),
                   {.colour = gripColour(contact.sliding), .alpha = 0.22f, .gloss = 0.2f, .glow = 0.5f},
                   Layer::kMark});
-}
-
-void SceneDrawing::addArrow(const Vec3& from_W, const Vec3& along_W, double thickness, const Paint& paint, DrawList& list) const {
-  const double length = along_W.norm(), head = std::min(5.5 * thickness, 0.6 * length);
-  const Pose X_WM = pointing(from_W, along_W);
-  list.push_back({rod_, placed(X_WM, Vec3(thickness, thickness, length - head)), paint, Layer::kMark});
-  const double wide = std::min(2.4 * thickness, 0.6 * length);
-  list.push_back({head_, placed({X_WM.q, X_WM * Vec3(0, 0, length - head)}, Vec3(wide, wide, head)), paint, Layer::kMark});
 }
 
 std::vector<ViewLabel> SceneDrawing::labels(const Snapshot& snapshot, const ViewChoice& choice) const {

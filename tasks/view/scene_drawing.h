@@ -9,6 +9,7 @@
 
 #include "pincer/tasks/run/tick/snapshot.h"
 #include "pincer/tasks/view/camera.h"
+#include "pincer/tasks/view/joint_drawing.h"
 #include "pincer/tasks/view/renderer.h"
 
 namespace pincer::tasks {
@@ -20,6 +21,7 @@ struct ViewChoice {
   bool contacts = true;      // places and normals
   bool forces = true;        // arrows, newtons
   bool cones = true;         // of friction
+  bool joints = true;        // axes, stops, drives' forces
   bool devices = true;       // where the devices are, and the spring to the proxies
   bool transparent = false;  // moving bodies
   bool shadows = true;
@@ -74,12 +76,13 @@ class SceneDrawing {
   void addFinger(const Snapshot& snapshot, std::size_t finger, DrawList& list) const;
   void addDevice(const FingerSnapshot& seen, std::size_t finger, DrawList& list) const;
   void addContact(const ContactSnapshot& contact, const ViewChoice& choice, double metres_per_newton, DrawList& list) const;
-  void addArrow(const Vec3& from_W, const Vec3& along_W, double thickness, const Paint& paint, DrawList& list) const;
+  MarkMeshes marks() const { return {ball_, rod_, head_, size_}; }
 
   std::vector<grasp::FingerModel> fingers_;
   std::vector<int> tips_;  // per finger: its own geometry, -1 of spheres, which are drawn as human fingers
   std::vector<BodyLook> bodies_;
   std::vector<ShapeLook> shapes_;
+  JointDrawing joints_;
   std::vector<Quat> plain_q_WF_;  // of fingers whose device says nothing of their orientation
   int ball_, rod_, cone_, head_, finger_, pad_, nail_;
   double size_ = 0.05;  // of marks: that of the things that move [m]

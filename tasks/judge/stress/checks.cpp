@@ -10,7 +10,8 @@
 namespace pincer::tasks {
 namespace {
 
-double inverseMass(const engine::WorldModel& model, const engine::Side& side) {
+double inverseMass(const engine::WorldModel& model, const engine::WorldScratch& scratch, const engine::Side& side) {
+  if (side.kind == engine::SideKind::kJoint) return scratch.joint_rows[static_cast<std::size_t>(side.index)].mobility;
   if (side.kind == engine::SideKind::kBody) return model.bodies[static_cast<std::size_t>(side.index)].inverse_mass;
   return 0;  // a compliant point's response is the spring's: the body's mass sets the scale
 }
@@ -72,7 +73,7 @@ std::string faultOfLaw(const engine::WorldModel& model, const engine::WorldScrat
   });
   engine::forEachContact(scratch, [&](const engine::Contact& c) {
     if (engine::rowsOf(c.material) > 3) return;
-    const double w = inverseMass(model, c.a) + inverseMass(model, c.b);
+    const double w = inverseMass(model, scratch, c.a) + inverseMass(model, scratch, c.b);
     const Vec3 u = c.u_C + Vec3(0, 0, c.mu * c.u_C.head<2>().norm());
     speed = std::max(speed, w * c.r.head<3>().norm());
     worst = std::max(worst, w * (c.r.head<3>() - ontoCone(c.r.head<3>() - u / w, c.mu)).norm());

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 
 #include "pincer/contact/pair_query.h"
 #include "pincer/contact/polytope.h"
+#include "pincer/tasks/judge/stress/random_tree.h"
 
 namespace pincer::tasks {
 namespace {
@@ -66,6 +68,8 @@ class Draft {
   std::vector<engine::BodyStart> starts;
   std::vector<grasp::FingerModel> fingers;
   std::vector<Vec3> devices;
+  std::vector<engine::JointModel> joints;
+  std::vector<engine::DriveModel> drives;
   double allowed_lift = 0;
 
  private:
@@ -95,6 +99,8 @@ class Draft {
         return drawHit();
       case StressClass::kCompounds:
         return drawCompounds();
+      case StressClass::kJoints:
+        return drawJoints();
       default:
         return drawHeld();
     }
@@ -294,6 +300,22 @@ class Draft {
     }
   }
 
+  void drawJoints() {
+    options.max_contacts = 0;
+    options.h = logUniform(random_, 1e-4, 4e-3);
+    const int before = static_cast<int>(bodies.size());
+    RandomTree tree = drawTree(random_, material);
+    bodies.insert(bodies.end(), tree.bodies.begin(), tree.bodies.end());
+    starts.insert(starts.end(), tree.starts.begin(), tree.starts.end());
+    joints = std::move(tree.joints);
+    for (engine::JointModel& joint : joints) {
+      joint.a += before;
+      if (joint.b >= 0) joint.b += before;
+    }
+    drives = std::move(tree.drives);
+    if (!drives.empty()) allowed_lift = std::numeric_limits<double>::infinity();
+  }
+
   struct Wall {
     double length, height, brick;  // [m]
   };
@@ -312,6 +334,8 @@ StressWorld::StressWorld(StressClass kind, std::uint64_t seed, int threads)
   draft.options.threads = threads;
   engine::WorldBuilder builder(draft.options);
   for (const engine::BodySpec& body : draft.bodies) builder.addBody(body);
+  for (const engine::JointModel& joint : draft.joints) builder.addJoint(joint);
+  for (const engine::DriveModel& drive : draft.drives) builder.addDrive(drive);
   model = grasp::buildGrasp(std::move(builder), std::move(draft.fingers));
   starts = std::move(draft.starts);
   allowed_lift = draft.allowed_lift;
@@ -321,6 +345,7 @@ StressWorld::StressWorld(StressClass kind, std::uint64_t seed, int threads)
 }
 
 std::span<const grasp::FingerInput> StressWorld::nextInputs() {
+  drawControls(random_, model.world.drives, controls_);
   const double h = model.world.options.h;
   const Vec3 middle(0, 0, devices_.empty() ? 0 : devices_[0].z());
   const double closing = std::min(1.0, static_cast<double>(++tick_) / 100);

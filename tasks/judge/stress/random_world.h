@@ -28,10 +28,11 @@ enum class StressClass {
   kHulls,      // five to twelve hulls fall into a crate
   kHit,        // such a wall, of like masses, hit by a ball at up to 10 m/s
   kCompounds,  // three to six bodies of two to five shapes each fall on a heap
+  kJoints,     // trees of joints with limits, drives, springs and dry friction, masses up to 1e4 : 1 (random_tree.h)
 };
-constexpr std::string_view kStressClassNames[] = {"mass-ratio", "redundant", "overlap",   "spin",     "tick",
-                                                  "inertia",    "heap",      "stiffness", "teleport", "noise",
-                                                  "pads",       "walls",     "hulls",     "hit",      "compounds"};
+constexpr std::string_view kStressClassNames[] = {"mass-ratio", "redundant", "overlap",   "spin",  "tick", "inertia",
+                                                  "heap",       "stiffness", "teleport",  "noise", "pads", "walls",
+                                                  "hulls",      "hit",       "compounds", "joints"};
 
 struct StressWorld {
   // `threads` solve it (engine::WorldOptions).
@@ -39,6 +40,8 @@ struct StressWorld {
 
   // Where the fingers' devices are at the end of the next tick.
   std::span<const grasp::FingerInput> nextInputs();
+  // What drives are told for it. After nextInputs.
+  std::span<const engine::DriveInput> controls() const { return controls_; }
 
   const std::vector<Vec3>& startDevices() const { return devices_; }  // one per finger [m]
   bool hasFingers() const { return !model.fingers.empty(); }
@@ -53,6 +56,7 @@ struct StressWorld {
   Random random_;
   std::vector<Vec3> devices_;  // [m]
   std::vector<grasp::FingerInput> inputs_;
+  std::vector<engine::DriveInput> controls_;
   std::int64_t tick_ = 0;
 };
 

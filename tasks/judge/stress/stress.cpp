@@ -45,7 +45,7 @@ WorldResult runWorld(StressClass kind, std::uint64_t seed, int threads, double b
   for (; result.ticks < world.ticks; ++result.ticks) {
     const auto inputs = world.nextInputs();
     const double begin = threadCpuSeconds();
-    const engine::StepReport report = grasp::step(world.model, state, *scratch, inputs);
+    const engine::StepReport report = grasp::step(world.model, state, *scratch, inputs, {}, {}, world.controls());
     tick_times.push_back(1e6 * (threadCpuSeconds() - begin));
     const bool flagged = report.status != engine::kStepOk;
     result.flagged += flagged;

@@ -17,6 +17,8 @@ std::vector<Measurement> verifySliding();
 std::vector<Measurement> verifyRolling();
 std::vector<Measurement> verifyFreeBodies();
 std::vector<Measurement> verifyCompounds();
+std::vector<Measurement> verifyTrees();
+std::vector<Measurement> verifyJointLimits();
 std::vector<Measurement> verifyToppling();
 std::vector<Measurement> verifyBouncing();
 std::vector<Measurement> verifyMasonry();

@@ -13,6 +13,7 @@ Snapshot Snapshot::sizedFor(const grasp::GraspModel& model) {
   Snapshot snapshot;
   snapshot.X_WB.resize(model.world.bodies.size());
   snapshot.fingers.resize(model.fingers.size());
+  snapshot.drive_forces.resize(model.world.drives.size());
   snapshot.contacts.resize(static_cast<std::size_t>(model.world.options.max_contacts));
   return snapshot;
 }
@@ -40,6 +41,8 @@ void captureGrasp(const grasp::GraspModel& model, const grasp::GraspState& state
   }
   snapshot.contact_count = 0;
   const engine::WorldScratch& world = grasp::worldOf(scratch);
+  for (std::size_t d = 0; d < snapshot.drive_forces.size(); ++d)
+    snapshot.drive_forces[d] = engine::driveAt(world, static_cast<int>(d)).force;
   for (int k = 0; k < engine::contactCount(world) && snapshot.contact_count < static_cast<int>(snapshot.contacts.size()); ++k) {
     const engine::ContactReport contact = engine::contactAt(world, k);
     if (contact.pushes) snapshot.contacts[static_cast<std::size_t>(snapshot.contact_count++)] = seenContact(contact);

@@ -59,6 +59,7 @@ struct Snapshot {
   std::vector<FingerSnapshot> fingers;
   std::vector<ContactSnapshot> contacts;  // the first contact_count count
   int contact_count = 0;
+  std::vector<double> drive_forces;  // of every drive of a joint [N, N m]
   TrialSnapshot trial;
 
   // Sized for `model`.
