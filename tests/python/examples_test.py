@@ -2,6 +2,7 @@
 
 import os
 import pathlib
+import re
 import subprocess
 import sys
 
@@ -82,7 +83,7 @@ def test_every_name_is_documented_and_typed():
         assert value.__doc__, f"{name} has no docstring"
         if isinstance(value, type) and name not in ("InputError", "Status", "RolloutResult"):
             for member in (m for m in vars(value) if not m.startswith("_")):
-                block = stub.split(f"class {name}", 1)[1].split("\nclass ", 1)[0]
+                block = re.split(f"\nclass {name}[:(]", stub)[1].split("\nclass ", 1)[0]
                 assert f"def {member}(" in block or f"    {member}:" in block, f"{name}.{member} isn't in __init__.pyi"
     import ast
 

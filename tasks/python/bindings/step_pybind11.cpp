@@ -31,7 +31,9 @@ py::object statusClass() {
     for (char& c : name) c = c == '_' ? '_' : static_cast<char>(c - 'a' + 'A');
     members[name.c_str()] = kind.bit;
   }
-  return py::module_::import("enum").attr("IntFlag")("Status", members, py::arg("module") = "pincer");
+  py::object flags = py::module_::import("enum").attr("IntFlag")("Status", members, py::arg("module") = "pincer");
+  flags.attr("__doc__") = "What happened in a step that a caller may have to know; pincer.remedies(status) says what to change.";
+  return flags;
 }
 
 std::vector<std::string> remediesOf(std::uint32_t status) {
