@@ -38,6 +38,7 @@ def test_example(example, program, tmp_path):
     assert done.returncode == 0, done.stdout
 
 
+@pytest.mark.long
 def test_pip_installs_it(tmp_path):
     """PEP 517 in a virtual environment, as docs/python.md says; with the libraries of the build that is there."""
     subprocess.run([sys.executable, "-m", "venv", "--system-site-packages", str(tmp_path / "venv")], check=True)
