@@ -29,7 +29,10 @@ def pytest_addoption(parser):
 
 
 def pytest_collection_modifyitems(config, items):
+    asked = {name for name in ("cluster", "long") if config.getoption(f"--{name}")}
+    if os.environ.get("PINCER_LONG_TESTS"):  # tests/run --long
+        asked.add("long")
     for item in items:
-        for name in ("cluster", "long"):
-            if name in item.keywords and not config.getoption(f"--{name}"):
+        for name in {"cluster", "long"} - asked:
+            if name in item.keywords:
                 item.add_marker(pytest.mark.skip(reason=f"needs --{name}"))

@@ -210,7 +210,7 @@ def test_a_broken_state_ends_the_steps_and_says_so(pinch):
     inputs.body_force[0] = 1e300
     report = pincer.step(pinch, state, nstep=100, inputs=inputs)
     assert pincer.Status.STATE_NOT_FINITE in report.status and report.ticks < 100 and not report.ok
-    assert report.remedies and report.remedies == pincer.remedies(report.status)
+    assert report.remedies and list(report.remedies) == pincer.remedies(report.status)
     assert pincer.step(pinch, pincer.State(pinch)).status == pincer.Status.OK
 
 

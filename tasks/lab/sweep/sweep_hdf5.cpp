@@ -4,7 +4,7 @@
 
 #include "pincer/contact/error.h"
 #include "pincer/contact/io/part_file.h"
-#include "pincer/tasks/lab/sweep/sweep.h"
+#include "pincer/tasks/lab/sweep/sweep_parts.h"
 
 namespace pincer::tasks {
 namespace {
@@ -115,7 +115,7 @@ void writeSweepHdf5(const SweepTable& table, const std::string& path) {
     Hdf5File file(part.name());
     fill(file, table);
   }
-  part.replace();
+  placeWritten(part.name(), path);
 }
 
 }  // namespace pincer::tasks

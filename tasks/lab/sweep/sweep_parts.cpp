@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <fstream>
+#include <sstream>
 
 #include "pincer/contact/error.h"
+#include "pincer/contact/io/atomic_file.h"
 #include "pincer/tasks/run/files/fingerprint.h"
 #include "pincer/tasks/run/session/build_info.h"
 
@@ -35,6 +38,12 @@ void writeGrid(const SweepTable& table, JsonWriter& json) {
     points += '\n';
   }
   json.key("points").value(fingerprint(points));
+}
+
+void placeWritten(const std::string& written, const std::string& path) {
+  std::ostringstream bytes;
+  bytes << std::ifstream(written, std::ios::binary).rdbuf();
+  writeAtomically(path, bytes.str());
 }
 
 std::string studyDefinition(const SweepTable& table, const std::string& task, int participants, std::uint64_t seed) {

@@ -19,6 +19,9 @@ void addMeasure(SweepTable& table, const std::string& label, bool plotted);
 // Parameters and points of a definition, as members of the object that is open; and the fingerprint of pincer's sources.
 void writeGrid(const SweepTable& table, JsonWriter& json);
 
+// Puts a file that a library wrote under another name in place of `path`, flushed to the disk: a PartFile that was released can't flush.
+void placeWritten(const std::string& written, const std::string& path);
+
 // Of a study with these participants.
 std::string studyDefinition(const SweepTable& table, const std::string& task, int participants, std::uint64_t seed);
 

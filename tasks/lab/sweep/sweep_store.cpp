@@ -7,6 +7,7 @@
 #include "pincer/contact/error.h"
 #include "pincer/contact/io/atomic_file.h"
 #include "pincer/contact/io/part_file.h"
+#include "pincer/tasks/lab/sweep/sweep_parts.h"
 #include "pincer/tasks/run/session/build_info.h"
 #include "pincer/tasks/run/session/database.h"
 #include "pincer/tasks/run/session/session_lock.h"
@@ -247,7 +248,7 @@ void writeSweepStore(const std::string& directory, const std::string& definition
     }
     d.run("COMMIT");
   }
-  part.replace();
+  placeWritten(part.name(), fileOf(directory));
 }
 
 StoredSweep mergeSweeps(const std::vector<std::string>& directories) {

@@ -35,7 +35,7 @@ def pinch(height, heading):
 
 
 def holds(height, heading):
-    """The pull [N] at which it slips, to 0.1 N."""
+    """The pull [N] at which it slips, to 0.1 N; 10: it holds that much, as where the fingers are under a flare."""
     pinched = pinch(height, heading)
     if pinched is None:
         return 0.0

@@ -135,21 +135,14 @@ class Inputs:
     def __init__(self, model: Model) -> None: ...
     def clear(self) -> None: ...
 
-class StepReport:
-    @property
-    def status(self) -> Status: ...
-    @property
-    def ok(self) -> bool: ...
-    @property
-    def remedies(self) -> list[str]: ...
-    @property
-    def ticks(self) -> int: ...
-    @property
-    def contacts(self) -> int: ...
-    @property
-    def parts(self) -> int: ...
-    @property
-    def asleep(self) -> bool: ...
+class StepReport(NamedTuple):
+    status: Status
+    ok: bool
+    remedies: tuple[str, ...]
+    ticks: int
+    contacts: int
+    parts: int
+    asleep: bool
 
 class Camera:
     def __init__(
