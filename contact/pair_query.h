@@ -7,11 +7,11 @@
 // | sphere and anything | nearest point; on a mesh, the smooth surface | closed_forms.h, smooth_mesh.h |
 // | solid and half-space or dish | extreme points; of a mesh, the corners of its hull | extreme_points.h |
 // | box, capsule, cylinder, hull with each other | least overlap, then facets laid over each other | separation.h, facet_overlap.h |
-// | mesh and box, capsule, cylinder, hull | closest features of its flat triangles | mesh_pairs.h |
-// | mesh and mesh | the same | mesh_mesh.h |
-// But for spheres, a mesh is felt by other bodies as its flat triangles: the bulge of its smooth surface between the corners, about e^2 k / 8
-// for edge length e [m] and curvature k [1/m], is not seen. (A sphere of 20 mm radius with edges of 5 mm sinks up to 0.16 mm deeper than its
-// smooth surface.)
+// | mesh and box, capsule, cylinder, hull | closest features, led to its smooth surface | mesh_pairs.h, smooth_lead.h |
+// | mesh and mesh | closest features of the flat triangles | mesh_mesh.h |
+// Half-spaces, dishes and other meshes feel a mesh as its corners or flat triangles: the bulge of its smooth surface between the corners, about
+// e^2 k / 8 for edge length e [m] and curvature k [1/m], is not seen. (A sphere of 20 mm radius with edges of 5 mm sinks up to 0.16 mm deeper
+// than its smooth surface.)
 #pragma once
 #include <array>
 #include <cstdint>

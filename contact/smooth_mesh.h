@@ -24,6 +24,7 @@
 namespace pincer::contact {
 
 class MeshFeatures;  // contact/surface/mesh_features.h
+class SurfaceNet;    // contact/surface/surface_net.h
 struct Patch;        // contact/surface/patch.h
 
 struct SurfaceOptions {
@@ -57,6 +58,9 @@ class SmoothMesh {
   SurfaceVariant variant() const;
   const MeshFeatures& features()
       const;  // of the flat triangles, for other bodies; built (and memory taken) by the first call, from any thread
+
+  const SurfaceNet& net() const;  // the patches and how they hang together
+  double bulge() const;           // how far the smooth surface is from the flat triangles, at most [m]; 0: it is them
 
   const std::vector<std::int32_t>& foldedTriangles() const;  // whose patch folds over: contact there may be held (kQueryHeldDirection)
   double tightestConcaveRadius() const;                      // of the surface [m]; infinity where it is convex

@@ -62,10 +62,19 @@ struct Group {
 
 }  // namespace
 
-void ContactCandidates::add(const PairPoint& point) {
-  PairPoint* place = nullptr;
+void FoundPoints::place(const Pose& X_WF, PairPoints& out) const {
+  for (int i = 0; i < count; ++i) {
+    PairPoint& point = out.points[static_cast<std::size_t>(i)] = points[static_cast<std::size_t>(i)];
+    point.p_W = X_WF * point.p_W;
+    point.n_W = X_WF.q * point.n_W;
+  }
+  out.count = count;
+}
+
+void ContactCandidates::add(const FoundPoint& point) {
+  FoundPoint* place = nullptr;
   for (int i = 0; i < count_; ++i) {
-    PairPoint& other = points_[static_cast<std::size_t>(i)];
+    FoundPoint& other = points_[static_cast<std::size_t>(i)];
     if (other.feature == point.feature) {
       if (std::abs(point.phi) < std::abs(other.phi)) other = point;
       return;
@@ -79,23 +88,21 @@ void ContactCandidates::add(const PairPoint& point) {
   *place = point;
 }
 
-void ContactCandidates::keepBest(const Pose& X_WF, PairPoints& out) {
+FoundPoints ContactCandidates::keepBest() {
+  FoundPoints out;
   if (refused_.phi > -kInfinity && !overlap()) add(refused_);
   constexpr std::int8_t kNone = -1, kTaken = -2;
-  out.count = 0;
   std::array<std::int8_t, kMost> group_of;
   std::fill_n(group_of.begin(), count_, kNone);
   std::array<Group, kMaxPairPoints> groups;
   int group_count = 0;
-  const auto at = [&](int i) -> const PairPoint& { return points_[static_cast<std::size_t>(i)]; };
+  const auto at = [&](int i) -> const FoundPoint& { return points_[static_cast<std::size_t>(i)]; };
   const auto keep = [&](int i, Group& g) {
     group_of[static_cast<std::size_t>(i)] = kTaken;
     g.add(at(i));
     PINCER_ASSERT(out.count < kMaxPairPoints);
     PINCER_ASSERT(isUnitIfFinite(at(i).n_W));
-    PairPoint& point = out.points[static_cast<std::size_t>(out.count++)] = at(i);
-    point.p_W = X_WF * point.p_W;
-    point.n_W = X_WF.q * point.n_W;
+    out.points[static_cast<std::size_t>(out.count++)] = at(i);
   };
   const auto comesFirst = [&](int i, int j) {  // deeper, or as deep with the smaller feature
     return j < 0 || at(i).phi < at(j).phi - kSameGap || (at(i).phi < at(j).phi + kSameGap && at(i).feature < at(j).feature);
@@ -138,6 +145,7 @@ void ContactCandidates::keepBest(const Pose& X_WF, PairPoints& out) {
   }
   std::sort(out.points.begin(), out.points.begin() + out.count,
             [](const PairPoint& x, const PairPoint& y) { return x.feature < y.feature; });
+  return out;
 }
 
 }  // namespace pincer::contact

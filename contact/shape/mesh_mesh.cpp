@@ -42,7 +42,7 @@ class MeshOnMesh {
     const Vec3 low = other.features.tree().low(), high = other.features.tree().high();
     const Vec3 centre = other.R.transpose() * (0.5 * (low + high) - other.p);
     const Vec3 half = other.R.transpose().cwiseAbs() * (0.5 * (high - low)) + Vec3::Constant(scale_.margin);
-    mesh.visitBox(centre - half, centre + half, [&](std::int32_t t) {
+    mesh.visitOwners(centre - half, centre + half, [&](std::int32_t t) {
       const FlatTriangle triangle = mesh.triangle(t);
       const Vec3 q0 = other.place(triangle.p[0]), q1 = other.place(triangle.p[1]), q2 = other.place(triangle.p[2]);
       const Vec3 reach = Vec3::Constant(scale_.margin);
@@ -54,7 +54,7 @@ class MeshOnMesh {
   // In the frame of a.
   void offer(const PairPoint& point, bool is_way_out) {
     if (!(point.phi < scale_.margin && point.phi > scale_.deepest())) return;
-    is_way_out ? candidates_.add(point) : candidates_.addRefused(point);
+    is_way_out ? candidates_.add({point}) : candidates_.addRefused({point});
   }
 
   void lookAtCorners(const FlatTriangle& triangle, const MeshFeatures& own, const SeenMesh& other, std::uint32_t kind) {
@@ -117,7 +117,7 @@ class MeshOnMesh {
     const Vec3 low = q0.cwiseMin(q1) - reach, high = q0.cwiseMax(q1) + reach;
     const Vec3 e = (a1 - a0).normalized();
     const EdgeSides sides(ta, i, e);
-    b_.visitBox(low, high, [&](std::int32_t t) {
+    b_.visitOwners(low, high, [&](std::int32_t t) {
       if (!b_.meetsBox(t, low, high)) return;
       const FlatTriangle tb = b_.triangle(t);
       for (int j = 0; j < 3; ++j) {
@@ -173,7 +173,7 @@ void collideMeshes(const Mesh& a, const Pose& X_WA, const Mesh& b, const Pose& X
   const Pose X_AB{X_WA.q.conjugate() * X_WB.q, X_WA.q.conjugate() * (X_WB.p - X_WA.p)};
   MeshOnMesh search(a, b, X_AB, {std::min(radius_a, radius_b), margin});
   search.find();
-  search.candidates().keepBest(X_WA, out);
+  search.candidates().keepBest().place(X_WA, out);
 }
 
 }  // namespace pincer::contact

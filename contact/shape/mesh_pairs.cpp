@@ -6,6 +6,7 @@
 #include "pincer/contact/shape/edge_on_facet.h"
 #include "pincer/contact/shape/edge_on_solid.h"
 #include "pincer/contact/shape/mesh_rules.h"
+#include "pincer/contact/shape/smooth_lead.h"
 #include "pincer/contact/shape/solid_walls.h"
 #include "pincer/contact/smooth_mesh.h"
 
@@ -36,6 +37,7 @@ class MeshOnSolid {
   void look(std::int32_t t, const Vec3& low, const Vec3& high) {
     if (!features_.meetsBox(t, low, high)) return;
     const FlatTriangle triangle = features_.triangle(t);
+    at_ = t;
     faceAlong(triangle.n);
     const double height = triangle.n.dot(lowest_ - triangle.p[0]);
     if (height > scale_.margin) return;
@@ -48,7 +50,7 @@ class MeshOnSolid {
 
   void offer(const PairPoint& point, bool is_way_out) {
     if (!(point.phi < scale_.margin && point.phi > scale_.deepest())) return;
-    is_way_out ? candidates_.add(point) : candidates_.addRefused(point);
+    is_way_out ? candidates_.add({point, at_}) : candidates_.addRefused({point, at_});
   }
 
   // The solid's facet that faces against `n`, and its point on that side: the same for all triangles of a flat face.
@@ -188,21 +190,26 @@ class MeshOnSolid {
   double rounding_;
   Vec3 faced_ = Vec3::Zero(), lowest_;  // see faceAlong
   Facet facet_;                         // its corners where they are, on the solid's surface; none until they are asked for
+  std::int32_t at_ = -1;                // the triangle that is looked at
   ContactCandidates candidates_;
 };
 
 }  // namespace
 
-void collideMeshWithConvex(const Mesh& mesh, const Pose& X_WA, const Shape& solid, const Pose& X_WB, double margin, PairPoints& out) {
+void collideMeshWithConvex(const Mesh& mesh, const Pose& X_WA, const Shape& solid, const Pose& X_WB, double margin, PatchCache& cache,
+                           PairPoints& out) {
   out.count = 0;
   const double radius_a = mesh.surface->boundingRadius(), radius_b = boundingRadius(solid);
   const double furthest = radius_a + radius_b + margin;
   if (!((X_WA.p - X_WB.p).squaredNorm() < furthest * furthest)) return;
   const Quat q = X_WA.q.conjugate() * X_WB.q;
   const PosedSolid posed{solid, q.toRotationMatrix(), X_WA.q.conjugate() * (X_WB.p - X_WA.p)};
-  MeshOnSolid search(mesh, posed, {std::min(radius_a, radius_b), margin});
+  const double size = std::min(radius_a, radius_b), bulge = mesh.surface->bulge();
+  MeshOnSolid search(mesh, posed, {size, margin + bulge});
   search.find();
-  search.candidates().keepBest(X_WA, out);
+  FoundPoints points = search.candidates().keepBest();
+  if (bulge > 0) leadToSurface(mesh.surface->net(), cache, posed, size, margin, points);
+  points.place(X_WA, out);
 }
 
 void collidePadWithMesh(const Shape& core, double rounding, const Pose& X_BF, const Mesh& mesh, double margin, PairPoints& out) {
@@ -210,7 +217,7 @@ void collidePadWithMesh(const Shape& core, double rounding, const Pose& X_BF, co
   const PosedSolid pad{core, X_BF.q.toRotationMatrix(), X_BF.p, rounding};
   MeshOnSolid search(mesh, pad, {std::min(mesh.surface->boundingRadius(), boundingRadius(core) + rounding), margin});
   search.find();
-  search.candidates().keepBest(Pose{}, out);
+  search.candidates().keepBest().place(Pose{}, out);
   for (int i = 0; i < out.count; ++i) out.points[static_cast<std::size_t>(i)].n_W *= -1;
 }
 

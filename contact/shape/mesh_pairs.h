@@ -11,8 +11,9 @@
 // shallow overlap is right also in hollows. What is behind the surface must be in the body, and no other way out much shorter
 // (MeshScale::isWayOut): the far side of a thin plate doesn't count. Where that leaves nothing, as of a rim across an edge of the mesh with the
 // end of the cylinder close by, the shallowest of the refused is the contact: bodies that overlap are never without one.
-// Contact is with the flat triangles, not with the smooth surface between their corners: they differ by up to e^2 k / 8 (edge length e,
-// curvature k), as on half-spaces (pair_query.h).
+// All this is of the flat triangles, within the margin and as much more as the smooth surface is from them at most. From there the points are led to
+// the smooth surface (smooth_lead.h); a mesh whose surface is its triangles is done. A pad's points stay those of the triangles: they tell where
+// these are the surface (finger_query.h).
 //
 // Of all candidates up to eight are kept: those of like normal (within kLike) form a group; the deepest of each group first, then within
 // groups in turn the one that is furthest from what the group has, by point_choice.h's d^2 / (g + s).
@@ -23,7 +24,8 @@
 namespace pincer::contact {
 
 // As collideShapes (pair_query.h); n out of the solid (b) towards the mesh (a), both poses in W. Allocates nothing.
-void collideMeshWithConvex(const Mesh& mesh, const Pose& X_WA, const Shape& solid, const Pose& X_WB, double margin, PairPoints& out);
+void collideMeshWithConvex(const Mesh& mesh, const Pose& X_WA, const Shape& solid, const Pose& X_WB, double margin, PatchCache& cache,
+                           PairPoints& out);
 
 // Of a fingertip that is the convex `core` at X_BF with a ball of radius `rounding` >= 0 [m] about it, with the mesh's flat triangles: points
 // in the mesh's frame B, normals out of the mesh. Allocates nothing once the mesh's features are built.

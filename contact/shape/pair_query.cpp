@@ -113,7 +113,7 @@ void collideShapes(const Shape& a, const Pose& X_WA, const Shape& b, const Pose&
   PINCER_ASSERT(!(margin < 0));
   if (isSphere(a)) return collideSphere(std::get<Sphere>(a), X_WA, b, X_WB, margin, cache, out);
   if (isConvex(a) && isConvex(b) && !isSphere(b) && a.index() <= b.index()) return collideConvex(a, X_WA, b, X_WB, margin, last_n_W, out);
-  if (isMesh(a) && isConvex(b) && !isSphere(b)) return collideMeshWithConvex(std::get<Mesh>(a), X_WA, b, X_WB, margin, out);
+  if (isMesh(a) && isConvex(b) && !isSphere(b)) return collideMeshWithConvex(std::get<Mesh>(a), X_WA, b, X_WB, margin, cache, out);
   if (isMesh(a) && isMesh(b)) return collideMeshes(std::get<Mesh>(a), X_WA, std::get<Mesh>(b), X_WB, margin, out);
   if (isSupport(b)) return collideWithSupport(a, X_WA, b, X_WB, margin, out);
   collideShapes(b, X_WB, a, X_WA, margin, cache, out, -last_n_W);

@@ -14,14 +14,21 @@ Vec3 crossOf(const TriangleMesh& mesh, const std::array<std::int32_t, 3>& t) {
   return (at(1) - at(0)).cross(at(2) - at(0));
 }
 
-std::vector<Aabb> boxesOf(const TriangleMesh& mesh) {
+std::vector<Aabb> boxesOf(const TriangleMesh& mesh, const std::vector<std::int32_t>& triangles) {
   std::vector<Aabb> boxes;
-  boxes.reserve(mesh.triangles.size());
-  for (const auto& t : mesh.triangles) {
+  boxes.reserve(triangles.size());
+  for (const std::int32_t number : triangles) {
+    const auto& t = mesh.triangles[static_cast<std::size_t>(number)];
     const auto at = [&](std::size_t i) -> const Vec3& { return mesh.vertices[static_cast<std::size_t>(t[i])]; };
     boxes.push_back({at(0).cwiseMin(at(1)).cwiseMin(at(2)), at(0).cwiseMax(at(1)).cwiseMax(at(2))});
   }
   return boxes;
+}
+
+std::vector<std::int32_t> allOf(const TriangleMesh& mesh) {
+  std::vector<std::int32_t> all(mesh.triangles.size());
+  std::iota(all.begin(), all.end(), 0);
+  return all;
 }
 
 constexpr double kFlat = 1e-6;  // sine of the angle across or along an edge that counts as none
@@ -71,9 +78,24 @@ OnTriangle nearestOfTriangle(const Vec3& a, const Vec3& b, const Vec3& c) {
 }  // namespace
 
 MeshFeatures::MeshFeatures(const TriangleMesh& mesh, const Neighbours& neighbours)
-    : mesh_(&mesh), owned_(mesh.triangles.size(), 0), opposite_(mesh.triangles.size()), tree_(boxesOf(mesh)) {
-  setOwners(neighbours);
+    : mesh_(&mesh),
+      owned_(mesh.triangles.size(), 0),
+      opposite_(mesh.triangles.size()),
+      tree_(boxesOf(mesh, allOf(mesh))),
+      owner_numbers_(findOwners(neighbours)),
+      owners_(boxesOf(mesh, owner_numbers_)) {
   setTrianglesAtVertices();
+}
+
+// At least one: what has no convex edge and no border has no volume.
+std::vector<std::int32_t> MeshFeatures::findOwners(const Neighbours& neighbours) {
+  setOwners(neighbours);
+  std::vector<std::int32_t> owners;
+  for (std::size_t t = 0; t < owned_.size(); ++t) {
+    if (owned_[t] != 0) owners.push_back(static_cast<std::int32_t>(t));
+  }
+  if (owners.empty()) owners.push_back(0);
+  return owners;
 }
 
 void MeshFeatures::setOwners(const Neighbours& neighbours) {
@@ -121,8 +143,8 @@ void MeshFeatures::setTrianglesAtVertices() {
 }
 
 std::size_t MeshFeatures::memoryBytes() const {
-  return owned_.capacity() + opposite_.capacity() * sizeof(opposite_[0]) + tree_.memoryBytes() +
-         (first_at_vertex_.capacity() + triangles_at_vertex_.capacity()) * sizeof(std::int32_t);
+  return owned_.capacity() + opposite_.capacity() * sizeof(opposite_[0]) + tree_.memoryBytes() + owners_.memoryBytes() +
+         (first_at_vertex_.capacity() + triangles_at_vertex_.capacity() + owner_numbers_.capacity()) * sizeof(std::int32_t);
 }
 
 std::span<const std::int32_t> MeshFeatures::trianglesAt(std::int32_t v) const {

@@ -61,6 +61,8 @@ class MeshFeatures {
   bool liesAbove(std::int32_t vertex, const Vec3& n, double slack) const;
 
   const AabbTree& tree() const { return tree_; }
+  // Of the triangles that own a corner or edge only: on a finely cut flat face there is none, and a walk over it costs nothing.
+  const AabbTree& owners() const { return owners_; }
   std::size_t memoryBytes() const;
 
   // Calls visit(t) on every triangle whose leaf's box meets [low, high]. Allocates nothing.
@@ -69,11 +71,19 @@ class MeshFeatures {
     tree_.visitBox(low, high, std::numeric_limits<int>::max(),
                    [&](std::int32_t place) { visit(tree_.order()[static_cast<std::size_t>(place)]); });
   }
+  // The same on those that own a corner or edge.
+  template <class Visit>
+  void visitOwners(const Vec3& low, const Vec3& high, Visit&& visit) const {
+    owners_.visitBox(low, high, std::numeric_limits<int>::max(), [&](std::int32_t place) {
+      visit(owner_numbers_[static_cast<std::size_t>(owners_.order()[static_cast<std::size_t>(place)])]);
+    });
+  }
 
  private:
   const Vec3& vertex(std::int32_t v) const { return mesh_->vertices[static_cast<std::size_t>(v)]; }
   const std::array<std::int32_t, 3>& cornersOf(std::int32_t t) const { return mesh_->triangles[static_cast<std::size_t>(t)]; }
   std::span<const std::int32_t> trianglesAt(std::int32_t v) const;
+  std::vector<std::int32_t> findOwners(const Neighbours& neighbours);
   void setOwners(const Neighbours& neighbours);
   void setTrianglesAtVertices();
   Vec3 normalAround(std::int32_t v) const;
@@ -84,6 +94,8 @@ class MeshFeatures {
   std::vector<std::array<std::int32_t, 3>> opposite_;  // per triangle and edge: the vertex beyond it, -1 at a border
   std::vector<std::int32_t> first_at_vertex_, triangles_at_vertex_;
   AabbTree tree_;
+  std::vector<std::int32_t> owner_numbers_;  // triangles
+  AabbTree owners_;
 };
 
 }  // namespace pincer::contact

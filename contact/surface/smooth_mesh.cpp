@@ -94,6 +94,8 @@ const MeshFeatures& SmoothMesh::features() const {
   std::call_once(d.features_wanted, [&] { d.features = std::make_unique<const MeshFeatures>(d.net.mesh(), findNeighbours(d.net.mesh())); });
   return *d.features;
 }
+const SurfaceNet& SmoothMesh::net() const { return data_->net; }
+double SmoothMesh::bulge() const { return data_->search.bulge(); }
 const TriangleMesh& SmoothMesh::triangles() const { return data_->net.mesh(); }
 Patch SmoothMesh::patch(std::int32_t triangle) const { return data_->net.build(triangle).patch; }
 SurfaceVariant SmoothMesh::variant() const { return data_->variant; }

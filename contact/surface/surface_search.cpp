@@ -122,6 +122,7 @@ SurfaceSearch::SurfaceSearch(const SurfaceNet& net, NetInspector& inspector, con
     part.radius = above(std::sqrt(radius2));
     part.bulge = above(bulgeOf(cell.patch));
     part.hollow = above(hollowOf(net, t, cell));
+    bulge_ = std::max<double>(bulge_, part.bulge);
     unordered.push_back(part);
     boxes.push_back(boxAround(cell.patch, cone, part.hollow));
     if (progress && t % kReported == 0) progress(kPatches * t / net.size());
@@ -129,6 +130,8 @@ SurfaceSearch::SurfaceSearch(const SurfaceNet& net, NetInspector& inspector, con
   const auto tree_progress = [&](double share) { progress(kPatches + (1 - kPatches) * share); };
   tree_ = FacingTree(boxes, progress ? std::function<void(double)>(tree_progress) : nullptr);
   is_closed_ = !cones.hasBorder();
+  constexpr double kFlat = 1e-9;  // of the mesh's size
+  if (bulge_ < kFlat * net.length()) bulge_ = 0;
   constexpr float kNowhere = std::numeric_limits<float>::infinity();
   const PatchBounds none{{kNowhere, kNowhere, kNowhere}, 0, 0, 0, FacingTest(NormalCone{})};
   const auto& order = tree_.order();

@@ -64,6 +64,7 @@ class SurfaceSearch {
                  Visit&& visit) const;
   PatchBounds part(std::int32_t place) const { return group(place / kLanes).at(place % kLanes); }
   double bulge(std::int32_t place) const { return group(place / kLanes).bulge[place % kLanes]; }
+  double bulge() const { return bulge_; }  // the largest [m]; 0 where round-off is all that patches differ from their triangles by
   std::int32_t triangleAt(std::int32_t place) const { return tree_.order()[static_cast<std::size_t>(place)]; }
 
   // The place of that patch's flat triangle that is nearest to `p`, if it is nearer than `reach` (less what the patch bulges), `p` is in
@@ -102,6 +103,7 @@ class SurfaceSearch {
   FacingTree tree_;
   std::vector<PatchGroup> groups_;  // of the tree's leaves
   bool is_closed_ = false;
+  double bulge_ = 0;
 };
 
 inline bool PatchBounds::mayHold(const Vec3& p, double bound, Facing facing) const {

@@ -28,6 +28,7 @@ std::vector<Measurement> curveMeasurements();                                   
 std::vector<Measurement> costMeasurements(const ContactBenchOptions& options);         // nanoseconds, growth, peers
 std::vector<Measurement> shadingMeasurements(const ContactBenchOptions& options);      // the variants side by side, plots
 std::vector<Measurement> pairMeasurements();                                           // two bodies: errors, costs, names
+std::vector<Measurement> meshPairMeasurements();                                       // bodies on meshes: facets, many triangles
 std::vector<Measurement> fingerSceneMeasurements(const ContactBenchOptions& options);  // a finger that presses and drags
 
 }  // namespace pincer::tasks

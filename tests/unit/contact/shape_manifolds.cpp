@@ -204,7 +204,7 @@ TEST(Manifolds, ALineWhoseMiddleIsDeepestKeepsBothEnds) {
     for (const double x : {-0.01, -0.005, middle, 0.005, 0.01})
       candidates.add({Vec3(x, 0, 0), Vec3::UnitZ(), x == middle ? -5e-6 : -1e-6, ++feature});
     PairPoints out;
-    candidates.keepBest(Pose{}, out);
+    candidates.keepBest().place(Pose{}, out);
     std::set<double> kept;
     for (int k = 0; k < out.count; ++k) kept.insert(out.points[static_cast<std::size_t>(k)].p_W.x());
     EXPECT_EQ(kept, (std::set<double>{-0.01, middle, 0.01})) << middle;
