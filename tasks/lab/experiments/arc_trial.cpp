@@ -57,7 +57,8 @@ bool ArcTrial::tick(double now) {
     display_.advance(dt);
   }
   now_ = now;
-  const double start = steadySeconds();
+  const bool kept = ticks_ % setup_.stride == 0;  // reading the clock takes as long as the display's tick
+  const double start = kept ? steadySeconds() : 0;
   if (cut_) devices::trip(state_.gate, devices::Trip::kMissedDeadline);
   const devices::ArmSample arm = arm_.sample();
   const devices::TactileSample tactile = display_.sample();
@@ -65,14 +66,15 @@ bool ArcTrial::tick(double now) {
   freezeFrontEnd();
   arm_.commandForce(out_.f_D);
   display_.command(out_.tactile);
-  const double took = steadySeconds() - start;
+  const double took = kept ? steadySeconds() - start : 0;
   if (stage_ == Stage::kInterval) count(tactile, dt);
   const OneFingerAction action = observer_.act({arm, out_.f_D, tactile}, now, cue_);
   arm_.setHand(action.pull);
   if (action.enters && entered_places_.size() < setup_.intervals.size()) entered_places_.push_back(display_.trueRoller());
   if (action.pitch != 0) arm_.setGimbal(model_.X_WD.q.conjugate() * quatFromRotationVector(action.pitch * Vec3::UnitX()));
   advance(action, now);
-  if (ticks_++ % setup_.stride == 0) record(tactile, now, took);
+  ++ticks_;
+  if (kept) record(tactile, now, took);
   return stage_ != Stage::kOver;
 }
 

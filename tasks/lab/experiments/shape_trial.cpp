@@ -1,5 +1,6 @@
 #include "pincer/tasks/lab/experiments/shape_trial.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "pincer/tasks/run/measure/timing.h"
@@ -10,17 +11,19 @@ namespace {
 constexpr double kExploringMoves = 5e-3, kExploringTactor = 1e-3;  // slower, finger and tactor rest [m/s]
 constexpr std::int64_t kExploringTicks = 20;                       // over which the tactor's speed is taken
 
-// The solid stands where the arm reaches all round it: its middle 20 mm up and 20 mm towards the operator of the arm's reset place.
+constexpr double kWaitAbove = 1;  // until the tone [s]
+
+// The solid stands where the arm reaches over it and to both ends: its middle 20 mm below the arm's reset place.
 Pose shapeArmBase() {
   Mat3 R;
   R << 1, 0, 0, 0, 0, -1, 0, 1, 0;
   const Quat q_WD(R);
-  return {q_WD, -(q_WD * Vec3(0, 0.02, 0.02))};
+  return {q_WD, Vec3(0, 0, 0.02)};
 }
 
-ShapeCues shapeCues(const ShapeTrialSetup& setup, const devices::TactileDisplay& display) {
+ShapeCues shapeCues(const ShapeTrialSetup& setup) {
   const Pose X_WD = shapeArmBase();
-  return {setup.seed, X_WD.q, X_WD.p, Vec3::Zero(), setup.finger_radius, display.capabilities().reach.minCoeff()};
+  return {setup.seed, X_WD.q, X_WD.p, Vec3::Zero(), setup.finger_radius, setup.tactor_reach};
 }
 
 TickModel shapeModel(const ShapeTrialSetup& setup) {
@@ -40,7 +43,7 @@ TickModel shapeModel(const ShapeTrialSetup& setup) {
   return model;
 }
 
-Vec3 homeOf(const ShapeLimits& limits) { return limits.distance * Vec3::UnitX(); }
+Vec3 homeOf(const ShapeLimits& limits) { return limits.distance * Vec3::UnitZ(); }
 
 TickState shapeState(const TickModel& model) {
   TickState state;
@@ -57,7 +60,23 @@ devices::SimArmSettings shapeArm() {
   return settings;
 }
 
+devices::SimOneDofCldSettings shapeDisplay(const ShapeTrialSetup& setup) {
+  devices::SimOneDofCldSettings settings;
+  settings.serial = "index";
+  settings.map.finger_diameter = 2 * setup.finger_radius;
+  return settings;
+}
+
 }  // namespace
+
+// Places on the pad are azimuthal about its middle: the direction of the contact from the finger's centre, and that one's angle fore-aft.
+devices::TactileCommand onRoller(const devices::TactileCommand& command, double r, double reach) {
+  const double way = command.place_L.norm();
+  if (command.parked || !(way > 0)) return {command.parked, Vec2::Zero()};
+  const auto [sine, cosine] = math::sinCos(way / r);
+  const double angle = math::atan2(sine * command.place_L.x() / way, cosine);
+  return {false, {std::clamp(r * angle, -reach, reach), 0}};
+}
 
 ShapeTrial::ShapeTrial(const ShapeTrialSetup& setup, ShapeExplorer& explorer, StudySink& sink)
     : setup_(setup),
@@ -67,9 +86,10 @@ ShapeTrial::ShapeTrial(const ShapeTrialSetup& setup, ShapeExplorer& explorer, St
       state_(shapeState(model_)),
       scratch_(model_),
       arm_(shapeArm()),
+      display_(shapeDisplay(setup)),
       inputs_(1) {
   model_.mounts[0].gate = devices::within(model_.mounts[0].gate, arm_.capabilities());
-  explorer_.begin(shapeCues(setup, display_));
+  explorer_.begin(shapeCues(setup));
   const ShapeAction action = explorer_.act({arm_.sample(), Vec3::Zero(), display_.sample()}, 0, Cue::kNone);
   arm_.setHand(action.finger.pull);
   arm_.setGimbal(model_.mounts[0].X_WD.q.conjugate() * action.q_WF);
@@ -82,19 +102,21 @@ bool ShapeTrial::tick(double now) {
     display_.advance(dt);
   }
   now_ = now;
-  const double start = steadySeconds();
+  const bool kept = ticks_ % setup_.stride == 0;
+  const double start = kept ? steadySeconds() : 0;
   if (cut_) devices::trip(state_.mounts[0].gate, devices::Trip::kMissedDeadline);
   inputs_[0] = {arm_.sample(), display_.sample()};
   const engine::StepReport report = tasks::tick(model_, state_, scratch_, inputs_, now);
   arm_.commandForce(scratch_.outputs[0].f_D);
-  display_.command(scratch_.outputs[0].tactile);
-  const double took = steadySeconds() - start;
-  if (stage_ == Stage::kFeel) count(dt);
+  display_.command(onRoller(scratch_.outputs[0].tactile, setup_.finger_radius, setup_.tactor_reach));
+  const double took = kept ? steadySeconds() - start : 0;
+  if (stage_ == Stage::kFeel || stage_ == Stage::kAnswer) count(dt);
   const ShapeAction action = explorer_.act({inputs_[0].arm, scratch_.outputs[0].f_D, inputs_[0].tactile}, now, cue_);
   arm_.setHand(action.finger.pull);
   arm_.setGimbal(model_.mounts[0].X_WD.q.conjugate() * action.q_WF);
   advance(action, now);
-  if (ticks_++ % setup_.stride == 0) record(now, took, report.status);
+  ++ticks_;
+  if (kept) record(now, took, report.status);
   return stage_ != Stage::kOver;
 }
 
@@ -104,7 +126,7 @@ void ShapeTrial::advance(const ShapeAction& action, double now) {
   if (gate.trip != devices::Trip::kNone || now > setup_.timeout) {
     outcome_ = gate.trip != devices::Trip::kNone ? "fault" : "timeout";
     stage_ = Stage::kOver;
-  } else if (stage_ == Stage::kPrepare && now >= model_.mounts[0].gate.ramp_time) {
+  } else if (stage_ == Stage::kPrepare && now >= std::max(kWaitAbove, model_.mounts[0].gate.ramp_time)) {
     stage_ = Stage::kFeel;
     cue_ = Cue::kStart;
   } else if (stage_ == Stage::kFeel && action.finger.interval_over) {
@@ -119,6 +141,8 @@ void ShapeTrial::advance(const ShapeAction& action, double now) {
 }
 
 void ShapeTrial::count(double dt) {
+  has_touched_ = has_touched_ || scratch_.fingers[0].touching;
+  if (!has_touched_) return;
   shown_time_ += dt;
   if (!scratch_.fingers[0].touching) return;
   contact_time_ += dt;
@@ -130,12 +154,12 @@ void ShapeTrial::count(double dt) {
   const devices::TactileSample& tactile = inputs_[0].tactile;
   if (ticks_ % kExploringTicks != 0 || !tactile.valid || !tactile.place_L) return;
   const double time = static_cast<double>(kExploringTicks) * dt;
-  const double way = (*tactile.place_L - tactor_mark_.value_or(*tactile.place_L)).norm();
+  const double way = std::abs(tactile.place_L->x() - tactor_mark_.value_or(tactile.place_L->x()));
   if (way > kExploringTactor * time) {
     tactor_way_ += way;
     tactor_time_ += time;
   }
-  tactor_mark_ = *tactile.place_L;
+  tactor_mark_ = tactile.place_L->x();
 }
 
 void ShapeTrial::record(double now, double took, std::uint32_t status) {
@@ -156,7 +180,7 @@ void ShapeTrial::record(double now, double took, std::uint32_t status) {
   finger.normal_force = felt.normal_force;
   finger.tangential_force = felt.tangential_force;
   finger.gap = felt.gap;
-  const devices::TactileCommand& wanted = scratch_.outputs[0].tactile;
+  const devices::TactileCommand wanted = onRoller(scratch_.outputs[0].tactile, setup_.finger_radius, setup_.tactor_reach);
   finger.place_wanted_L = {wanted.place_L.x(), wanted.place_L.y()};
   finger.place_shown_L = {std::nan(""), std::nan("")};
   const devices::TactileSample& tactile = inputs_[0].tactile;

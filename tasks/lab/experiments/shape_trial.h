@@ -1,10 +1,13 @@
-// shape_trial: one trial of shape identification: a finger on its arm, wearing a 2-DOF contact location display, feels a solid that stands still,
+// shape_trial: one trial of shape identification: a finger on its arm, wearing a 1-DOF contact location display, feels a solid that stands still,
 // through the tick of tasks/run/tick/tick.h; at the end the participant names it.
 //
-// The arm's base frame D has x right, y up and z towards the operator (W: x right, y away, z up); the solid's middle is W's origin.
+//   s = r a,  a the fore-aft angle of the contact on the finger, |s| <= reach        place of the roller; left-right isn't shown
+//
+// The finger waits a second above the solid, then a tone; time and contact are counted from the first touch to the answer. The arm's base frame D
+// has x right, y up and z towards the operator (W: x right, y away, z up); the solid's middle is W's origin, the finger points away (+y).
 #pragma once
 #include "pincer/devices/arm/sim_arm.h"
-#include "pincer/devices/cld/sim_cld.h"
+#include "pincer/devices/cld/sim_one_dof_cld.h"
 #include "pincer/tasks/lab/experiments/study.h"
 #include "pincer/tasks/lab/participants/shape_explorer.h"
 #include "pincer/tasks/run/servo/servo.h"
@@ -16,7 +19,8 @@ struct ShapeTrialSetup {
   std::shared_ptr<const contact::SmoothMesh> solid;
   bool display_tactile = true;  // false: the tactor is parked
   double friction = 0.1;        // of the solid [-]
-  double finger_radius = 8e-3;  // [m]
+  double finger_radius = 0.02;  // [m]
+  double tactor_reach = 8e-3;   // either way [m]
   double stiffness = 1000;      // of the coupling [N/m]
   double damping = 2;           // [N s/m]
   double timeout = 120;         // [s]
@@ -24,6 +28,9 @@ struct ShapeTrialSetup {
   std::uint64_t seed = 0;
   int stride = 50;  // every stride-th tick is recorded
 };
+
+// The roller's command for a place on the pad (devices/cld/tactile_display.h) of a finger of radius `r` [m].
+devices::TactileCommand onRoller(const devices::TactileCommand& command, double r, double reach);
 
 class ShapeTrial final : public ServoCycle {
  public:
@@ -50,15 +57,15 @@ class ShapeTrial final : public ServoCycle {
   TickState state_;
   TickScratch scratch_;
   devices::SimArm arm_;
-  devices::SimCld display_;
+  devices::SimOneDofCld display_;
   std::vector<FingerInputs> inputs_;
   Stage stage_ = Stage::kPrepare;
   Cue cue_ = Cue::kNone;
-  bool answered_ = false;
+  bool answered_ = false, has_touched_ = false;
   double now_ = 0, entered_ = 0;                                                // [s]
   double shown_time_ = 0, contact_time_ = 0, answered_after_ = 0;               // [s]
   double finger_way_ = 0, finger_time_ = 0, tactor_way_ = 0, tactor_time_ = 0;  // [m], [s]
-  std::optional<Vec2> tactor_mark_;                                             // its place some ticks ago [m]
+  std::optional<double> tactor_mark_;                                           // its place some ticks ago [m]
   std::int64_t ticks_ = 0;
   const char* outcome_ = "interrupted";
   std::atomic<bool> cut_{false};

@@ -7,6 +7,7 @@
 
 #include "pincer/contact/error.h"
 #include "pincer/tasks/lab/experiments/manipulation_file.h"
+#include "pincer/tasks/lab/findings/claims.h"
 #include "pincer/tasks/run/files/json_writer.h"
 #include "pincer/tasks/run/session/build_info.h"
 
@@ -96,6 +97,7 @@ SessionInfo manipulationSessionInfo(const ManipulationSessionOptions& o) {
   info.devices_json = devicesJson(o);
   info.participants_json = describe(o.study.people);
   info.participants_hash = hashOf(o.study.people);
+  if (!o.claims.empty()) info.scene_json = claimsJson(o.claims);
   return info;
 }
 

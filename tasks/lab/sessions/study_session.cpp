@@ -31,9 +31,8 @@ SessionInfo studySessionInfo(const std::string& task, std::uint64_t seed, const 
   info.protocol_json = protocol_json;
   info.participants_json = participants_json;
   info.participants_hash = fingerprint(participants_json);
-  const char* display = task == "shape-identification" ? "simulated 2-DOF" : "simulated 1-DOF";
   JsonWriter json;
-  json.beginObject().key("arms").value("simulated").key("tactile_display").value(display).key("rate").value(servo.rate);
+  json.beginObject().key("arms").value("simulated").key("tactile_display").value("simulated 1-DOF").key("rate").value(servo.rate);
   info.devices_json =
       json.key("sample_rate").value(sample_rate).key("real_time").value(servo.clock != ServoClock::kVirtual).endObject().text();
   return info;
