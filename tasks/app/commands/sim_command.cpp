@@ -46,6 +46,7 @@ int watch(Simulation& simulation, const SimArguments& arguments, const std::atom
 
 int runOne(const SimArguments& arguments, const std::string& file) {
   Scene scene = readSceneOrBuiltin(file);
+  if (!scene.remarks.empty()) print(stderr, "{}", scene.remarks);
   asUsage([&] { applyOptions(arguments.options, scene); });
   Simulation simulation(std::move(scene));
   const std::atomic<bool>& interrupted = interruptFlag();  // until now there was nothing to end cleanly: a signal ends the program at once

@@ -28,6 +28,7 @@ inline constexpr InputKind kFirmwareFile = {"a firmware image", kMegabyte, false
 constexpr std::size_t kMostJsonValues = 250'000;
 // The largest heaps that are measured have 1,000 bodies (pincer bench engine); a tick of 4,096 apart from each other takes 1 ms.
 constexpr std::size_t kMostBodies = 4096;
+constexpr std::size_t kMostRobots = 64;
 constexpr std::size_t kMostJoints = kMostBodies;
 constexpr std::size_t kMostPairs = 4 * kMostBodies;  // special ones
 constexpr std::size_t kMostFingers = 64;             // six hands of ten, and four

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace pincer::tasks {
@@ -24,6 +25,8 @@ std::size_t lengthOfCharacter(std::string_view text) {
   const bool possible = (first != 0xf0 || second >= 0x90) && (first != 0xf4 || second <= 0x8f);
   return possible && follows(1) && follows(2) && follows(3) ? 4 : 0;
 }
+
+std::string numberText(double number) { return std::isfinite(number) ? fmt::format("{}", number) : "null"; }
 
 }  // namespace
 
@@ -61,7 +64,7 @@ JsonWriter& JsonWriter::value(std::string_view text) {
 
 JsonWriter& JsonWriter::value(double number) {
   separate();
-  text_ += std::isfinite(number) ? fmt::format("{}", number) : "null";
+  text_ += numberText(number);
   return *this;
 }
 
@@ -83,9 +86,17 @@ JsonWriter& JsonWriter::value(bool truth) {
   return *this;
 }
 
-JsonWriter& JsonWriter::value(const Vec3& v) { return beginArray().value(v.x()).value(v.y()).value(v.z()).endArray(); }
+JsonWriter& JsonWriter::row(std::span<const double> numbers) {
+  separate();
+  text_ += '[';
+  for (std::size_t i = 0; i < numbers.size(); ++i) text_ += (i > 0 ? ", " : "") + numberText(numbers[i]);
+  text_ += ']';
+  return *this;
+}
 
-JsonWriter& JsonWriter::value(const Quat& q) { return beginArray().value(q.w()).value(q.x()).value(q.y()).value(q.z()).endArray(); }
+JsonWriter& JsonWriter::value(const Vec3& v) { return row(std::array{v.x(), v.y(), v.z()}); }
+
+JsonWriter& JsonWriter::value(const Quat& q) { return row(std::array{q.w(), q.x(), q.y(), q.z()}); }
 
 JsonWriter& JsonWriter::open(char bracket) {
   separate();

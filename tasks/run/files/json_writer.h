@@ -5,6 +5,7 @@
 //   json.beginObject().key("name").value("s4").key("tick_us").value(0.9).endObject();
 #pragma once
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,8 +30,9 @@ class JsonWriter {
   JsonWriter& value(std::uint64_t number);
   JsonWriter& value(int number) { return value(static_cast<std::int64_t>(number)); }
   JsonWriter& value(bool truth);
-  JsonWriter& value(const Vec3& v);  // [x, y, z]
-  JsonWriter& value(const Quat& q);  // [w, x, y, z]
+  JsonWriter& row(std::span<const double> numbers);  // an array on one line
+  JsonWriter& value(const Vec3& v);                  // [x, y, z]
+  JsonWriter& value(const Quat& q);                  // [w, x, y, z]
 
   const std::string& text() const { return text_; }
 

@@ -53,13 +53,13 @@ const double* PosedRobot::coordinatesOf(int body_index) const {
 
 Pose PosedRobot::poseAfter(int body_index, std::size_t joints) const {
   const Pose X_PB = poseInParent(body(body_index), coordinatesOf(body_index), joints);
-  return body(body_index).parent < 0 ? X_PB : pose(body(body_index).parent) * X_PB;
+  return body(body_index).parent < 0 ? X_WR * X_PB : pose(body(body_index).parent) * X_PB;
 }
 
-PosedRobot poseRobot(const Robot& robot, const std::string& keyframe) {
-  PosedRobot posed{robot, keyframeNamed(robot, keyframe), {}, {}, {}, {}};
+PosedRobot poseRobot(const Robot& robot, const Pose& X_WR, const std::string& keyframe) {
+  PosedRobot posed{robot, X_WR, keyframeNamed(robot, keyframe), {}, {}, {}, {}};
   posed.q = posed.key && !posed.key->q.empty() ? posed.key->q : drawnCoordinates(robot);
-  posed.poses = bodyPoses(robot, posed.q);
+  for (const Pose& X_RB : bodyPoses(robot, posed.q)) posed.poses.push_back(X_WR * X_RB);
   gatherLinks(posed);
   return posed;
 }

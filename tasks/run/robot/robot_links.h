@@ -18,6 +18,7 @@ struct RobotLink {
 
 struct PosedRobot {
   const Robot& robot;
+  Pose X_WR;                           // where the file's world stands
   const RobotKeyframe* key = nullptr;  // null: as drawn
   std::vector<double> q;               // coordinates, see robot_pose.h
   std::vector<Pose> poses;             // X_WB, by body
@@ -34,6 +35,6 @@ struct PosedRobot {
 };
 
 // `keyframe` empty: as drawn. Throws InputError: there is no such keyframe.
-PosedRobot poseRobot(const Robot& robot, const std::string& keyframe);
+PosedRobot poseRobot(const Robot& robot, const Pose& X_WR, const std::string& keyframe);
 
 }  // namespace pincer::tasks

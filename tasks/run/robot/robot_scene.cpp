@@ -117,7 +117,7 @@ void writeBodies(SceneWriting& w) {
   w.json.key("bodies").beginArray();
   if (!robot.world_geoms.empty()) {
     std::vector<std::pair<const RobotGeom*, Pose>> geoms;
-    for (const RobotGeom& geom : robot.world_geoms) geoms.emplace_back(&geom, geom.X_BG);
+    for (const RobotGeom& geom : robot.world_geoms) geoms.emplace_back(&geom, w.posed.X_WR * geom.X_BG);
     w.json.beginObject().key("name").value(w.names.of("world", "world")).key("static").value(true);
     writeShapes(geoms, robot.meshes, w.json);
     w.json.endObject();
@@ -228,8 +228,8 @@ void rejectAt(const Place& place, std::string_view problem) { throw InputError(f
 std::string sceneOfRobot(const Robot& robot, const RobotSceneOptions& options, ImportNotes& notes) {
   refuseTheRest(robot);
   noteTheRest(robot, notes);
-  const PosedRobot posed = poseRobot(robot, options.keyframe);
-  SceneWriting w{posed, notes};
+  const PosedRobot posed = poseRobot(robot, options.X_WR, options.keyframe);
+  SceneWriting w{posed, notes, NamesOfRobot(options.prefix)};
   w.json.beginObject().key("version").value(1).key("description").value(robot.name).key("gravity").value(robot.gravity_W);
   w.json.key("tick").value(robot.tick).key("duration").value(std::ceil(options.duration / robot.tick - kRoundOff) * robot.tick);
   w.json.key("combination").value("maximum");

@@ -14,6 +14,8 @@ namespace pincer::tasks {
 struct RobotSceneOptions {
   std::string keyframe;  // where it starts and what its drives are told; empty: as drawn
   double duration = 2;   // [s]
+  std::string prefix;    // of all names
+  Pose X_WR;             // where the file's world stands
 };
 
 // The scene's text (JSON). Throws InputError at the robot's file and line: what a scene can't say (a loop of bodies, a spring along a tendon), an

@@ -10,7 +10,7 @@ namespace pincer::tasks {
 struct SceneWriting {
   const PosedRobot& posed;
   ImportNotes& notes;
-  NamesOfRobot names = {};
+  NamesOfRobot names;
   JsonWriter json = {};
 
   const std::string& bodyName(int body) { return names.of("body", posed.body(body).name); }

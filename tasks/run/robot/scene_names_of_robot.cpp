@@ -14,7 +14,7 @@ bool isPlain(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') |
 const std::string& NamesOfRobot::of(const std::string& kind, const std::string& name) {
   const auto [at, is_new] = names_.try_emplace({kind, name});
   if (!is_new) return at->second;
-  std::string plain = name.substr(0, kLongest);
+  std::string plain = (prefix_ + name).substr(0, kLongest);
   std::replace_if(
       plain.begin(), plain.end(), [](char c) { return !isPlain(c); }, '_');
   if (plain.empty()) plain = kind;

@@ -53,16 +53,26 @@ bool isFile(const std::string& path_or_name) {
 }  // namespace
 
 NamedJson parseSceneOrBuiltin(const std::string& path_or_name) {
+  if (isRobotFile(path_or_name)) return {path_or_name, parseJson(sceneText(path_or_name), path_or_name + " (as a scene)")};
   if (isFile(path_or_name)) return {path_or_name, readJson(path_or_name, kSceneFile)};
   return parseBuiltin(path_or_name);
 }
 
 std::string sceneText(const std::string& path_or_name) {
+  std::string remarks;
+  if (isRobotFile(path_or_name)) return robotSceneText(path_or_name, remarks);
   if (isFile(path_or_name)) return readInputFile(path_or_name, kSceneFile);
   return std::string(builtinNamed(path_or_name).json);
 }
 
 Scene readSceneOrBuiltin(const std::string& path_or_name) {
+  if (isRobotFile(path_or_name)) {
+    std::string remarks;
+    const std::string name = path_or_name + " (as a scene)";
+    Scene scene = sceneOf(parseJson(robotSceneText(path_or_name, remarks), name), name);
+    scene.remarks = remarks;
+    return scene;
+  }
   const NamedJson scene = parseSceneOrBuiltin(path_or_name);
   return sceneOf(scene.json, scene.name);
 }

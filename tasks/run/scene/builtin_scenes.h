@@ -7,6 +7,7 @@
 
 #include "pincer/tasks/run/files/strict_json.h"
 #include "pincer/tasks/run/scene.h"
+#include "pincer/tasks/run/scene/scene_robot.h"
 
 namespace pincer::tasks {
 
@@ -24,14 +25,10 @@ std::span<const BuiltinScene> builtinScenes();
 // Throws InputError with the names when there is none of this name.
 Scene readBuiltinScene(std::string_view name);
 
-// A file's path, or the name of a built-in scene: what a user gives to `sim` and `plan`. A file of that path wins. Throws InputError.
+// The path of a scene or robot (.xml), or the name of a built-in scene: what a user gives to `sim` and `plan`. A file of that path wins. Throws InputError.
 Scene readSceneOrBuiltin(const std::string& path_or_name);
 
 // The same, not yet read (sceneOf), and what it is called in messages.
-struct NamedJson {
-  std::string name;
-  JsonValue json;
-};
 NamedJson parseSceneOrBuiltin(const std::string& path_or_name);
 // And its text.
 std::string sceneText(const std::string& path_or_name);

@@ -9,6 +9,7 @@
 #include "pincer/tasks/run/files/strict_json.h"
 #include "pincer/tasks/run/scene/scene_keys.h"
 #include "pincer/tasks/run/scene/scene_parts.h"
+#include "pincer/tasks/run/scene/scene_robot.h"
 
 namespace pincer::tasks {
 namespace {
@@ -76,6 +77,34 @@ void readJointed(const JsonValue& json, SceneNames& names, Scene& scene) {
   }
 }
 
+void readBodies(const JsonValue& json, SceneNames& names, Scene& scene) {
+  for (const JsonValue& body : listOf(json.at("bodies", "What is in the world."), kMostBodies)) {
+    readBody(body, names, scene);
+    scene.body_lines.push_back(body.line());
+  }
+  if (const JsonValue* v = json.find("pairs")) {
+    for (const JsonValue& pair : listOf(*v, kMostPairs)) {
+      scene.pairs.push_back(readPair(pair, names, scene));
+      scene.pair_lines.push_back(pair.line());
+    }
+  }
+  readJointed(json, names, scene);
+}
+
+// Its bodies, joints and drives; in messages all of them stand where the robot is named.
+void addRobot(const JsonValue& json, SceneNames& names, Scene& scene) {
+  const std::array lines = {&scene.body_lines, &scene.joint_lines, &scene.coupling_lines, &scene.drive_lines, &scene.pair_lines};
+  std::array<std::ptrdiff_t, lines.size()> before;
+  for (std::size_t i = 0; i < lines.size(); ++i) before[i] = std::ssize(*lines[i]);
+  const NamedJson robot = readRobot(json, scene);
+  try {
+    readBodies(robot.json, names, scene);
+  } catch (const InputError& error) {
+    json.reject(fmt::format("can't be had: {}", error.what()));
+  }
+  for (std::size_t i = 0; i < lines.size(); ++i) std::fill(lines[i]->begin() + before[i], lines[i]->end(), json.line());
+}
+
 }  // namespace
 
 Scene sceneOf(const JsonValue& json, const std::string& name) {
@@ -90,17 +119,10 @@ Scene sceneOf(const JsonValue& json, const std::string& name) {
   if (const JsonValue* v = json.find("combination"))
     scene.options.combination = static_cast<engine::Combination>(v->oneOf(keys::kCombinations));
   SceneNames names;
-  for (const JsonValue& body : listOf(json.at("bodies", "What is in the world."), kMostBodies)) {
-    readBody(body, names, scene);
-    scene.body_lines.push_back(body.line());
+  if (const JsonValue* v = json.find("robots")) {
+    for (const JsonValue& robot : listOf(*v, kMostRobots)) addRobot(robot, names, scene);
   }
-  if (const JsonValue* v = json.find("pairs")) {
-    for (const JsonValue& pair : listOf(*v, kMostPairs)) {
-      scene.pairs.push_back(readPair(pair, names, scene));
-      scene.pair_lines.push_back(pair.line());
-    }
-  }
-  readJointed(json, names, scene);
+  readBodies(json, names, scene);
   if (const JsonValue* v = json.find("fingers")) {
     for (const JsonValue& finger : listOf(*v, kMostFingers)) scene.fingers.push_back(readFinger(finger, names, scene));
   }

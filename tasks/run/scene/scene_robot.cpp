@@ -1,0 +1,47 @@
+#include "pincer/tasks/run/scene/scene_robot.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "pincer/tasks/run/robot/import_report.h"
+#include "pincer/tasks/run/robot/robot_scene.h"
+#include "pincer/tasks/run/scene/scene_keys.h"
+#include "pincer/tasks/run/scene/scene_parts.h"
+
+namespace pincer::tasks {
+namespace {
+
+std::string sceneText(const std::string& path, const RobotSceneOptions& options, std::string& remarks) {
+  RobotImport import = readMjcf(path);
+  const std::string text = sceneOfRobot(import.robot, options, import.notes);
+  if (!import.notes.all().empty()) remarks += importText(import);
+  return text;
+}
+
+}  // namespace
+
+bool isRobotFile(const std::string& path) { return std::filesystem::path(path).extension() == ".xml"; }
+
+std::string robotSceneText(const std::string& path, std::string& remarks) { return sceneText(path, {}, remarks); }
+
+NamedJson readRobot(const JsonValue& json, Scene& scene) {
+  json.allowOnly(keys::kRobot);
+  RobotSceneOptions options;
+  if (const JsonValue* v = json.find("name")) {
+    requireName(v->text(), *v);
+    options.prefix = v->text() + "_";
+  }
+  if (const JsonValue* v = json.find("keyframe")) options.keyframe = v->text();
+  options.X_WR = {quatFromRotationVector(readVector(json, "rotation", ranges::kRotation)),
+                  readVector(json, "position", ranges::kCoordinate)};
+  const JsonValue& file = json.at("file", "The robot's MJCF file, relative to the scene's folder.");
+  const std::string path = besideScene(scene.file, file.text());
+  try {
+    return {path + " (as a scene)", parseJson(sceneText(path, options, scene.remarks), path + " (as a scene)")};
+  } catch (const InputError& error) {
+    file.reject(fmt::format("can't be used: {}", error.what()));
+  }
+}
+
+}  // namespace pincer::tasks

@@ -1,0 +1,23 @@
+// scene_robot: robots from their own files (docs/robots.md), as scenes and within scenes.
+#pragma once
+#include <string>
+
+#include "pincer/tasks/run/files/strict_json.h"
+#include "pincer/tasks/run/scene.h"
+
+namespace pincer::tasks {
+
+// True for the files that robots come in: .xml.
+bool isRobotFile(const std::string& path);
+
+// A robot's file as the text of a scene; what of it has no effect is appended to `remarks`, as lines for people. Throws InputError.
+std::string robotSceneText(const std::string& path, std::string& remarks);
+
+// One of a scene's "robots": its parts as a scene, what they are called in messages. Its remarks are appended to the scene's. Throws InputError.
+struct NamedJson {
+  std::string name;
+  JsonValue json;
+};
+NamedJson readRobot(const JsonValue& json, Scene& scene);
+
+}  // namespace pincer::tasks
