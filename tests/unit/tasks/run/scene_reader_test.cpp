@@ -317,6 +317,7 @@ TEST(SceneSchema, NamesExactlyTheKeysThatTheReaderKnows) {
                                                                                         {"drive_trajectory", keys::kDriveTrajectory},
                                                                                         {"drive_keyframe", keys::kDriveKeyframe},
                                                                                         {"frame", keys::kFrame},
+                                                                                        {"robot", keys::kRobot},
                                                                                         {"material", keys::kMaterial},
                                                                                         {"finger", keys::kFinger},
                                                                                         {"trajectory", keys::kTrajectory},
