@@ -15,7 +15,7 @@
 
 namespace pincer::engine {
 
-// What a joint leaves free, in its frame J.
+// Freedoms that a joint leaves, in its frame J.
 enum class JointKind : unsigned char {
   kPivot,   // a turns about J's z axis
   kSlider,  // a slides along J's z axis
@@ -23,7 +23,7 @@ enum class JointKind : unsigned char {
   kWeld,    // nothing
 };
 
-// What acts on the coordinate of a pivot or slider besides its damping. [N m/rad ..] of pivots, [N/m ..] of sliders.
+// Limits of a pivot's or slider's coordinate, and all that acts on it besides its damping. [N m/rad ..] of pivots, [N/m ..] of sliders.
 struct JointTraits {
   double lower = -std::numeric_limits<double>::infinity();  // limits of q [rad, m]: stops
   double upper = std::numeric_limits<double>::infinity();
@@ -73,7 +73,7 @@ struct DriveModel {
   double upper_force = std::numeric_limits<double>::infinity();
 };
 
-// What a drive is told for one tick.
+// Control of a drive for one tick.
 struct DriveInput {
   double value = 0;    // u at the end of the tick
   double rate = 0;     // u' there, if it moves [1/s]

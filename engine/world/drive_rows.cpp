@@ -14,7 +14,7 @@ bool hasLaw(const DriveTick& law) { return law.stiffness > 0 || law.damping > 0;
 double middleOf(const DriveModel& drive) { return 0.5 * (drive.lower_force + drive.upper_force); }
 double rangeOf(const DriveModel& drive) { return 0.5 * (drive.upper_force - drive.lower_force); }
 
-// How a drive would act without limits.
+// The law of a drive without its limits.
 DriveTick lawOf(const DriveModel& drive, const DriveInput& before, const DriveInput& now) {
   DriveTick law{.stiffness = drive.stiffness, .damping = drive.damping, .force = drive.offset};
   if (drive.control == DriveModel::Control::kForce) {

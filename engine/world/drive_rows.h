@@ -9,7 +9,7 @@ namespace pincer::engine {
 
 bool isLimited(const DriveModel& drive);
 
-// Where a control that goes from `before` to `end` in `left` is after a share of that: on the cubic with both rates.
+// Place of a control that goes from `before` to `end` in `left`, after a share of that: on the cubic with both rates.
 DriveInput controlAt(const DriveInput& before, const DriveInput& end, double left, double share);
 
 // At the start of a part of a tick: the drive's law, and what the tree feels of it by itself.
@@ -21,7 +21,7 @@ void putDrive(const WorldModel& model, const WorldState& state, int slot, JointR
 // After the solve: its force. True if it isn't where it was taken to be, and gets a row.
 bool reviseDrive(const WorldModel& model, const WorldState& state, JointRowScratch& row, WorldScratch& scratch);
 
-// What it did, for the next tick.
+// Notes for the next tick what it did.
 void rememberDrive(const WorldModel& model, const JointRowScratch& row, WorldState& state, WorldScratch& scratch);
 
 }  // namespace pincer::engine

@@ -47,7 +47,7 @@ void sortJoints(const std::vector<int>& root, WorldModel& model) {
   }
 }
 
-// Whether the group has one coordinate, and what that one is.
+// Notes if the group has one coordinate, and which.
 void findHeldBody(const WorldModel& model, JointGroup& group) {
   const JointModel& joint = model.joints[group.first];
   const bool turns = joint.kind == JointKind::kPivot, slides = joint.kind == JointKind::kSlider;

@@ -20,13 +20,13 @@ inline double lengthRate(const TreeModel& tree, const TreePlace& place, const Tr
   for (const TreeDrive::Term& term : drive.terms) rate += term.factor * rateOf(tree, place, term.coordinate, u);
   return rate;
 }
-// Once the rates have changed by what contacts gained.
+// A coordinate's rate at the end of the tick, contacts included.
 inline double endRate(const TreeModel& tree, const TreeScratch& s, int coordinate) {
   const int column = tree.coordinates[coordinate].column;
   return s.course.mid.coordinates[coordinate].share * (s.course.u_free[column] + s.gained[column]);
 }
 
-// How far a unit impulse along the row moves it.
+// Rate that a unit impulse along the row gives it.
 double mobilityOf(const WorldModel& model, const JointRowScratch& row, TreeScratch& s);
 
 // Puts a row among the contacts; null if there is no room.

@@ -23,7 +23,7 @@ int slotOf(const TreeModel& tree, int coordinate, JointRowKind kind) {
   return kRowsPerCoordinate * (tree.first_coordinate + coordinate) + static_cast<int>(kind);
 }
 
-// What is at a stop in the middle of the tick or, without contact, at its end.
+// Gap of a stop in the middle of the tick and, without contact, at its end.
 struct StopGap {
   double mid, end, rate, free_rate;  // out of the stop
 };
@@ -46,7 +46,7 @@ bool hasStop(const TreeCoordinate& own, JointRowKind kind) {
   return own.q >= 0 && std::isfinite(kind == JointRowKind::kLower ? own.traits.lower : own.traits.upper);
 }
 
-// Whether the joint flies into its stop in this part of the tick, or nearly does, so fast that the tick is cut there.
+// Tells if the joint flies into its stop in this part of the tick, or nearly does, so fast that the tick is cut there.
 JointRowScratch::Hit hitOf(const WorldModel& model, const WorldState& state, const WorldScratch& scratch, int slot,
                            const JointRowScratch& row, const StopGap& gap) {
   using Hit = JointRowScratch::Hit;

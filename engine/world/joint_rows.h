@@ -29,7 +29,7 @@ void startJointRows(const WorldModel& model, const WorldState& state, WorldScrat
 // After predictTrees: puts the rows that are wanted among the contacts, in place of those that are there.
 void putJointRows(const WorldModel& model, const WorldState& state, WorldScratch& scratch);
 
-// What the solver sees of a brake besides (contact_rows.h): q_n, and the impulse that holds it closed.
+// Fills q_n of a brake and the impulse that holds it closed (contact_rows.h).
 void fillBrake(const JointRowScratch& row, double* q, double* r);
 
 // Adds the stops that are hit in this part of the tick to scratch.impact_pairs.
@@ -46,7 +46,7 @@ void addAlong(const WorldModel& model, const JointRowScratch& row, double impuls
 // The row in terms of the tree's columns, scaled as A is; returns its outermost column.
 int scaledRow(const WorldModel& model, const JointRowScratch& row, TreeScratch& s);
 
-// What drives and friction did, for the next tick.
+// Notes for the next tick what drives and friction did.
 void rememberJointRows(const WorldModel& model, WorldState& state, WorldScratch& scratch);
 
 }  // namespace pincer::engine

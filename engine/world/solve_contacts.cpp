@@ -23,6 +23,13 @@ bool isResidue(const WorldModel& model, const WorldScratch& scratch, const Conta
   return w * c.r[kNormalRow] < kResidue * c.u_C[kNormalRow];
 }
 
+// A link that no coordinate moves: with what doesn't move either it has nothing to solve.
+bool isWelded(const WorldModel& model, const Side& side) {
+  if (side.kind != SideKind::kBody) return false;
+  const BodyModel& body = model.bodies[side.index];
+  return !body.dynamic || (body.tree >= 0 && model.trees[body.tree].links[body.link].tip < 0);
+}
+
 void readSolution(const WorldModel& model, const WorldScratch& scratch, int i, Contact& c) {
   const int first = scratch.first_row[i], count = scratch.first_row[i + 1] - first;
   const double *const r = scratch.r.data() + first, *const u = scratch.u.data() + first;
@@ -47,6 +54,7 @@ void readSolution(const WorldModel& model, const WorldScratch& scratch, int i, C
 }  // namespace
 
 void prepareContacts(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
+  if (!model.trees.empty()) std::erase_if(scratch.contacts, [&](const Contact& c) { return isWelded(model, c.a) && isWelded(model, c.b); });
   if (scratch.contacts.empty()) return;
   sortContacts(scratch);
   fillContacts(model, state, scratch);

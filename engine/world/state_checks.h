@@ -9,7 +9,7 @@ bool isFinite(const PointInput& in);
 bool isFinite(const DriveInput& in);
 bool isFinite(const WorldState& state);
 
-// How far a point of a body, or a driven point, is from where it is in the other state, at most [m].
+// Largest distance of a body's point, or of a driven point, between two states [m].
 double largestDistance(const WorldModel& model, const WorldState& a, const WorldState& b);
 
 }  // namespace pincer::engine

@@ -214,10 +214,10 @@ class Tick {
     conclude();
     left_ = h < left_ - stop_ ? left_ - h : stop_;
   }
-
   // Of what something pushes on. Contacts wander round a body that turns so far, and those of the middle don't show it: needles and sheets,
   // which friction spins up, would gain energy.
   bool somethingTurnsFar(double h) const {
+    if (treesTurnFar(model_, state_, scratch_)) return true;
     for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
       const BodyScratch& body = scratch_.bodies[i];
       if (!body.touched || !model_.bodies[i].dynamic || model_.bodies[i].rotation.kind == FreeRotation::Kind::kSpherical) continue;

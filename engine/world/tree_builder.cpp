@@ -53,7 +53,7 @@ class TreeMaker {
     checkAllHang();
     return std::move(tree_);
   }
-  // Of a joint, -1 of balls and welds.
+  // The coordinate of a joint, -1 of balls and welds.
   int coordinateOf(int joint) const { return coordinate_[joint]; }
 
  private:
@@ -148,7 +148,7 @@ class TreeMaker {
 
 int placeOf(const WorldModel& model, int joint) { return model.joint_places[joint].joint; }
 
-// Whether the group is a tree that hangs on something: as many joints as bodies, one of them to what holds it.
+// True if the group is a tree that hangs on something: as many joints as bodies, one of them to what holds it.
 bool hangs(const WorldModel& model, const JointGroup& group) {
   const auto holds = [&](const JointModel& joint) { return joint.b < 0 || !model.bodies[joint.b].dynamic; };
   const auto first = model.joints.begin() + group.first;
@@ -206,7 +206,7 @@ void addDrives(const WorldModel& model, const TreeMaker& maker, TreeModel& tree)
   }
 }
 
-// Where the tree lies in the world's arrays, and its joints in it.
+// Notes the tree's place in the world's arrays, and that of its joints in it.
 void place(const TreeMaker& maker, TreeModel& tree, WorldModel& model) {
   tree.first_q = model.tree_q_count;
   tree.first_v = model.tree_v_count;

@@ -3,7 +3,7 @@
 //
 //   links, rates, freedoms: depth first, the children of a link in the order of their joints
 //   blocks: runs of freedoms without a branch, at most kMoverFreedoms long
-// What a drive or a coupling ties across branches is one path: its equations have no branches.
+// Branches that a drive or a coupling ties together are one path: their equations have no branches.
 #pragma once
 #include <vector>
 

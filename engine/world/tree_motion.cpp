@@ -42,7 +42,7 @@ void takeForces(const WorldScratch& scratch, const TreeModel& tree, TreeScratch&
   }
 }
 
-// Of a link: `free` where something can touch it.
+// Fills a link's motions: `free` only if something can touch it.
 void showLink(const WorldModel& model, const WorldState& state, const TreeModel& tree, int l, const TreeScratch& s, BodyScratch& out) {
   const int body = tree.links[l].body;
   out.X_WI_mid = linkPose(s.course.mid, l);
@@ -81,7 +81,7 @@ void gatherMover(const MoverScratch& mover, TreeScratch& s) {
   s.closing = s.closing || mover.closing;
 }
 
-// As if a link were alone and its impulses were all that its joints leave of them.
+// Gives each link the impulses that would move it so if it were alone.
 void showAnswer(const WorldModel& model, const TreeModel& tree, const TreeScratch& s, WorldScratch& scratch) {
   for (int l = 0; l < static_cast<int>(tree.links.size()); ++l) {
     const int i = tree.links[l].body;
@@ -212,6 +212,21 @@ void advanceTrees(const WorldModel& model, WorldState& state, WorldScratch& scra
       }
     }
   }
+}
+
+bool treesTurnFar(const WorldModel& model, const WorldState& state, const WorldScratch& scratch) {
+  constexpr double kFar = 0.5;  // [rad]
+  for (std::size_t t = 0; t < model.trees.size(); ++t) {
+    const TreeModel& tree = model.trees[t];
+    const TreeScratch& s = scratch.trees[t];
+    const std::span<const double> u = treeRates(tree, state);
+    for (const TreeCoordinate& own : tree.coordinates) {
+      if (tree.links[own.link].kind == JointKind::kSlider) continue;
+      const double start = u[own.column], end = s.course.u_free[own.column] + s.gained[own.column];
+      if (scratch.h * std::max(std::abs(start), std::abs(end)) > kFar) return true;
+    }
+  }
+  return false;
 }
 
 void strikeTrees(const WorldModel& model, WorldState& state, WorldScratch& scratch) {

@@ -13,19 +13,22 @@ namespace pincer::engine {
 
 // Free courses; links' places in the middle and motions. After drives and constant forces are set (joint_rows.h) and driven bodies are predicted.
 void predictTrees(const WorldModel& model, const WorldState& state, WorldScratch& scratch);
-// The same where no time passes: M without drives, springs and dampers.
+// Predicts an impact, in which no time passes: M without drives, springs and dampers.
 void predictTreeImpacts(const WorldModel& model, const WorldState& state, WorldScratch& scratch);
 
-// What the gathered impulses on links and joints do to the trees; links' own impulses with what their joints answer.
+// Applies the gathered impulses on links and joints to the trees; links' own impulses get what their joints answer.
 void gatherTrees(const WorldModel& model, WorldScratch& scratch);
 
 // To the end of this part of the tick.
 void advanceTrees(const WorldModel& model, WorldState& state, WorldScratch& scratch);
 
+// True if a hinge or ball turns so far in this part of the tick that its middle doesn't show how it goes. After gatherTrees.
+bool treesTurnFar(const WorldModel& model, const WorldState& state, const WorldScratch& scratch);
+
 // After an impact: the velocities of what was struck.
 void strikeTrees(const WorldModel& model, WorldState& state, WorldScratch& scratch);
 
-// Where a link is `t` after the start of this part of the tick, once its contacts are solved, and how it moves.
+// Place and motion of a link `t` after the start of this part of the tick, once its contacts are solved.
 struct LinkMoment {
   Pose X_WI;
   Motion motion;
@@ -36,7 +39,7 @@ LinkMoment linkAt(const WorldModel& model, const WorldState& state, WorldScratch
 // Throws InputError where a coordinate isn't where the one that it follows has it.
 void readTrees(const WorldModel& model, WorldState& state);
 
-// Of the coordinates' armatures, and of their springs [J].
+// Energies of the coordinates' armatures and of their springs [J].
 double armatureEnergy(const WorldModel& model, const WorldState& state);
 double springEnergy(const WorldModel& model, const WorldState& state);
 

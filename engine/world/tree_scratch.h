@@ -16,7 +16,7 @@ struct TreeScratch {
   std::vector<LinkForce> forces;  // applied to links
   std::vector<double> constant;   // forces of joints that slide against dry friction, by coordinates
   TreeCourse course;
-  // Of what touches: contacts' impulses and what they change, by columns.
+  // Contacts' impulses and the rates that they change, by columns.
   std::vector<double> impulse, gained;
   bool touched = false, closing = false;  // some contact pushes on a link or a joint; one of those closes in this tick
   double rest_speed = 0;                  // see MoverScratch

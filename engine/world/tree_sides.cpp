@@ -47,7 +47,7 @@ void fillLinkSide(const WorldModel& model, WorldScratch& scratch, const Contact&
   }
 }
 
-// What a row has of its own: joint_rows.h.
+// Fills the columns of the row's own mover: joint_rows.h.
 void fillOwnSide(const JointRowScratch& row, ContactSide& out) {
   const double root = std::sqrt(row.mobility);
   if (!row.isBrake()) {

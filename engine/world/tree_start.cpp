@@ -1,4 +1,4 @@
-// Where trees start, and where a caller puts them.
+// Places of trees at the start, and those that a caller gives them.
 #include <fmt/format.h>
 
 #include <cmath>

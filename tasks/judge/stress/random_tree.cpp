@@ -30,10 +30,10 @@ class TreeDraft {
 
  private:
   void drawChain(int parent, Vec3 p_W, int links) {
-    const double heavy = between(random_, 1e-2, 10);
+    heavy_ = between(random_, 1e-2, 10);
     for (int l = 0; l < links; ++l) {
       const double length = random_.uniform(0.02, 0.1);
-      const int body = addLink(between(random_, 1e-4, 1) * heavy, length, p_W);
+      const int body = addLink(between(random_, 1e-4, 1) * heavy_, length, p_W);
       addJoint(body, parent, p_W);
       parent = body;
       p_W.z() -= length;
@@ -69,12 +69,13 @@ class TreeDraft {
     const Quat q = anyAxis();
     joint.X_AJ = {q, p_W - tree_.starts[static_cast<std::size_t>(body)].X_WB.p};
     joint.X_BJ = {q, parent < 0 ? p_W : Vec3(p_W - tree_.starts[static_cast<std::size_t>(parent)].X_WB.p)};
-    joint.damping = oneIn(random_, 2) ? 0 : between(random_, 1e-5, 1);
+    joint.damping = oneIn(random_, 2) ? 0 : heavy_ * between(random_, 1e-5, 1);
     if (joint.kind == engine::JointKind::kBall)
       joint.traits.armature = between(random_, 1e-7, 1e-4);
     else
       drawTraits(joint);
     tree_.joints.push_back(joint);
+    weights_.push_back(heavy_);
   }
 
   void drawTraits(engine::JointModel& joint) {
@@ -86,22 +87,24 @@ class TreeDraft {
       traits.restitution = oneIn(random_, 2) ? 0 : random_.uniform(0, 0.9);
     }
     if (oneIn(random_, 3)) {
-      traits.stiffness = between(random_, 1e-3, 1e3);
+      traits.stiffness = heavy_ * between(random_, 1e-3, 1e3);
       traits.rest = scale * random_.uniform(-0.5, 0.5);
     }
-    if (oneIn(random_, 2)) traits.friction = between(random_, 1e-4, 1);
-    traits.armature = oneIn(random_, 2) ? 0 : between(random_, 1e-6, 1e-2);
+    if (oneIn(random_, 2)) traits.friction = heavy_ * between(random_, 1e-4, 1);
+    traits.armature = oneIn(random_, 2) ? 0 : heavy_ * between(random_, 1e-6, 1e-2);
   }
 
   void drawDrive(int joint) {
     engine::DriveModel drive;
     drive.name = fmt::format("drive{}", tree_.drives.size());
     drive.terms = {{joint, 1}};
+    const double heavy = weights_[static_cast<std::size_t>(joint)];
+    drive.gain = heavy;
     drive.control = static_cast<engine::DriveModel::Control>(random_.below(3));
-    if (drive.control == engine::DriveModel::Control::kPosition) drive.stiffness = between(random_, 1e-1, 1e4);
-    if (drive.control != engine::DriveModel::Control::kForce) drive.damping = between(random_, 1e-3, 10);
+    if (drive.control == engine::DriveModel::Control::kPosition) drive.stiffness = heavy * between(random_, 1e-1, 1e4);
+    if (drive.control != engine::DriveModel::Control::kForce) drive.damping = heavy * between(random_, 1e-3, 10);
     if (!oneIn(random_, 3)) {
-      drive.upper_force = between(random_, 1e-2, 20);
+      drive.upper_force = heavy * between(random_, 1e-2, 20);
       drive.lower_force = -drive.upper_force;
     }
     tree_.drives.push_back(drive);
@@ -123,6 +126,8 @@ class TreeDraft {
   Random& random_;
   const engine::Material& material_;
   RandomTree tree_;
+  double heavy_ = 1;             // the heaviest link of the chain, at most [kg]: forces go with it
+  std::vector<double> weights_;  // of joints
 };
 
 }  // namespace

@@ -18,7 +18,7 @@ struct RandomTree {
 
 RandomTree drawTree(Random& random, const engine::Material& material);
 
-// What drives are told for the next tick.
+// Draws the drives' controls for the next tick.
 void drawControls(Random& random, const std::vector<engine::DriveModel>& drives, std::vector<engine::DriveInput>& controls);
 
 }  // namespace pincer::tasks

@@ -62,14 +62,14 @@ void addCoordinate(TreeModel& tree, JointKind kind, const Pose& X_PJ, const Pose
 }
 
 // Axes along y, rods hanging along -z.
-constexpr double kLength = 0.2, kMass = 0.1;
+constexpr double kRodLength = 0.2, kRodMass = 0.1;
 Pose aboutY(const Vec3& p) { return {quatFromRotationVector({-std::numbers::pi / 2, 0, 0}), p}; }
 LoneTree rods(int count, const std::vector<double>& angles) {
   LoneTree run;
-  const double across = kMass * kLength * kLength / 12;
+  const double across = kRodMass * kRodLength * kRodLength / 12;
   for (int i = 0; i < count; ++i) {
-    const Vec3 end = i == 0 ? Vec3::Zero() : Vec3(0, 0, -kLength / 2);
-    addCoordinate(run.tree, JointKind::kPivot, aboutY(end), aboutY({0, 0, kLength / 2}), kMass, {across, across, 1e-6});
+    const Vec3 end = i == 0 ? Vec3::Zero() : Vec3(0, 0, -kRodLength / 2);
+    addCoordinate(run.tree, JointKind::kPivot, aboutY(end), aboutY({0, 0, kRodLength / 2}), kRodMass, {across, across, 1e-6});
   }
   for (int i = 0; i < count; ++i) run.q.push_back(angles[i] - (i > 0 ? angles[i - 1] : 0));
   return run;
@@ -85,7 +85,7 @@ double worstAngle(const LoneTree& run, const std::vector<double>& exact) {
 }
 
 TEST(TreeCourse, RodsSwingAsTheirEquationsSayToFourthOrder) {
-  const std::vector<double> start{0.2, 0.2, 0.2}, exact = exact::RodChain{3, kLength, kMass, kG}.angles(start, 2);
+  const std::vector<double> start{0.2, 0.2, 0.2}, exact = exact::RodChain{3, kRodLength, kRodMass, kG}.angles(start, 2);
   LoneTree coarse = rods(3, start), fine = rods(3, start);
   coarse.h = 2e-3;
   coarse.go(2);
@@ -96,7 +96,7 @@ TEST(TreeCourse, RodsSwingAsTheirEquationsSayToFourthOrder) {
 }
 
 TEST(TreeCourse, WithoutRungeKuttaRodsAreOfSecondOrder) {
-  const std::vector<double> start{0.2, 0.2, 0.2}, exact = exact::RodChain{3, kLength, kMass, kG}.angles(start, 2);
+  const std::vector<double> start{0.2, 0.2, 0.2}, exact = exact::RodChain{3, kRodLength, kRodMass, kG}.angles(start, 2);
   LoneTree coarse = rods(3, start), fine = rods(3, start);
   coarse.may_be_fine = fine.may_be_fine = false;
   coarse.h = 2e-3;
@@ -108,7 +108,7 @@ TEST(TreeCourse, WithoutRungeKuttaRodsAreOfSecondOrder) {
 }
 
 TEST(TreeCourse, ADoublePendulumKeepsItsEnergyInLargeSwings) {
-  const exact::RodChain chain{2, kLength, kMass, kG};
+  const exact::RodChain chain{2, kRodLength, kRodMass, kG};
   LoneTree run = rods(2, {2.5, -1});
   const double before = chain.energy({2.5, -1}, {0, 0});
   run.go(10);

@@ -8,7 +8,7 @@
 #include "pincer/tests/support/allocation_guard.h"
 #include "pincer/tests/support/constants.h"
 
-namespace pincer::engine {
+namespace pincer::engine::tree_tests {
 namespace {
 
 using tests::kGravity;
@@ -65,10 +65,10 @@ Driven slider(double h, const JointTraits& traits, double v = 0, double g = kGra
   return {builder, {{{Quat::Identity(), Vec3(0, 0, 0.1)}, Vec3(0, 0, v), Vec3::Zero()}}};
 }
 
-class Ticks : public testing::TestWithParam<double> {};
-INSTANTIATE_TEST_SUITE_P(Trees, Ticks, testing::Values(1e-4, 1e-3, 4e-3));
+class TreeTicks : public testing::TestWithParam<double> {};
+INSTANTIATE_TEST_SUITE_P(Trees, TreeTicks, testing::Values(1e-4, 1e-3, 4e-3));
 
-TEST_P(Ticks, ASliderLandsOnItsStopAndStaysToTheBit) {
+TEST_P(TreeTicks, ASliderLandsOnItsStopAndStaysToTheBit) {
   for (const double v : {0.0, -0.5, -5.0}) {
     JointTraits traits;
     traits.lower = 0;
@@ -83,7 +83,7 @@ TEST_P(Ticks, ASliderLandsOnItsStopAndStaysToTheBit) {
 }
 
 // Newton's law at the moment of the hit: the next apex is e^2 times as high. At 1e-3 of it for the parabola between two ticks.
-TEST_P(Ticks, ASliderBouncesToESquaredOfItsHeight) {
+TEST_P(TreeTicks, ASliderBouncesToESquaredOfItsHeight) {
   JointTraits traits;
   traits.lower = 0;
   traits.restitution = 0.5;
@@ -96,7 +96,7 @@ TEST_P(Ticks, ASliderBouncesToESquaredOfItsHeight) {
   EXPECT_NEAR(world.q(), 0, 1e-12);
 }
 
-TEST_P(Ticks, DryFrictionHoldsBelowItsLimitAndGivesWayAboveIt) {
+TEST_P(TreeTicks, DryFrictionHoldsBelowItsLimitAndGivesWayAboveIt) {
   for (const double share : {1.001, 2.0, 1e4}) {
     JointTraits traits;
     traits.friction = share * kMass * kGravity;
@@ -117,7 +117,7 @@ TEST_P(Ticks, DryFrictionHoldsBelowItsLimitAndGivesWayAboveIt) {
 }
 
 // v^2 m / (2 f), off by no more than what half a tick at rest leaves.
-TEST_P(Ticks, DryFrictionBringsToRestWhereItShould) {
+TEST_P(TreeTicks, DryFrictionBringsToRestWhereItShould) {
   JointTraits traits;
   traits.friction = 0.3;
   Driven world = slider(GetParam(), traits, 0.5, 0);
@@ -126,7 +126,7 @@ TEST_P(Ticks, DryFrictionBringsToRestWhereItShould) {
   EXPECT_EQ(world.v(), 0);
 }
 
-TEST_P(Ticks, ADriveHoldsItsLoad) {
+TEST_P(TreeTicks, ADriveHoldsItsLoad) {
   for (const double stiffness : {100.0, 1e5}) {
     DriveModel drive;
     drive.control = DriveModel::Control::kPosition;
@@ -140,7 +140,7 @@ TEST_P(Ticks, ADriveHoldsItsLoad) {
   }
 }
 
-TEST_P(Ticks, ADriveAtItsLimitGivesThatAndNoMore) {
+TEST_P(TreeTicks, ADriveAtItsLimitGivesThatAndNoMore) {
   DriveModel drive;
   drive.control = DriveModel::Control::kPosition;
   drive.stiffness = 1e4;
@@ -177,7 +177,7 @@ Driven jaws(double h, double force, double mu) {
   return world;
 }
 
-TEST_P(Ticks, JawsHoldACubeWithoutCreep) {
+TEST_P(TreeTicks, JawsHoldACubeWithoutCreep) {
   Driven world = jaws(GetParam(), 1.002 * kMass * kGravity / (2 * 0.5), 0.5);
   world.run(0.5);
   const Vec3 before = world.state.bodies[2].X_WI.p;
@@ -187,13 +187,13 @@ TEST_P(Ticks, JawsHoldACubeWithoutCreep) {
   EXPECT_GT(world.asleep, 0);
 }
 
-TEST_P(Ticks, JawsLoseACubeBelowTheLimit) {
+TEST_P(TreeTicks, JawsLoseACubeBelowTheLimit) {
   Driven world = jaws(GetParam(), 0.998 * kMass * kGravity / (2 * 0.5), 0.5);
   world.run(0.5);
   EXPECT_LT(world.state.bodies[2].v_W.z(), -0.5 * 0.002 * kGravity * 0.5);
 }
 
-TEST(Trees, AllocateNothingInATick) {
+TEST(WorldTrees, AllocateNothingInATick) {
   Driven world = jaws(1e-3, 2, 0.5);
   world.tick();
   const std::int64_t before = tests::allocationCount();
@@ -201,7 +201,7 @@ TEST(Trees, AllocateNothingInATick) {
   EXPECT_EQ(tests::allocationCount(), before);
 }
 
-TEST(Trees, TwoChainsOfSevenHingesHoldTogetherByContact) {
+TEST(WorldTrees, TwoChainsOfSevenHingesHoldTogetherByContact) {
   WorldBuilder builder(tickOf(1e-3));
   std::vector<BodyStart> starts;
   for (int k = 0; k < 7; ++k) {
@@ -221,4 +221,4 @@ TEST(Trees, TwoChainsOfSevenHingesHoldTogetherByContact) {
 }
 
 }  // namespace
-}  // namespace pincer::engine
+}  // namespace pincer::engine::tree_tests
