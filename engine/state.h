@@ -82,7 +82,8 @@ WorldState makeState(const WorldModel& model, const std::vector<BodyStart>& star
 // InputError.
 void growContacts(int contacts, WorldModel& model, WorldState& state);
 
-// Of a pivot or slider that a tree has, numbered as the builder did. setJoint places the links that it carries, too.
+// Of a pivot or slider, numbered as the builder did: of one that no tree has the angle within half a turn of JointTraits::start. setJoint needs one
+// that a tree has, and places the links that it carries, too.
 double jointPosition(const WorldModel& model, const WorldState& state, int joint);  // q [rad, m]
 double jointVelocity(const WorldModel& model, const WorldState& state, int joint);  // [rad/s, m/s]
 void setJoint(const WorldModel& model, WorldState& state, int joint, double position, double velocity = 0);

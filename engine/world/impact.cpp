@@ -165,8 +165,10 @@ void keepStruck(const WorldModel& model, WorldScratch& scratch) {
   }
   std::erase_if(scratch.contacts, [&](const Contact& c) { return c.phi > kTouching || givesWay(model, c.a) || givesWay(model, c.b); });
   const auto isStruck = [&](const Side& side) {
-    if (side.kind == SideKind::kJoint && scratch.joint_rows[side.index].tree >= 0)
-      return bool(scratch.struck[model.trees[scratch.joint_rows[side.index].tree].links.front().body]);
+    if (side.kind == SideKind::kJoint) {
+      const int tree = scratch.joint_rows[side.index].tree;
+      return tree >= 0 && scratch.struck[model.trees[tree].links.front().body];
+    }
     return isDynamic(model, side) && scratch.struck[side.index];
   };
   for (bool spreads = true; spreads;) {

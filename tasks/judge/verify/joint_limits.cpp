@@ -107,7 +107,7 @@ std::vector<Record> dryFriction(MeasureContext& context) {
     trial.run(1);
     return trial.position(0) > 1e-10;
   });
-  return {exactly("moved in 60 s at .999 of the limit", moved, "m", 0),
+  return {atMost("moved in 60 s at .999 of the limit", moved, "m", 1e-15),
           atMost("way in 1 s at 1.001, relative error", std::abs(slides.position(0) / exact - 1), "-", 1e-9),
           atMost("push that just moves it over its friction, less 1", std::abs(edge - 1), "-", 1e-9),
           atMost("run-out, error over f h^2/8m", std::abs(runs.position(0) - way) / (kDry * 1e-6 / 8), "-", 1),
