@@ -19,6 +19,7 @@ std::vector<Measurement> verifyFreeBodies();
 std::vector<Measurement> verifyCompounds();
 std::vector<Measurement> verifyTrees();
 std::vector<Measurement> verifyJointLimits();
+std::vector<Measurement> verifyGrippers();
 std::vector<Measurement> verifyToppling();
 std::vector<Measurement> verifyBouncing();
 std::vector<Measurement> verifyMasonry();
