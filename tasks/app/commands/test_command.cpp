@@ -10,6 +10,7 @@
 #include "pincer/contact/io/atomic_file.h"
 #include "pincer/contact/io/counted.h"
 #include "pincer/contact/io/printable.h"
+#include "pincer/devices/window/surface.h"
 #include "pincer/tasks/app/app.h"
 #include "pincer/tasks/app/commands/commands.h"
 #include "pincer/tasks/app/interrupt.h"
