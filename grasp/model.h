@@ -74,7 +74,7 @@ GraspModel buildGrasp(engine::WorldBuilder builder, std::vector<FingerModel> fin
 // From now on fingers feel `shape` where the body has its only one. Throws InputError for a body of several, and for half-spaces and dishes.
 void feelAs(GraspModel& model, int body, contact::Shape shape);
 
-// What fingers feel of a shape of the world.
+// The surface that fingers feel of a shape of the world.
 inline const contact::Shape& feltShape(const GraspModel& model, int collider) {
   for (const FeltSurface& felt : model.felt) {
     if (felt.collider == collider) return felt.shape;

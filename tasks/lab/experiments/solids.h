@@ -19,7 +19,7 @@ struct SolidSizes {
   int facet_sides = 180;        // of round ones that aren't shaded
 };
 
-// Whether one end of it differs from the other.
+// True if its two ends differ.
 bool isPointed(const std::string& name);
 
 // `name`: cone, cylinder, cube, sphere, tetrahedron, octagon or triangle; pointed ones point right, or left. Throws InputError for another name, or

@@ -44,7 +44,7 @@ struct SpherePickupOptions {
   int participants = 1;  // 1 .. 1000
   std::uint64_t seed = 1;
   std::optional<ObjectFile> object;  // in place of the sphere
-  // How fingers feel the sphere, as a mesh; absent: its closed form. Bodies and mass know the closed form in any case.
+  // Shading by which fingers feel the sphere, a mesh; absent: its closed form. Bodies and mass know the closed form in any case.
   std::optional<contact::SurfaceVariant> shading = contact::SurfaceVariant::smooth;
 };
 

@@ -169,7 +169,7 @@ void ShapeExplorer::readTactor(const FingerPercept& finger, Reading& reading) {
   reading.tilt = tilt() + felt_tilt_error_;
 }
 
-// Where the tactor is for a contact with this normal, over the finger's radius.
+// Place of the tactor for a contact with this normal, over the finger's radius.
 double ShapeExplorer::tactorAngleFor(const Vec3& n_W, double tilt) const {
   const double most = cues_.tactor_reach / cues_.tip_radius;
   return std::clamp(within(foreAftAngle(n_W) - tilt), -most, most);

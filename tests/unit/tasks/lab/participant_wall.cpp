@@ -142,7 +142,7 @@ TEST(ParticipantSkin, SettlesAtForceOverStiffness) {
   EXPECT_NEAR(u.y(), -1e-3, 1e-9);
 }
 
-// Where the roller is for a contact in this direction of the finger, as far as it goes.
+// Place of the roller for a contact in this direction of the finger, as far as it goes.
 Vec2 placeShown(const Vec3& to_contact_F, const ShapeCues& cues) {
   const double place = cues.tip_radius * std::atan2(to_contact_F.x(), -to_contact_F.z());
   return {std::clamp(place, -cues.tactor_reach, cues.tactor_reach), 0};
