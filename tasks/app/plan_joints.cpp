@@ -76,7 +76,7 @@ std::string driveForm(const engine::WorldModel& world, const engine::TreeModel& 
   return text;
 }
 
-std::string nameOf(const engine::WorldModel& world, const engine::TreeModel& tree) {
+std::string treeName(const engine::WorldModel& world, const engine::TreeModel& tree) {
   return fmt::format("{}{}", world.bodies[slot(tree.links.front().body)].name, tree.links.size() > 1 ? " .." : "");
 }
 
@@ -84,7 +84,7 @@ std::string nameOf(const engine::WorldModel& world, const engine::TreeModel& tre
 
 void describeTrees(const engine::WorldModel& world, std::vector<PlanLine>& lines) {
   for (const engine::TreeModel& tree : world.trees) {
-    lines.push_back({"tree", nameOf(world, tree), treeForm(world, tree)});
+    lines.push_back({"tree", treeName(world, tree), treeForm(world, tree)});
     for (const engine::TreeCoordinate& c : tree.coordinates) {
       if (c.q >= 0) lines.push_back({"joint", jointOf(world, c).name, coordinateForm(world, tree, c)});
     }

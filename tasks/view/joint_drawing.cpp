@@ -8,9 +8,7 @@ namespace pincer::tasks {
 namespace {
 
 const Vec3f kAxis(0.95f, 0.65f, 0.05f), kStop(0.75f, 0.05f, 0.20f), kDrive(0.35f, 0.10f, 0.75f);
-constexpr double kLeastForce = 1e-3;  // smaller ones get no arrow [N, N m over the size of marks]
-
-Pose pointing(const Vec3& from_W, const Vec3& along_W) { return {Quat(frameFromNormal(along_W.normalized())), from_W}; }
+constexpr double kLeastDrive = 1e-3;  // smaller ones get no arrow [N, N m over the size of marks]
 
 void addRod(const MarkMeshes& marks, const Vec3& from_W, const Vec3& along_W, double thickness, const Vec3f& colour, DrawList& list) {
   list.push_back({marks.rod,
@@ -65,7 +63,7 @@ void JointDrawing::add(const Snapshot& snapshot, const MarkMeshes& marks, double
     const double scale = metres_per_newton / (look.kind == engine::JointKind::kPivot ? marks.size : 1);
     for (const auto& [drive, factor] : look.drives) {
       const Vec3 along_W = scale * factor * snapshot.drive_forces[static_cast<std::size_t>(drive)] * axis_W;
-      if (along_W.norm() > kLeastForce * metres_per_newton)
+      if (along_W.norm() > kLeastDrive * metres_per_newton)
         addMarkArrow(marks, X_WK.p, along_W, 0.03 * marks.size, {.colour = kDrive, .glow = 0.5f}, list);
     }
   }

@@ -39,8 +39,6 @@ Paint paintOf(const contact::Shape& shape, bool dynamic, const Vec3f& colour) {
 }
 
 // A rotation that takes z to `along_W`.
-Pose pointing(const Vec3& from_W, const Vec3& along_W) { return {Quat(frameFromNormal(along_W.normalized())), from_W}; }
-
 const Vec3f& gripColour(bool sliding) { return sliding ? kSlip : kStick; }
 
 // Where fingers whose devices give no orientation come from: from outside, and from above.

@@ -45,7 +45,7 @@ std::vector<OverBall> solidsOverBall() {
           {"hull's face", contact::Convex{contact::Polytope::hullOf(corners, "frustum")}, Quat::Identity(), 0.01}};
 }
 
-struct Felt {
+struct MeshFelt {
   double gap = 0;   // largest difference from what the ball itself answers [m]
   double step = 0;  // largest change of that difference from one place to the next [m]
   double turn = 0;  // largest turn of the normal beyond the ball's own, per place [rad]
@@ -56,7 +56,7 @@ const PairPoint& deepestPoint(const PairPoints& p) {
   return *std::min_element(p.points.begin(), p.points.begin() + p.count, [](const auto& a, const auto& b) { return a.phi < b.phi; });
 }
 
-Felt slideOver(const Shape& mesh, const OverBall& over, MeasureContext& context) {
+MeshFelt slideOver(const Shape& mesh, const OverBall& over, MeasureContext& context) {
   constexpr int kPlaces = 20000;
   const contact::PatchCacheHandle cache = contact::makePatchCache();
   PairPoints found;
@@ -65,7 +65,7 @@ Felt slideOver(const Shape& mesh, const OverBall& over, MeasureContext& context)
     contact::collideShapes(ball, Pose{}, over.solid, X, 1e-3, *cache, found);
     return found.count > 0 ? deepestPoint(found) : PairPoint{};
   };
-  Felt felt;
+  MeshFelt felt;
   Vec3 lean_before = Vec3::Zero();
   double gap_before = 0;
   for (int i = 0; i < kPlaces && !context.interrupted(); ++i) {
@@ -86,7 +86,7 @@ Felt slideOver(const Shape& mesh, const OverBall& over, MeasureContext& context)
 Measurement facetsFelt(const OverBall& over) {
   return {fmt::format("pair/facets/{}", over.name), [over](MeasureContext& context) {
             const Shape mesh = contact::Mesh{contact::SmoothMesh::build(contact::geodesicSphere(kBallRadius, 7))};
-            const Felt felt = slideOver(mesh, over, context);
+            const MeshFelt felt = slideOver(mesh, over, context);
             return std::vector<Record>{atMost("980 triangles: gap, from the ball's", 1e6 * felt.gap, "um", 1),
                                        atMost("step of that from place to place, 0.5 um apart", 1e6 * felt.step, "um", 0.01),
                                        atMost("turn beyond the ball's from place to place", felt.turn / kDegree, "deg", 0.001),

@@ -43,7 +43,7 @@ class RolloutRow {
   void record(std::int64_t t, const SceneState& state, const SceneStepper& stepper, std::uint32_t status) {
     if (const auto out = cell(job_.state, t, stateSize(model_)); !out.empty()) writeStateRow(model_, state, out);
     if (const auto out = cell(job_.sensors, t, sensorSize(model_)); !out.empty()) {
-      const Moment moment{model_.grasp, state.grasp, stepper.fingers(), model_.scene.starts};
+      const Moment moment{model_.grasp, state.grasp, stepper.fingers(), model_.scene.starts, stepper.scratch(), model_.scene.frames};
       for (std::size_t i = 0; i < out.size(); ++i) out[i] = model_.scene.record.quantities[i].measure(moment);
     }
     if (!job_.status.empty()) cell(job_.status, t, 1)[0] = static_cast<std::int32_t>(status);

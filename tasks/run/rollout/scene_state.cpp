@@ -93,13 +93,18 @@ SceneInputs::SceneInputs(const SceneModel& model)
       body_force(model.scene.bodies.size()),
       motion_place(model.driven.size()),
       motion_rate(model.driven.size()),
+      drive_target(model.scene.drives.size(), kNotSaid),
       gravity(Vec3::Constant(kNotSaid)) {
   for (auto& row : motion_place) row.fill(kNotSaid);
   for (auto& row : motion_rate) row.fill(0);
 }
 
 SceneStepper::SceneStepper(const SceneModel& model)
-    : model_(model), scratch_(grasp::makeScratch(model.grasp)), fingers_(model.scene.fingers.size()), motions_(model.driven.size()) {}
+    : model_(model),
+      scratch_(grasp::makeScratch(model.grasp)),
+      fingers_(model.scene.fingers.size()),
+      motions_(model.driven.size()),
+      controls_(model.scene.drives.size()) {}
 
 StepsReport SceneStepper::step(SceneState& state, const SceneInputs& inputs, std::int64_t ticks, const std::function<bool()>& stop) {
   if (state.baselines && (pushes(inputs) || isSaid(inputs.gravity))) {
@@ -125,8 +130,10 @@ StepsReport SceneStepper::run(SceneState& state, const SceneInputs* inputs, std:
     if (stop && all.ticks % kAsk == kAsk - 1 && stop()) break;
     tellFingers(state, inputs, ticks - all.ticks);
     tellBodies(state, inputs);
-    const engine::StepReport one = state.baselines ? state.baselines->step(model_.grasp, state.grasp, *scratch_, fingers_, motions_)
-                                                   : grasp::step(model_.grasp, state.grasp, *scratch_, fingers_, motions_, applied);
+    tellDrives(state, inputs);
+    const engine::StepReport one = state.baselines
+                                       ? state.baselines->step(model_.grasp, state.grasp, *scratch_, fingers_, motions_, controls_)
+                                       : grasp::step(model_.grasp, state.grasp, *scratch_, fingers_, motions_, applied, controls_);
     ++all.ticks;
     all.status |= one.status;
     all.contacts = one.contacts;
@@ -166,6 +173,14 @@ void SceneStepper::tellBodies(const SceneState& state, const SceneInputs* inputs
     const std::array<double, 6>& rate = inputs->motion_rate[i];
     motions_[i].X_WB = poseOf(inputs->motion_place[i]);
     motions_[i].motion = {Vec3(rate[0], rate[1], rate[2]), Vec3(rate[3], rate[4], rate[5])};
+  }
+}
+
+void SceneStepper::tellDrives(const SceneState& state, const SceneInputs* inputs) {
+  driveControls(model_.scene, static_cast<double>(state.grasp.world.tick + 1) * model_.scene.options.h, controls_);
+  if (!inputs) return;
+  for (std::size_t i = 0; i < controls_.size(); ++i) {
+    if (!std::isnan(inputs->drive_target[i])) controls_[i] = {inputs->drive_target[i], 0, false};
   }
 }
 

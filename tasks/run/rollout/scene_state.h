@@ -62,6 +62,7 @@ struct SceneInputs {
   std::vector<engine::BodyForce> body_force;        // one per body
   std::vector<std::array<double, 7>> motion_place;  // of driven bodies: x, y, z, qw, qx, qy, qz; NaN: the scene's trajectory
   std::vector<std::array<double, 6>> motion_rate;   // of their origins [m/s], and angular [rad/s]
+  std::vector<double> drive_target;                 // what each drive is told, all through the step; NaN: what the scene tells it
   Vec3 gravity;                                     // [m/s^2]; NaN: the scene's
 };
 
@@ -94,11 +95,13 @@ class SceneStepper {
   StepsReport run(SceneState& state, const SceneInputs* inputs, std::int64_t ticks, const std::function<bool()>& stop);
   void tellFingers(const SceneState& state, const SceneInputs* inputs, std::int64_t left);
   void tellBodies(const SceneState& state, const SceneInputs* inputs);
+  void tellDrives(const SceneState& state, const SceneInputs* inputs);
 
   const SceneModel& model_;
   grasp::ScratchHandle scratch_;
   std::vector<grasp::FingerInput> fingers_;
   std::vector<engine::MotionInput> motions_;
+  std::vector<engine::DriveInput> controls_;
 };
 
 }  // namespace pincer::tasks

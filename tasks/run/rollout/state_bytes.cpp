@@ -14,9 +14,10 @@ namespace {
 template <class Grasp, class Take>
 void eachPart(Grasp& grasp, const Take& take) {
   auto& [world, trackers, tips, fingers] = grasp;
-  auto& [time, tick, parts, h_last, bodies, driven_w_W, points, contacts, contact_count] = world;
+  auto& [time, tick, parts, h_last, bodies, driven_w_W, points, tree_q, tree_v, controls, drives, brakes, contacts, contact_count] = world;
   take(time), take(tick), take(parts), take(h_last), take(contact_count);
-  take(bodies), take(driven_w_W), take(points), take(contacts), take(trackers), take(tips), take(fingers);
+  take(bodies), take(driven_w_W), take(points), take(tree_q), take(tree_v), take(controls), take(drives), take(brakes), take(contacts),
+      take(trackers), take(tips), take(fingers);
 }
 
 std::string heading() { return fmt::format("pincer state {} {}\n", kBuildInfo.version, kBuildInfo.sources); }
