@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "pincer/contact/error.h"
 #include "pincer/tasks/run/files/spelling.h"
 #include "pincer/tasks/run/robot/robot_pose.h"
@@ -41,6 +43,20 @@ void gatherLinks(PosedRobot& posed) {
   }
 }
 
+// Contact with a stop begins at the stop: there is no way to start beyond it.
+void holdWithinLimits(const Robot& robot, std::vector<double>& q, ImportNotes& notes) {
+  double* at = q.data();
+  for (const RobotBody& body : robot.bodies) {
+    for (const RobotJoint& joint : body.joints) {
+      if (joint.limits && (*at < (*joint.limits)[0] || *at > (*joint.limits)[1])) {
+        *at = std::clamp(*at, (*joint.limits)[0], (*joint.limits)[1]);
+        notes.add("start beyond a limit", "The joint starts at its stop.", joint.place);
+      }
+      at += coordinateCount(joint.kind);
+    }
+  }
+}
+
 }  // namespace
 
 const double* PosedRobot::coordinatesOf(int body_index) const {
@@ -56,9 +72,10 @@ Pose PosedRobot::poseAfter(int body_index, std::size_t joints) const {
   return body(body_index).parent < 0 ? X_WR * X_PB : pose(body(body_index).parent) * X_PB;
 }
 
-PosedRobot poseRobot(const Robot& robot, const Pose& X_WR, const std::string& keyframe) {
+PosedRobot poseRobot(const Robot& robot, const Pose& X_WR, const std::string& keyframe, ImportNotes& notes) {
   PosedRobot posed{robot, X_WR, keyframeNamed(robot, keyframe), {}, {}, {}, {}};
   posed.q = posed.key && !posed.key->q.empty() ? posed.key->q : drawnCoordinates(robot);
+  holdWithinLimits(robot, posed.q, notes);
   for (const Pose& X_RB : bodyPoses(robot, posed.q)) posed.poses.push_back(X_WR * X_RB);
   gatherLinks(posed);
   return posed;

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "pincer/tasks/run/robot/import_notes.h"
 #include "pincer/tasks/run/robot/robot.h"
 
 namespace pincer::tasks {
@@ -34,7 +35,7 @@ struct PosedRobot {
   Pose poseAfter(int body_index, std::size_t joints) const;
 };
 
-// `keyframe` empty: as drawn. Throws InputError: there is no such keyframe.
-PosedRobot poseRobot(const Robot& robot, const Pose& X_WR, const std::string& keyframe);
+// `keyframe` empty: as drawn. Joints that would be beyond a stop are at it, which is noted. Throws InputError: there is no such keyframe.
+PosedRobot poseRobot(const Robot& robot, const Pose& X_WR, const std::string& keyframe, ImportNotes& notes);
 
 }  // namespace pincer::tasks
