@@ -4,9 +4,8 @@
 //   M^ Du = h (tau - C(q_m, u + h a/2)) + p + J^T r,        M^ h a = h (tau - C(q_m, u)) + p
 //
 // q_m is without forces, so that what rests is found where it is. m^ and p of springs, dampers and drives: drive_law.h; tau of what is constant.
-// Where all of those are soft the free course, r = 0, is that of Runge and Kutta of 4th order (balls by exponentials: H. Munthe-Kaas, Appl. Numer.
-// Math. 29 (1999) 115-127): contacts add M^^-1 J^T r to its end, and columns that they change go by the
-// mean of their rates: a damper bends a free course, and what contacts hold at rest must not go that way.
+// A tree that nothing else can push goes by Runge and Kutta's method of 4th order where all of those are soft (balls by exponentials: H. Munthe-Kaas,
+// Appl. Numer. Math. 29 (1999) 115-127).
 #pragma once
 #include <span>
 #include <vector>
