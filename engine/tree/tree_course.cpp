@@ -235,12 +235,11 @@ void advanceTree(const TreeModel& tree, const TreeBase& base, const TreeGain& ga
   PINCER_ASSERT(gain.h > 0 && t >= 0);
   const double share = t / gain.h;
   for (std::size_t c = 0; c < u.size(); ++c) {
-    const double u_end = course.u_free[c] + gain.gained[c];
-    const double way = course.way_free[c] + 0.5 * gain.h * gain.gained[c];
+    const double u_end = course.u_free[c] + gain.gained[c], way = wayOf(course, gain, c, u[c]);
+    const bool lands = gain.closing && gain.gained[c] != 0;
     // What the way is besides that of the rates at the start grows with the square of the time.
-    const double part = share == 1 ? way : t * u[c] + share * share * (way - gain.h * u[c]);
-    course.step[c] = gain.closing ? t * u_end : part;
-    u_out[c] = gain.closing ? u_end : u[c] + share * (u_end - u[c]);
+    course.step[c] = share == 1 ? way : lands ? share * way : t * u[c] + share * share * (way - gain.h * u[c]);
+    u_out[c] = lands ? u_end : u[c] + share * (u_end - u[c]);
   }
   growCoordinates(tree, q, course.step, q_out);
   placeLinks(tree, base, q_out, course.end);

@@ -4,8 +4,8 @@
 //   M^ Du = h (tau - C(q_m, u + h a/2)) + p + J^T r,        M^ h a = h (tau - C(q_m, u)) + p
 //
 // q_m is without forces, so that what rests is found where it is. m^ and p of springs, dampers and drives: drive_law.h; tau of what is constant.
-// Where all of those are soft the free course, r = 0, is that of Runge and Kutta of 4th order (balls by exponentials: H. Munthe-Kaas, Appl. Numer.
-// Math. 29 (1999) 115-127): contacts add M^^-1 J^T r to its end, and half the way of that.
+// A tree that nothing else can push goes by Runge and Kutta's method of 4th order where all of those are soft (balls by exponentials: H. Munthe-Kaas,
+// Appl. Numer. Math. 29 (1999) 115-127).
 #pragma once
 #include <span>
 #include <vector>
@@ -78,6 +78,12 @@ struct TreeGain {
   double h = 0;
   bool closing = false;
 };
+// The step of a column over the whole tick.
+inline double wayOf(const TreeCourse& course, const TreeGain& gain, std::size_t column, double u) {
+  const double gained = gain.gained[column], u_end = course.u_free[column] + gained;
+  if (gained == 0) return course.way_free[column];
+  return gain.h * (gain.closing ? u_end : 0.5 * (u + u_end));
+}
 // At `t` after the tick's start, 0 .. h: q and the columns' rates, places and motions in `course.end`. Neither `q_out` nor `u_out` may be `q` or `u`.
 void advanceTree(const TreeModel& tree, const TreeBase& base, const TreeGain& gain, double t, std::span<const double> q,
                  std::span<const double> u, TreeCourse& course, std::span<double> q_out, std::span<double> u_out);

@@ -27,16 +27,14 @@ int slotOf(const TreeModel& tree, int coordinate, JointRowKind kind) {
 struct StopGap {
   double mid, end, rate, free_rate;  // out of the stop
 };
-StopGap gapOf(const WorldModel& model, const WorldState& state, const WorldScratch& scratch, const JointRowScratch& row,
-              double gained_share) {
+StopGap gapOf(const WorldModel& model, const WorldState& state, const WorldScratch& scratch, const JointRowScratch& row, bool is_pushed) {
   const TreeModel& tree = treeOf(model, row);
   const TreeScratch& s = scratch.trees[row.tree];
   const TreeCoordinate& own = tree.coordinates[row.element];
   const double share = s.course.mid.coordinates[row.element].share, h = scratch.h;
-  const double q = state.tree_q[tree.first_q + own.q], gained = gained_share * s.gained[own.column];
-  const double rate = share * state.tree_v[tree.first_v + own.column], free_rate = share * s.course.u_free[own.column];
-  const double way =
-      s.closing && gained_share > 0 ? h * (s.course.u_free[own.column] + gained) : s.course.way_free[own.column] + 0.5 * h * gained;
+  const double q = state.tree_q[tree.first_q + own.q], u = state.tree_v[tree.first_v + own.column];
+  const double rate = share * u, free_rate = share * s.course.u_free[own.column];
+  const double way = is_pushed ? wayOf(s.course, {s.gained, h, s.closing}, own.column, u) : s.course.way_free[own.column];
   const bool is_lower = row.kind == JointRowKind::kLower;
   const double sign = is_lower ? 1 : -1, limit = is_lower ? own.traits.lower : own.traits.upper;
   return {sign * (q + 0.5 * h * rate - limit), sign * (q + share * way - limit), sign * rate, sign * free_rate};
@@ -65,7 +63,7 @@ JointRowScratch::Hit hitOf(const WorldModel& model, const WorldState& state, con
 }
 
 void putStop(const WorldModel& model, const WorldState& state, int slot, JointRowScratch& row, WorldScratch& scratch) {
-  const StopGap gap = gapOf(model, state, scratch, row, 0);
+  const StopGap gap = gapOf(model, state, scratch, row, false);
   if (scratch.h > 0) row.acceleration = (gap.free_rate - gap.rate) / scratch.h;
   row.hit = hitOf(model, state, scratch, slot, row, gap);
   if (row.hit != JointRowScratch::Hit::kNone) return;
@@ -208,7 +206,7 @@ void noteStopHits(const WorldModel& model, WorldScratch& scratch) {
 }
 
 double timeOfStop(const WorldModel& model, const WorldState& state, const WorldScratch& scratch, const JointRowScratch& row) {
-  const StopGap gap = gapOf(model, state, scratch, row, 1);
+  const StopGap gap = gapOf(model, state, scratch, row, true);
   const double h = scratch.h, phi = gap.mid - 0.5 * h * gap.rate;
   if (scratch.trees[row.tree].closing) return gap.end < 0 ? h * phi / (phi - gap.end) : std::numeric_limits<double>::infinity();
   const double bent = gap.end - phi - h * gap.rate;  // phi(t) = phi + t rate + (t/h)^2 bent
@@ -230,7 +228,7 @@ bool reviseJointRows(const WorldModel& model, const WorldState& state, WorldScra
     } else if (row.kind == JointRowKind::kFriction) {
       is_wrong = reviseFriction(model, row, scratch) || is_wrong;
     } else if (!row.wanted && row.hit == JointRowScratch::Hit::kNone && hasStop(treeOf(model, row).coordinates[row.element], row.kind) &&
-               gapOf(model, state, scratch, row, 1).end < -kAtStop) {
+               gapOf(model, state, scratch, row, true).end < -kAtStop) {
       is_wrong = row.wanted = true;
     }
   }

@@ -95,6 +95,14 @@ void showAnswer(const WorldModel& model, const TreeModel& tree, const TreeScratc
   }
 }
 
+// True if neither contacts nor joints' own rows can push on it: then its free course needn't be the one in which M^ answers them. At rest the two must
+// agree to the last bit, or what holds a load feels less than it.
+bool movesAlone(const TreeModel& tree) {
+  return !tree.may_touch && std::none_of(tree.coordinates.begin(), tree.coordinates.end(), [](const TreeCoordinate& c) {
+    return c.traits.friction > 0 || std::isfinite(c.traits.lower) || std::isfinite(c.traits.upper);
+  });
+}
+
 bool isSlow(const Motion& m, double reach, double limit) {
   return m.v_W.squaredNorm() <= limit * limit && reach * reach * m.w_W.squaredNorm() <= limit * limit;
 }
@@ -132,7 +140,8 @@ void predictTrees(const WorldModel& model, const WorldState& state, WorldScratch
     const TreePush push{.gravity_W = scratch.gravity_W,
                         .forces = is_pushed ? std::span<const LinkForce>(s.forces) : std::span<const LinkForce>{},
                         .drives = s.drives,
-                        .constant = s.constant};
+                        .constant = s.constant,
+                        .may_be_fine = movesAlone(tree)};
     predictTree(tree, s.base, push, treeCoordinates(tree, state), treeRates(tree, state), scratch.h, s.course);
     std::fill(s.gained.begin(), s.gained.end(), 0.0);
     s.touched = s.closing = false;

@@ -21,20 +21,17 @@ std::string baseOf(const engine::WorldModel& world, const engine::TreeModel& tre
   return fmt::format("{} ({})", base.name, base.driven ? "driven" : "static");
 }
 
-// A tree none of whose forces may be cut off can go by Runge and Kutta, where all of them are soft for what they move.
-bool mayBeFine(const engine::WorldModel& world, const engine::TreeModel& tree) {
-  const bool brakes = std::any_of(tree.coordinates.begin(), tree.coordinates.end(), [](const auto& c) { return c.traits.friction > 0; });
-  const bool limits = std::any_of(tree.drives.begin(), tree.drives.end(), [&](const engine::TreeDrive& d) {
-    return std::isfinite(world.drives[slot(d.drive)].lower_force) || std::isfinite(world.drives[slot(d.drive)].upper_force);
+// True if the free course may be that of Runge and Kutta (engine/world/tree_motion.cpp).
+bool movesAlone(const engine::TreeModel& tree) {
+  return !tree.may_touch && std::none_of(tree.coordinates.begin(), tree.coordinates.end(), [](const engine::TreeCoordinate& c) {
+    return c.traits.friction > 0 || std::isfinite(c.traits.lower) || std::isfinite(c.traits.upper);
   });
-  return !brakes && !limits;
 }
 
 std::string treeForm(const engine::WorldModel& world, const engine::TreeModel& tree) {
   std::vector<int> sizes;
   for (const engine::TreeBlock& block : tree.blocks) sizes.push_back(block.count);
-  const std::string course = mayBeFine(world, tree) ? "alone by Runge and Kutta where its drives are soft, else by the middle of the tick"
-                                                    : "by the middle of the tick: brakes or limited drives";
+  const std::string course = movesAlone(tree) ? "4th order in the tick where its drives are soft" : "2nd order in the tick";
   const std::string touch =
       tree.may_touch ? fmt::format("{} of the solver, [{}] freedoms", counted(std::ssize(tree.blocks), "mover"), fmt::join(sizes, ", "))
                      : "touches nothing";

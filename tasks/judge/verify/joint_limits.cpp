@@ -70,8 +70,9 @@ std::vector<Record> pendulumAndStop(MeasureContext&) {
   for (int n = 0; n < 1000 && world.velocity(0) >= 0; ++n) world.tick();
   const double w = world.velocity(0), below = std::numbers::pi / 2 - world.position(0);
   rebound = w * w + fall * (1 - math::cos(below));
+  // What has stops is of second order in the tick.
   return {atMost("energy after the stop over e^2 of that before, less 1", std::abs(rebound / (kRestitution * kRestitution * fall) - 1), "-",
-                 1e-8),
+                 1e-4),
           unflagged(world)};
 }
 
