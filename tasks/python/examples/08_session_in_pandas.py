@@ -26,10 +26,8 @@ print("made by", session.info["version"][0], "of commit", session.info["commit_i
 # %% One row per trial, one per tick that was kept.
 trials, samples = session.frame("trials"), session.frame("samples")
 print(trials.iloc[:, :8].to_string())
-highest = (
-    samples.groupby("trial")["object_z_m"].max()
-    if "object_z_m" in samples
-    else samples.groupby("trial").max(numeric_only=True).iloc[:, 0]
-)
-print(highest.to_string())
+heights = samples.groupby("trial")["p_WB_z_m"]
+lifted = 1e3 * (heights.max() - heights.first())
+print("lifted by [mm]:", lifted.round(1).to_dict())
+assert (lifted > 5).all()
 assert len(trials) == len(session.trials) > 0 and len(samples) > 100
