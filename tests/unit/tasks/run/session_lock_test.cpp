@@ -13,15 +13,15 @@
 #include "pincer/tasks/run/session/database.h"
 #include "pincer/tasks/run/session_store.h"
 #include "pincer/tests/support/error_of.h"
+#include "pincer/tests/support/run_app.h"
 #include "pincer/tests/support/temporary_directory.h"
 
 namespace pincer::tasks {
 namespace {
 
+using tests::contains;
 using tests::errorOf;
 using tests::TemporaryDirectory;
-
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 TrialRecord trialOf(std::int64_t number) {
   TrialRecord trial;
