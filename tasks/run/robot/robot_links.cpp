@@ -43,6 +43,20 @@ void gatherLinks(PosedRobot& posed) {
   }
 }
 
+std::size_t coordinateNamed(const Robot& robot, const std::string& name) {
+  std::vector<std::string_view> names;
+  int at = 0;
+  for (const RobotBody& body : robot.bodies) {
+    for (const RobotJoint& joint : body.joints) {
+      const int count = coordinateCount(joint.kind);
+      if (count == 1 && joint.name == name) return static_cast<std::size_t>(at);
+      if (count == 1) names.push_back(joint.name);
+      at += count;
+    }
+  }
+  throw InputError(fmt::format("{}: has no hinge or slide \"{}\".{}", robot.file, name, suggestion(name, names)));
+}
+
 // Contact with a stop begins at the stop: there is no way to start beyond it.
 void holdWithinLimits(const Robot& robot, std::vector<double>& q, ImportNotes& notes) {
   double* at = q.data();
@@ -72,11 +86,12 @@ Pose PosedRobot::poseAfter(int body_index, std::size_t joints) const {
   return body(body_index).parent < 0 ? X_WR * X_PB : pose(body(body_index).parent) * X_PB;
 }
 
-PosedRobot poseRobot(const Robot& robot, const Pose& X_WR, const std::string& keyframe, ImportNotes& notes) {
-  PosedRobot posed{robot, X_WR, keyframeNamed(robot, keyframe), {}, {}, {}, {}};
+PosedRobot poseRobot(const Robot& robot, const RobotSceneOptions& options, ImportNotes& notes) {
+  PosedRobot posed{robot, options.X_WR, keyframeNamed(robot, options.keyframe), {}, {}, {}, {}};
   posed.q = posed.key && !posed.key->q.empty() ? posed.key->q : drawnCoordinates(robot);
+  for (const auto& [joint, value] : options.start) posed.q[coordinateNamed(robot, joint)] = value;
   holdWithinLimits(robot, posed.q, notes);
-  for (const Pose& X_RB : bodyPoses(robot, posed.q)) posed.poses.push_back(X_WR * X_RB);
+  for (const Pose& X_RB : bodyPoses(robot, posed.q)) posed.poses.push_back(options.X_WR * X_RB);
   gatherLinks(posed);
   return posed;
 }

@@ -6,6 +6,7 @@
 
 #include "pincer/tasks/run/robot/import_notes.h"
 #include "pincer/tasks/run/robot/robot.h"
+#include "pincer/tasks/run/robot/robot_scene.h"
 
 namespace pincer::tasks {
 
@@ -35,7 +36,8 @@ struct PosedRobot {
   Pose poseAfter(int body_index, std::size_t joints) const;
 };
 
-// `keyframe` empty: as drawn. Joints that would be beyond a stop are at it, which is noted. Throws InputError: there is no such keyframe.
-PosedRobot poseRobot(const Robot& robot, const Pose& X_WR, const std::string& keyframe, ImportNotes& notes);
+// Where the options have it start. Joints that would be beyond a stop are at it, which is noted. Throws InputError: there is no such keyframe, no
+// such joint, or one without a coordinate of its own.
+PosedRobot poseRobot(const Robot& robot, const RobotSceneOptions& options, ImportNotes& notes);
 
 }  // namespace pincer::tasks

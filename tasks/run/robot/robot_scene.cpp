@@ -228,7 +228,7 @@ void rejectAt(const Place& place, std::string_view problem) { throw InputError(f
 std::string sceneOfRobot(const Robot& robot, const RobotSceneOptions& options, ImportNotes& notes) {
   refuseTheRest(robot);
   noteTheRest(robot, notes);
-  const PosedRobot posed = poseRobot(robot, options.X_WR, options.keyframe, notes);
+  const PosedRobot posed = poseRobot(robot, options, notes);
   SceneWriting w{posed, notes, NamesOfRobot(options.prefix)};
   w.json.beginObject().key("version").value(1).key("description").value(robot.name).key("gravity").value(robot.gravity_W);
   w.json.key("tick").value(robot.tick).key("duration").value(std::ceil(options.duration / robot.tick - kRoundOff) * robot.tick);

@@ -5,6 +5,8 @@
 // hulls. Names keep letters, digits, - and _; others become _.
 #pragma once
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "pincer/tasks/run/robot/import_notes.h"
 #include "pincer/tasks/run/robot/robot.h"
@@ -12,10 +14,11 @@
 namespace pincer::tasks {
 
 struct RobotSceneOptions {
-  std::string keyframe;  // where it starts and what its drives are told; empty: as drawn
-  double duration = 2;   // [s]
-  std::string prefix;    // of all names
-  Pose X_WR;             // where the file's world stands
+  std::string keyframe;                               // where it starts and what its drives are told; empty: as drawn
+  double duration = 2;                                // [s]
+  std::string prefix;                                 // of all names
+  Pose X_WR;                                          // where the file's world stands
+  std::vector<std::pair<std::string, double>> start;  // joints and their coordinates, in place of the keyframe's [rad, m]
 };
 
 // The scene's text (JSON). Throws InputError at the robot's file and line: what a scene can't say (a loop of bodies, a spring along a tendon), an

@@ -91,17 +91,31 @@ void readBodies(const JsonValue& json, SceneNames& names, Scene& scene) {
   readJointed(json, names, scene);
 }
 
+// A control that stays, or keyframes, for each drive by its name in the robot's file.
+void tellDrives(const JsonValue& json, const std::string& prefix, Scene& scene) {
+  std::vector<std::string_view> names;
+  for (const SceneDrive& drive : scene.drives) {
+    if (drive.model.name.rfind(prefix, 0) == 0) names.push_back(std::string_view(drive.model.name).substr(prefix.size()));
+  }
+  json.allowOnly(names);
+  for (SceneDrive& drive : scene.drives) {
+    if (drive.model.name.rfind(prefix, 0) != 0) continue;
+    if (const JsonValue* v = json.find(std::string_view(drive.model.name).substr(prefix.size()))) readDriveControl(*v, drive);
+  }
+}
+
 // Its bodies, joints and drives; in messages all of them stand where the robot is named.
 void addRobot(const JsonValue& json, SceneNames& names, Scene& scene) {
   const std::array lines = {&scene.body_lines, &scene.joint_lines, &scene.coupling_lines, &scene.drive_lines, &scene.pair_lines};
   std::array<std::ptrdiff_t, lines.size()> before;
   for (std::size_t i = 0; i < lines.size(); ++i) before[i] = std::ssize(*lines[i]);
-  const NamedJson robot = readRobot(json, scene);
+  const RobotJson robot = readRobot(json, scene);
   try {
     readBodies(robot.json, names, scene);
   } catch (const InputError& error) {
     json.reject(fmt::format("can't be had: {}", error.what()));
   }
+  if (const JsonValue* v = json.find("drives")) tellDrives(*v, robot.prefix, scene);
   for (std::size_t i = 0; i < lines.size(); ++i) std::fill(lines[i]->begin() + before[i], lines[i]->end(), json.line());
 }
 

@@ -125,10 +125,14 @@ SceneDrive readDrive(const JsonValue& json, const std::vector<SceneTendon>& tend
   const JsonValue* const target = json.find("target");
   const JsonValue* const trajectory = json.find("trajectory");
   if (target && trajectory) target->reject("says again what \"trajectory\" says. Keep one of the two.");
-  drive.moves = trajectory != nullptr;
-  if (trajectory) drive.control = readControl(*trajectory);
-  if (target) drive.control = Trajectory::throughKeyframes({{0, {target->number(ranges::kDriveControl), 0, 0}, Vec3::Zero()}});
+  if (trajectory || target) readDriveControl(trajectory ? *trajectory : *target, drive);
   return drive;
+}
+
+void readDriveControl(const JsonValue& json, SceneDrive& drive) {
+  drive.moves = json.kind() == JsonValue::Kind::kObject;
+  drive.control =
+      drive.moves ? readControl(json) : Trajectory::throughKeyframes({{0, {json.number(ranges::kDriveControl), 0, 0}, Vec3::Zero()}});
 }
 
 void driveControls(const Scene& scene, double time, std::span<engine::DriveInput> controls) {

@@ -10,7 +10,7 @@ using Word = std::string_view;
 inline constexpr std::array<Word, 18> kScene = {"version", "description", "gravity",     "tick",    "duration", "solver",
                                                 "robots",  "bodies",      "combination", "pairs",   "joints",   "couplings",
                                                 "tendons", "drives",      "frames",      "fingers", "record",   "expect"};
-inline constexpr std::array<Word, 5> kRobot = {"name", "file", "keyframe", "position", "rotation"};
+inline constexpr std::array<Word, 7> kRobot = {"name", "file", "keyframe", "start", "drives", "position", "rotation"};
 inline constexpr std::array<Word, 8> kSolver = {"tolerance",          "accuracy",  "max_contacts", "contact_margin",
                                                 "position_tolerance", "max_parts", "sleep",        "budget"};
 inline constexpr std::array<Word, 13> kBody = {"name",    "shape",    "shapes",   "static",     "mass",     "density",

@@ -64,6 +64,8 @@ struct SceneTendon {
 };
 SceneTendon readTendon(const JsonValue& json, SceneNames& names, const Scene& scene);
 SceneDrive readDrive(const JsonValue& json, const std::vector<SceneTendon>& tendons, SceneNames& names, const Scene& scene);
+// A number: a control that stays; or {"keyframes": ..}.
+void readDriveControl(const JsonValue& json, SceneDrive& drive);
 BodyFrame readFrame(const JsonValue& json, SceneNames& names, const Scene& scene);
 ScenePair readPair(const JsonValue& json, const SceneNames& names, const Scene& scene);
 

@@ -25,7 +25,7 @@ bool isRobotFile(const std::string& path) { return std::filesystem::path(path).e
 
 std::string robotSceneText(const std::string& path, std::string& remarks) { return sceneText(path, {}, remarks); }
 
-NamedJson readRobot(const JsonValue& json, Scene& scene) {
+RobotJson readRobot(const JsonValue& json, Scene& scene) {
   json.allowOnly(keys::kRobot);
   RobotSceneOptions options;
   if (const JsonValue* v = json.find("name")) {
@@ -33,12 +33,15 @@ NamedJson readRobot(const JsonValue& json, Scene& scene) {
     options.prefix = v->text() + "_";
   }
   if (const JsonValue* v = json.find("keyframe")) options.keyframe = v->text();
+  if (const JsonValue* v = json.find("start")) {
+    for (const std::string& joint : v->keys()) options.start.emplace_back(joint, v->at(joint).number(ranges::kJointPosition));
+  }
   options.X_WR = {quatFromRotationVector(readVector(json, "rotation", ranges::kRotation)),
                   readVector(json, "position", ranges::kCoordinate)};
   const JsonValue& file = json.at("file", "The robot's MJCF file, relative to the scene's folder.");
   const std::string path = besideScene(scene.file, file.text());
   try {
-    return {path + " (as a scene)", parseJson(sceneText(path, options, scene.remarks), path + " (as a scene)")};
+    return {options.prefix, parseJson(sceneText(path, options, scene.remarks), path + " (as a scene)")};
   } catch (const InputError& error) {
     file.reject(fmt::format("can't be used: {}", error.what()));
   }

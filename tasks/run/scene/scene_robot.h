@@ -13,11 +13,17 @@ bool isRobotFile(const std::string& path);
 // A robot's file as the text of a scene; what of it has no effect is appended to `remarks`, as lines for people. Throws InputError.
 std::string robotSceneText(const std::string& path, std::string& remarks);
 
-// One of a scene's "robots": its parts as a scene, what they are called in messages. Its remarks are appended to the scene's. Throws InputError.
+// A file's text, parsed, and what it is called in messages.
 struct NamedJson {
   std::string name;
   JsonValue json;
 };
-NamedJson readRobot(const JsonValue& json, Scene& scene);
+
+// One of a scene's "robots": its parts as a scene, and what their names begin with. Its remarks are appended to the scene's. Throws InputError.
+struct RobotJson {
+  std::string prefix;
+  JsonValue json;
+};
+RobotJson readRobot(const JsonValue& json, Scene& scene);
 
 }  // namespace pincer::tasks
