@@ -151,7 +151,7 @@ TEST_P(TreeTicks, ADriveAtItsLimitGivesThatAndNoMore) {
   world.controls[0].value = 0.15;
   world.run(0.5);
   EXPECT_TRUE(driveAt(world.scratch, 0).saturated);
-  EXPECT_EQ(driveAt(world.scratch, 0).force, 0.9);
+  EXPECT_NEAR(driveAt(world.scratch, 0).force, 0.9, 1e-9);
   EXPECT_NEAR(world.v(), (0.9 / kMass - kGravity) * 0.5, 1e-9);
 }
 
