@@ -36,15 +36,17 @@ struct Cut {
 TEST(SmoothPairs, SolidsTouchTheMeshOfABallAsTheBall) {
   RandomNumbers random(7);
   for (const Cut& cut : {Cut{4, 5e-5}, Cut{7, 6e-6}, Cut{20, 2e-7}}) {
-    for (const double radius : {0.004, 0.021, 0.1}) {
+    for (const double radius : {0.004, 0.021, 0.3}) {
       const Sphere ball{radius};
+      // On triangles larger than the solid its face is chosen by the triangle's normal, some degrees off (decision 21).
+      const double error = cut.n < 20 && radius > 0.1 ? 1e-4 : cut.error;
       const Mesh mesh = meshOf(geodesicSphere(radius, cut.n));
       for (const NamedShape& solid : tests::sampleConvexSolids()) {
         if (std::holds_alternative<Sphere>(solid.shape)) continue;
-        for (int i = 0; i < 6; ++i) {
+        for (int i = 0; i < 12; ++i) {
           const Pose X_BA = around(random, ball, solid.shape, i % 3 == 0 ? -1e-4 * radius : random.uniform(0, 1e-3 * radius));
           const double exact = leastGap(collide(ball, X_BA, solid.shape, Pose{}));
-          EXPECT_NEAR(leastGap(collide(mesh, X_BA, solid.shape, Pose{}, 0.1 * radius)), exact, cut.error * radius + 1e-10)
+          EXPECT_NEAR(leastGap(collide(mesh, X_BA, solid.shape, Pose{}, 0.1 * radius)), exact, error * radius + 1e-10)
               << solid.name << " " << cut.n << " " << radius << " " << i;
         }
       }
@@ -78,7 +80,7 @@ TEST(SmoothPairs, NothingOfTheFacetsIsFeltOnTheWay) {
     for (const NamedShape& solid : tests::sampleConvexSolids()) {
       if (std::holds_alternative<Sphere>(solid.shape)) continue;
       PatchCache cache(1024);
-      for (int place = 0; place < 2; ++place) {
+      for (int place = 0; place < 6; ++place) {
         Pose X_WB{tests::rotation(random), Vec3::Zero()};
         PairPoints found, before;
         // Down onto the mesh, until the deepest point overlaps by 20 um.
