@@ -27,8 +27,9 @@ class SmoothLead {
   SmoothLead(const SurfaceNet& net, PatchCache& cache, const PosedSolid& solid, double size)
       : net_(net), cache_(cache), solid_(solid), size_(size) {}
 
-  // Leaves a point where it is that has no solution beside it, and that of a crease on a sharp edge, which the two cross. `whole`: over all of the
-  // face or line of the solid that faces the surface, not only over the corner or edge that the point is on.
+  // Leaves a point where it is that has no solution beside it, and that of a crease on a sharp edge, which the two
+  // cross. `whole`: over all of the face or line of the solid that faces the surface, not only over the corner or edge
+  // that the point is on.
   void lead(FoundPoint& point, bool is_on_crease, bool whole) const {
     const Vec3 d = solid_.inwards(point.n_W);
     const double lift = kLift * size_ + std::max(0.0, -2 * point.phi), slack = kAtEnd * size_;
@@ -39,8 +40,11 @@ class SmoothLead {
     SolidFeature feature(solid_.shape, c, d, solid_.skin, lift, whole ? SolidFeature::kWhole : slack);
     if (is_on_crease && feature.isSharp()) return;
     if (!descend(feature, c, found)) return;
-    for (int less = 0; less < kMostLess && feature.isEnd(c, slack); ++less) {
-      feature = SolidFeature(solid_.shape, feature.moveOut(c), d, solid_.skin, lift, slack);
+    for (int less = 0; less < kMostLess; ++less) {
+      const Vec3 d_found = -solid_.inwards(found.n);
+      const bool is_cut_off = feature.isCutOff(d_found);
+      if (!is_cut_off && !feature.isEnd(c, slack)) break;
+      feature = SolidFeature(solid_.shape, feature.moveOut(c), is_cut_off ? d_found : d, solid_.skin, lift, slack);
       if ((is_on_crease && feature.isSharp()) || !descend(feature, c, found)) return;
     }
     if (!(-found.n.dot(point.n_W) > 0)) return;

@@ -23,6 +23,7 @@ Vec3 nearestOnSegment(const Vec3& from, const Vec3& to, const Vec3& p) {
 SolidFeature::SolidFeature(const Shape& shape, const Vec3& c, const Vec3& d, double skin, double lift, double slack) : rho_(skin) {
   PINCER_ASSERT(isUnitIfFinite(d) && lift > 0);
   facetOf(shape, d, face_);
+  if (const auto* cut = std::get_if<CylinderWithFlat>(&shape)) flat_ = cut->flat_distance;
   const double rounding = roundingOf(shape);
   rho_ += rounding;
   if (face_.count > 2)
@@ -95,14 +96,21 @@ Vec3 SolidFeature::nearest(const Vec3& p) const {
       return from_;
     case Kind::segment:
       return nearestOnSegment(from_, to_, p);
-    case Kind::circle: {
-      const double length = p.head<2>().norm();
-      return length > 0 ? Vec3(circle_ / length * p.x(), circle_ / length * p.y(), from_.z()) : Vec3(circle_, 0, from_.z());
-    }
+    case Kind::circle:
+      return nearestOnCircle(p);
     case Kind::face:
       return nearestOfFace(p);
   }
   return from_;
+}
+
+// An arc where a flat cuts the circle off.
+Vec3 SolidFeature::nearestOnCircle(const Vec3& p) const {
+  const double length = p.head<2>().norm(), z = from_.z();
+  const Vec2 on = length > 0 ? Vec2(circle_ / length * p.head<2>()) : Vec2(-circle_, 0);
+  if (!(on.x() > flat_)) return {on.x(), on.y(), z};
+  const double half_chord = std::sqrt((circle_ - flat_) * (circle_ + flat_));
+  return {flat_, on.y() < 0 ? -half_chord : half_chord, z};
 }
 
 // Within the circle, if there is one, and inside all straight sides; else the nearest point of a side.

@@ -11,7 +11,8 @@
 //   | rim of a cylinder | the circle | 0 |
 //   | face | the face, moved into the solid by `lift` | lift |
 //
-// To all of them comes the rounding of a fingertip's pad. The face is moved in so that what reaches a little into the solid is in front of F.
+// To all of them comes the rounding of a fingertip's pad. The face is moved in so that what reaches a little into the
+// solid is in front of F.
 #pragma once
 #include "pincer/contact/shape/posed_solid.h"
 
@@ -19,8 +20,9 @@ namespace pincer::contact {
 
 class SolidFeature {
  public:
-  // The one that holds the point `c` [m] of the solid's core, touched along the unit `d`, out of the solid; both in the solid's frame. `slack` [m]
-  // from an end counts as the end; kWhole: none does, and F is all of the face or line that faces along `d`. Allocates nothing.
+  // The one that holds the point `c` [m] of the solid's core, touched along the unit `d`, out of the solid; both in the
+  // solid's frame. `slack` [m] from an end counts as the end; kWhole: none does, and F is all of the face or line that
+  // faces along `d`. Allocates nothing.
   static constexpr double kWhole = -kInfinity;
   SolidFeature(const Shape& shape, const Vec3& c, const Vec3& d, double skin, double lift, double slack);
 
@@ -28,9 +30,11 @@ class SolidFeature {
   Vec3 nearest(const Vec3& p) const;
   double rho() const { return rho_; }  // [m]
   bool isSharp() const { return !(rho_ > 0); }
-  // Whether the point `c` of F is where F ends and something less is touched: on a face's outline, at the end of a wall or edge. And where that was
-  // before a face was moved.
+  // Whether the point `c` of F is where F ends and something less is touched: on a face's outline, at the end of a wall
+  // or edge. And where that was before a face was moved.
   bool isEnd(const Vec3& c, double slack) const;
+  // Whether a round wall isn't there along `d`: its cylinder is cut off by a flat.
+  bool isCutOff(const Vec3& d) const { return kind_ == Kind::segment && circle_ * d.x() > flat_ * d.head<2>().norm(); }
   Vec3 moveOut(const Vec3& c) const { return kind_ == Kind::face ? Vec3(c + lift_ * face_.n) : c; }
   std::uint32_t name() const { return name_; }  // the same for as long as it is this one, below 2^16
 
@@ -42,11 +46,13 @@ class SolidFeature {
   void setLine(const Facet& facet, const Vec3& c, double rounding, double slack);
   void setOnPolygon(const Vec3& c, double lift, double slack);
   void setOnRim(double z);
+  Vec3 nearestOnCircle(const Vec3& p) const;
   Vec3 nearestOfFace(const Vec3& p) const;
 
   Kind kind_ = Kind::point;
   Vec3 from_ = Vec3::Zero(), to_ = Vec3::Zero();  // of a segment; `from_` also a point, and the middle of a circle about z
   double circle_ = 0;                             // radius of the circle [m]
+  double flat_ = kInfinity;                       // x where a flat cuts the circle off [m]
   double rho_, lift_ = 0;                         // [m]
   std::uint32_t name_ = 0;
   Facet face_;  // moved in

@@ -1,4 +1,5 @@
-// Bodies on meshes: what solids feel of the facets of a ball's mesh, judged by the ball; what two finely cut meshes that lie on each other cost.
+// Bodies on meshes: what solids feel of the facets of a ball's mesh, judged by the ball; what two finely cut meshes
+// that lie on each other cost.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,7 +22,8 @@ constexpr double kBallRadius = 0.02;  // radius [m]
 constexpr double kPressedBy = 1e-5;   // of the flat slide [m]
 constexpr double kSlideStep = 5e-7;   // [m]
 
-// A solid over the ball's top, touching it with the feature that the name says; `q` turns it so, `reach` is from its origin to that feature.
+// A solid over the ball's top, touching it with the feature that the name says; `q` turns it so, `reach` is from its
+// origin to that feature.
 struct OverBall {
   const char* name;
   Shape solid;

