@@ -23,7 +23,7 @@ bool isFinite(const WorldState& state) {
   for (const auto* numbers : {&state.tree_q, &state.tree_v}) {
     for (const double x : *numbers) sum += x;
   }
-  for (const PointState& p : state.points) sum += p.p_W.sum() + p.v_W.sum() + p.twist + p.twist_rate;
+  for (const PointState& p : state.points) sum += p.p_W.sum() + p.v_W.sum() + p.twist + p.twist_rate + p.turn_W.sum() + p.turn_rate_W.sum();
   return std::isfinite(sum);
 }
 
