@@ -20,7 +20,8 @@ namespace {
 
 extern "C" void pincerOnReportRequest(int) { requestServoReport(); }
 
-// Waits for a line on standard input. False where the input ends, or the user interrupts.
+}  // namespace
+
 bool lineComes() {
   constexpr int kLook = 100;  // for an interrupt [ms]
   for (char c = 0; c != '\n';) {
@@ -31,8 +32,6 @@ bool lineComes() {
   }
   return true;
 }
-
-}  // namespace
 
 void addDeviceOptions(CLI::App& command, DeviceRunOptions& options) {
   command.add_option("--devices", options.devices, "What the fingers wear: simulated devices and participant, or real ones and a person")

@@ -92,6 +92,7 @@ struct FingerInputRecord {
 // A tick of a person's trial: everything that came in, and where it led, so that the trial can be done again and compared tick by tick.
 struct InputRecord {
   enum Flag : std::uint32_t { kWantsLift = 1, kAnswers = 2 };
+  static constexpr std::uint32_t kKeyShift = 8;  // from this bit of `flags` on: the key that a person pressed, its character or devices::Key
   std::int64_t trial = 0;
   std::int64_t tick = 0;
   double time = 0;          // that the tick was given [s]

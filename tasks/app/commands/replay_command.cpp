@@ -43,14 +43,21 @@ struct ReplayArguments {
 ReplayResult replayAndLook(const ReplayArguments& arguments, const SessionReader& session) {
   const std::vector<TrialRecord> trials = session.trials();
   ReplayOptions wanted = arguments.options;
-  if (!wanted.trial && !trials.empty()) wanted.trial = trials.front().trial;
+  if (!wanted.trial) wanted.trial = trials.empty() ? 0 : trials.front().trial;
   ViewOptions options = arguments.view;
-  return replaySession(session, wanted, interruptFlag(), {}, [&](HandsCycle& cycle, const TrialRecord& row) {
+  const auto hands = [&](HandsCycle& cycle, const TrialRecord& row) {
     options.title = fmt::format("{}, trial {}", row.task, row.trial);
     TrialRecording recording = recordTrial(cycle, static_cast<std::size_t>(row.trial), trials.size(), interruptFlag());
     showRecording(cycle.trial().scene().model.grasp, std::move(recording.history), arguments.at, options, interruptFlag());
     return recording.report;
-  });
+  };
+  const auto finger = [&](FingerTrial& trial) {
+    options.title = fmt::format("{}, trial {}", session.info().task, *wanted.trial);
+    TrialRecording recording = recordFinger(trial, interruptFlag());
+    showRecording(trial.pictured(), std::move(recording.history), arguments.at, options, interruptFlag());
+    return recording.report;
+  };
+  return replaySession(session, wanted, interruptFlag(), {}, hands, finger);
 }
 
 ReplayResult replayAll(const ReplayArguments& arguments, const SessionReader& session) {

@@ -15,6 +15,7 @@
 #include "pincer/tasks/app/print.h"
 #include "pincer/tasks/app/progress.h"
 #include "pincer/tasks/app/run_options.h"
+#include "pincer/tasks/app/terminal_person.h"
 #include "pincer/tasks/app/usage.h"
 #include "pincer/tasks/lab/experiments/live_hands.h"
 #include "pincer/tasks/lab/experiments/manipulation_file.h"
@@ -123,6 +124,7 @@ int showStudy(const ManipulationArguments& arguments, const std::string& directo
 struct Stage {
   std::unique_ptr<HandDevices> devices;
   std::unique_ptr<TrialStage> window;
+  std::unique_ptr<TerminalPerson> terminal;
 };
 
 Stage setStage(const ManipulationArguments& arguments, ManipulationSessionOptions& options, const std::atomic<bool>& interrupted) {
@@ -136,8 +138,15 @@ Stage setStage(const ManipulationArguments& arguments, ManipulationSessionOption
   if (stage.window) options.host = stage.window->host();
   if (choice != "sim") options.devices = choice;
   if (stage.devices) {
-    options.host.hands = [devices = stage.devices.get(), oldest = kOldestSample * options.servo.watchdog](HandTrial& trial) {
-      return std::make_unique<LiveHands>(trial, *devices, oldest);
+    if (!stage.window) {
+      stage.terminal = std::make_unique<TerminalPerson>(options.servo, interrupted);
+      options.host.serve = [person = stage.terminal.get()](HandsCycle& cycle, std::size_t trial, std::size_t trials) {
+        return person->serve(cycle, trial, trials);
+      };
+    }
+    AnswerBox* keys = stage.window ? &stage.window->keys() : &stage.terminal->keys();
+    options.host.hands = [devices = stage.devices.get(), keys, oldest = kOldestSample * options.servo.watchdog](HandTrial& trial) {
+      return std::make_unique<LiveHands>(trial, *devices, oldest, keys);
     };
     options.host.arm = [asked = arguments.devices, devices = stage.devices.get()](const std::string& why) {
       const std::string complaint = devices->complaint();

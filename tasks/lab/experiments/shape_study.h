@@ -8,6 +8,7 @@
 
 #include "pincer/tasks/lab/experiments/shape_trial.h"
 #include "pincer/tasks/lab/experiments/solids.h"
+#include "pincer/tasks/lab/experiments/study.h"
 
 namespace pincer::tasks {
 
@@ -38,10 +39,12 @@ class ShapeExperiment final : public Experiment {
   std::vector<StudyRun> runs() const override;
   std::optional<ResponseRecord> present(const StudyTrial& trial, StudySink& sink, const std::atomic<bool>& interrupted,
                                         ServoReport& served) override;
+  StudyPage introduction(const StudyRun& run) const override;
+  std::vector<ListedStimulus> training(const StudyRun& run) const override;
+  std::string feedback(const ResponseRecord& response) const override;
 
  private:
   ShapeStudy study_;
-  ServoOptions servo_;
   int stride_;
   std::array<std::array<std::shared_ptr<const contact::SmoothMesh>, kSolids>, 2> solids_;  // not shaded, shaded
 };

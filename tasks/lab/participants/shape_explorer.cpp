@@ -73,10 +73,10 @@ Quat ShapeExplorer::held() const {
   return Quat(R);
 }
 
-ShapeAction ShapeExplorer::act(const FingerPercept& finger, double time, Cue cue) {
+OneFingerAction ShapeExplorer::act(const FingerPercept& finger, double time, Cue cue) {
   const double dt = time - now_;
   now_ = time;
-  ShapeAction action;
+  OneFingerAction action;
   if (finger.tactile.valid && finger.tactile.place_L) {
     if (!first_place_) first_place_ = *finger.tactile.place_L;
     tactor_moves_ = tactor_moves_ || (*finger.tactile.place_L - *first_place_).norm() > limits_.common.tactor_moves;
@@ -94,7 +94,7 @@ ShapeAction ShapeExplorer::act(const FingerPercept& finger, double time, Cue cue
       ++passes_;
       angle_ = 0;
       const bool done = passes_ >= limits_.most_passes || (passes_ >= 3 && sureness() > limits_.sure);
-      action.finger.interval_over = done;
+      action.interval_over = done;
       enter(done ? Phase::kAnswer : Phase::kTurn);
     }
   } else if (phase_ == Phase::kTurn) {
@@ -104,11 +104,11 @@ ShapeAction ShapeExplorer::act(const FingerPercept& finger, double time, Cue cue
       enter(Phase::kApproach);
     }
   } else if (phase_ == Phase::kAnswer) {
-    action.finger.answered = now_ - entered_ >= limits_.common.reaction_time;
+    action.answered = now_ - entered_ >= limits_.common.reaction_time;
   }
   action.q_WF = held();
-  action.finger.pull = body_.hands[0];
-  action.finger.pull.p_D = cues_.q_WD.conjugate() * (cues_.middle_W + reach_ * ray() - cues_.p_WD);
+  action.pull = body_.hands[0];
+  action.pull.p_D = cues_.q_WD.conjugate() * (cues_.middle_W + reach_ * ray() - cues_.p_WD);
   return action;
 }
 

@@ -49,16 +49,12 @@ struct ShapeCues {
   double tactor_reach = 7.5e-3;  // largest place that the tactor can show [m]
 };
 
-struct ShapeAction {
-  OneFingerAction finger;
-  Quat q_WF = Quat::Identity();  // how the finger is held: its pad (-z of F) towards the middle
-};
-
-class ShapeExplorer {
+// It holds its finger with the pad (-z of F) towards the middle.
+class ShapeExplorer final : public OneFingerObserver {
  public:
   explicit ShapeExplorer(std::uint64_t seed, const ShapeLimits& limits = {}, const HandRanges& ranges = {});
   void begin(const ShapeCues& cues);
-  ShapeAction act(const FingerPercept& finger, double time, Cue cue);
+  OneFingerAction act(const FingerPercept& finger, double time, Cue cue) override;
   int answer() const;  // a place in kSolidNames
   double sureness() const;
 

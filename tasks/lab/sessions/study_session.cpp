@@ -11,19 +11,24 @@ namespace {
 
 class StudyFileSink final : public StudySink {
  public:
-  explicit StudyFileSink(SessionWriter& writer) : writer_(writer) {}
+  // `inputs`: of every tick too, of a finger that nothing else can bring back.
+  StudyFileSink(SessionWriter& writer, bool inputs) : writer_(writer), inputs_(inputs) {}
+  bool wantsInputs() const override { return inputs_; }
+  void hands(const HandsRecord& hands) override { writer_.addHands(hands); }
+  void input(const InputRecord& input) override { writer_.pushInput(input); }  // a lost one is a gap in the ticks, which a replay names
   void sample(const SampleRecord& sample) override { writer_.pushSample(sample); }  // a lost one is counted by the store
   void event(const EventRecord& event) override { writer_.addEvent(event); }
   void response(const ResponseRecord& response) override { writer_.finishResponse(response); }
 
  private:
   SessionWriter& writer_;
+  const bool inputs_;
 };
 
 }  // namespace
 
 SessionInfo studySessionInfo(const std::string& task, std::uint64_t seed, const std::string& protocol_json,
-                             const std::string& participants_json, const ServoOptions& servo, int sample_rate) {
+                             const std::string& participants_json, const ServoOptions& servo, int sample_rate, const std::string& devices) {
   SessionInfo info;
   info.task = task;
   info.seed = seed;
@@ -33,7 +38,9 @@ SessionInfo studySessionInfo(const std::string& task, std::uint64_t seed, const 
   info.participants_hash = fingerprint(participants_json);
   const char* display = task == "shape-identification" ? "simulated 2-DOF" : "simulated 1-DOF";
   JsonWriter json;
-  json.beginObject().key("arms").value("simulated").key("tactile_display").value(display).key("rate").value(servo.rate);
+  const bool simulated = devices == "simulated" || devices == "mouse";
+  json.beginObject().key("arms").value(devices).key("tactile_display").value(simulated ? display : devices.c_str());
+  json.key("rate").value(servo.rate);
   info.devices_json =
       json.key("sample_rate").value(sample_rate).key("real_time").value(servo.clock != ServoClock::kVirtual).endObject().text();
   return info;
@@ -42,11 +49,12 @@ SessionInfo studySessionInfo(const std::string& task, std::uint64_t seed, const 
 StudyOutcome runStudySession(Experiment& experiment, const StudySession& session, const std::atomic<bool>& interrupted,
                              const std::function<void(const StudyProgress&)>& progress) {
   SessionOptions store;
-  store.block_when_full = true;  // simulated participants wait for the disk
+  store.block_when_full = session.waits;
   SessionWriter writer =
       session.resume ? SessionWriter::resume(session.path, store) : SessionWriter::create(session.path, session.info, store);
   const std::vector<ResponseRecord> earlier = session.resume ? SessionReader(session.path).responses() : std::vector<ResponseRecord>();
-  StudyFileSink sink(writer);
+  experiment.serveWith(session.host);
+  StudyFileSink sink(writer, session.host.isPersons());
   try {
     StudyOutcome outcome = runStudy(experiment, session.info.seed, earlier, sink, interrupted, progress);
     outcome.interrupted ? writer.abort("interrupted by the user") : writer.close();

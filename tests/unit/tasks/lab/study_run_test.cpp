@@ -10,6 +10,7 @@
 #include "pincer/tasks/lab/experiments/localisation.h"
 #include "pincer/tasks/lab/experiments/shape_study.h"
 #include "pincer/tasks/lab/experiments/shape_trial.h"
+#include "pincer/tasks/lab/finger/simulated_finger.h"
 #include "pincer/tasks/lab/sessions/study_file.h"
 #include "pincer/tasks/lab/sessions/study_session.h"
 #include "pincer/tasks/run/session/database.h"
@@ -158,10 +159,12 @@ struct PushMemory final : StudySink {
 TEST(Study, FacesAcrossTheWayAreFeltAsLightlyAsIsWanted) {
   ShapeTrialSetup setup;
   setup.solid = makeSolid("triangle", false, {});
-  setup.stride = 1;
+  setup.asked.stride = 1;
   ShapeExplorer explorer(1);
+  explorer.begin(shapeCues(setup, 0));
+  SimulatedFinger finger(shapePlace(setup), explorer);
   PushMemory memory;
-  ShapeTrial trial(setup, explorer, memory);
+  ShapeTrial trial(setup, finger, memory);
   const std::atomic<bool> no{false};
   runServo({}, trial, no);
   EXPECT_TRUE(trial.answered());
@@ -173,9 +176,11 @@ TEST(Study, WhatTheArmCanDoLimitsTheGateOfAShapeTrial) {
   ShapeTrialSetup setup;
   setup.solid = makeSolid(kSolidNames[0], true, {});
   ShapeExplorer explorer(1);
+  explorer.begin(shapeCues(setup, 0));
+  SimulatedFinger finger(shapePlace(setup), explorer);
   StudyMemory memory;
-  const ShapeTrial trial(setup, explorer, memory);
-  EXPECT_EQ(trial.gate().peak_torque, devices::SimArm().peakTorque());
+  const ShapeTrial trial(setup, finger, memory);
+  EXPECT_EQ(trial.gateLimits().peak_torque, devices::SimArm().peakTorque());
 }
 
 // Which sense feels what, as published: facets in both is C3, facets in force alone with the smooth tactor C4; the pilots come after the others.
