@@ -92,6 +92,12 @@ ServoReport TerminalPerson::serve(HandsCycle& cycle, std::size_t trial, std::siz
   return serve(cycle, [&cycle] { return FingerTold{.instruction = cycle.trial().instruction()}; });
 }
 
+std::optional<std::string> TerminalPerson::ask(const AskedQuestion& question) const {
+  if (!question.problem.empty()) print(stderr, "{}\n", question.problem);
+  print(stderr, "{} of {}: {}\n  {}: ", question.place, question.of, question.text, question.hint);
+  return typedLine();
+}
+
 bool TerminalPerson::show(const StudyPage& page) const {
   print(stderr, "\n{}\n", page.title);
   for (const std::string& line : page.lines) print(stderr, "  {}\n", line);

@@ -19,6 +19,7 @@ class TerminalPerson {
   // Of a trial with two fingers: Enter answers.
   ServoReport serve(HandsCycle& cycle, std::size_t trial, std::size_t trials);
   bool show(const StudyPage& page) const;
+  std::optional<std::string> ask(const AskedQuestion& question) const;
 
  private:
   ServoReport serve(ServoCycle& cycle, const std::function<FingerTold()>& told);

@@ -4,7 +4,7 @@
 #include "pincer/devices/window/surface.h"
 #include "pincer/tasks/lab/finger/mouse_finger.h"
 #include "pincer/tasks/run/measure/timing.h"
-#include "pincer/tasks/view/viewer.h"
+#include "pincer/tasks/view/page_view.h"
 
 namespace pincer::tasks {
 namespace {
@@ -51,7 +51,8 @@ class FingerWindow final : public FingerStage {
       };
     }
     host.serve = [this](FingerTrial& trial, const TrialPlace& place) { return serve(trial, place); };
-    host.show = [this](const StudyPage& page) { return show(page); };
+    host.show = [this](const StudyPage& page) { return showPage(*surface_, view_.title, page, interrupted_); };
+    host.ask = [this](const AskedQuestion& question) { return askOnPage(*surface_, view_.title, question, interrupted_); };
     return host;
   }
   AnswerBox& keys() override { return keys_; }
@@ -68,20 +69,6 @@ class FingerWindow final : public FingerStage {
     watched.from_the_side = true;
     watched.answer = [this](int key) { keys_.press(key); };
     return runWatched(watched, servo_, view_, interrupted_, *surface_);
-  }
-
-  bool show(const StudyPage& page) {
-    const grasp::GraspModel nothing = grasp::buildGrasp(engine::WorldBuilder{engine::WorldOptions{}}, {});
-    const Snapshot start = Snapshot::sizedFor(nothing);
-    SnapshotChannel channel(start);
-    PaceControl pace;
-    bool read = false;
-    Viewer viewer(*surface_, nothing, start, channel, pace, nullptr,
-                  {.title = view_.title, .keys = false, .answer = [&](int key) { read = read || key == devices::kKeyEnter; }});
-    viewer.showPage(page);
-    bool open = true;
-    while (open && !read && !interrupted_) open = viewer.update();
-    return open && read;
   }
 
   bool mouse_;

@@ -121,8 +121,6 @@ void drawPage(const OverlayText& text, int width, int height) {
     textLine(line);
   }
   ImGui::PopTextWrapPos();
-  ImGui::Dummy({1, 8});
-  dimLine("Enter: go on    Esc: leave; what is done is kept");
   ImGui::SetWindowFontScale(1);
 }
 

@@ -7,6 +7,7 @@
 #include "pincer/tasks/lab/experiments/mouse_hands.h"
 #include "pincer/tasks/lab/sessions/trial_capture.h"
 #include "pincer/tasks/run/measure/timing.h"
+#include "pincer/tasks/view/page_view.h"
 
 namespace pincer::tasks {
 namespace {
@@ -49,6 +50,8 @@ class WindowStage final : public TrialStage {
       };
     }
     host.serve = [this](HandsCycle& cycle, std::size_t trial, std::size_t trials) { return serve(cycle, trial, trials); };
+    host.show = [this](const StudyPage& page) { return showPage(*surface_, view_.title, page, interrupted_); };
+    host.ask = [this](const AskedQuestion& question) { return askOnPage(*surface_, view_.title, question, interrupted_); };
     return host;
   }
   AnswerBox& keys() override { return keys_; }

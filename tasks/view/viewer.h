@@ -18,10 +18,11 @@ namespace pincer::tasks {
 
 struct ViewerOptions {
   std::string title;
-  bool keys = true;                          // false: only Esc
-  std::string folder = ".";                  // for screenshots and sequences
-  bool from_the_side = false;                // looks along -x at the plane x = 0, in which the mouse moves fingers
-  std::function<void(int key)> answer = {};  // gets the digits and Enter; empty: nobody does
+  bool keys = true;                                               // false: only Esc
+  std::string folder = ".";                                       // for screenshots and sequences
+  bool from_the_side = false;                                     // looks along -x at the plane x = 0, in which the mouse moves fingers
+  std::function<void(int key)> answer = {};                       // gets the digits and Enter; empty: nobody does
+  std::function<void(const devices::InputEvent& key)> type = {};  // gets every key that goes down, but Esc; empty: nobody does
 };
 
 class Viewer {

@@ -41,6 +41,7 @@ void Viewer::handle(const devices::InputEvent& event) {
     if (event.code == devices::kKeyShift) shift_ = event.down;
     if (event.code == devices::kKeyControl) control_ = event.down;
     if (!event.down) return;
+    if (options_.type && event.code != devices::kKeyEscape) return options_.type(event);
     if (isAnswer(event.code)) return options_.answer(event.code);
     if (!options_.keys && event.code != devices::kKeyEscape) return;
     if (const auto action = actionOf(event.code, hand_ && !pace_.paused)) act(*action);

@@ -126,6 +126,11 @@ void wearDevices(const StudyArguments& arguments, const ServoOptions& servo, Fin
   };
 }
 
+// Somebody who takes part in a study answers its questions; who only tries, or goes on in a session without answers, doesn't.
+bool isParticipant(const StudyArguments& arguments) {
+  return arguments.person || (arguments.resume && !SessionReader(arguments.run.out + "/session.db").survey().empty());
+}
+
 std::unique_ptr<FingerCast> castOf(const std::string& task, const StudyArguments& arguments, ServoOptions& servo) {
   auto cast = std::make_unique<FingerCast>();
   const std::string& choice = arguments.devices.devices;
@@ -140,13 +145,16 @@ std::unique_ptr<FingerCast> castOf(const std::string& task, const StudyArguments
   if (cast->window) cast->host = cast->window->host();
   if (choice == "sim") {
     cast->host.show = {};
+    cast->host.ask = {};
     return cast;
   }
   if (!cast->window) {
     cast->terminal = std::make_unique<TerminalPerson>(servo, interruptFlag());
     cast->host.serve = [person = cast->terminal.get()](FingerTrial& trial, const TrialPlace& place) { return person->serve(trial, place); };
     cast->host.show = [person = cast->terminal.get()](const StudyPage& page) { return person->show(page); };
+    cast->host.ask = [person = cast->terminal.get()](const AskedQuestion& question) { return person->ask(question); };
   }
+  if (!isParticipant(arguments)) cast->host.ask = {};
   if (cast->devices) wearDevices(arguments, servo, *cast);
   return cast;
 }
@@ -201,8 +209,10 @@ std::shared_ptr<StudyArguments> addStudyTask(CLI::App& run, const std::string& t
   command->add_option("--study", arguments->study_file, "File with parameters that differ from the published design (JSON)");
   command->add_flag("--print-study", arguments->print_study, "Print all parameters as JSON with what they mean, and run nothing");
   command->add_flag("--resume", arguments->resume, "Go on with the interrupted or killed session in --out");
-  command->add_option("--person", arguments->person,
-                      "Which of the participants the person is, from 1 (default: 1); decides the order of conditions");
+  command->add_option(
+      "--person", arguments->person,
+      "Which of the participants the person is, from 1: decides the order of conditions, and asks the study's questions (default: 1, and "
+      "none is asked)");
   addRunOptions(*command, arguments->run);
   addDeviceOptions(*command, arguments->devices);
   addTrialViewOptions(*command, arguments->view);

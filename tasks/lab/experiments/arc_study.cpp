@@ -149,6 +149,8 @@ void validate(const ArcStudy& study) {
         "strokes", fmt::format("{}: strokes = {} is odd, but every stroke has its way back. {}", study.task, study.strokes, kAsPublished));
   if (study.conditions.empty()) throw ParameterError("conditions", study.task + ": conditions is empty. Give at least one.");
   for (std::size_t i = 0; i < study.conditions.size(); ++i) validate(study, i);
+  visitParameters(study.session, RangeCheck(study.task + ": session", "session"));
+  validate(study.session, study.task);
 }
 
 ArcExperiment::ArcExperiment(const ArcStudy& study, const ServoOptions& servo, int stride)

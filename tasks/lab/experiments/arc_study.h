@@ -28,6 +28,7 @@
 #include "pincer/tasks/lab/experiments/arc_trial.h"
 #include "pincer/tasks/lab/experiments/study.h"
 #include "pincer/tasks/lab/participants/stroke_observer.h"
+#include "pincer/tasks/lab/study/survey.h"
 
 namespace pincer::tasks {
 
@@ -59,6 +60,7 @@ struct ArcStudy {
   int strokes = 4;                     // per interval
   bool frozen_tactor = false;          // a control: the tactor is parked in every condition
   std::vector<ArcCondition> conditions;
+  SurveyPlan session = oneFingerSurvey();  // what people read, train and are asked
 };
 
 ArcStudy smoothnessStudy();
@@ -78,6 +80,8 @@ class ArcExperiment final : public Experiment {
   StudyPage introduction(const StudyRun& run) const override;
   std::vector<ListedStimulus> training(const StudyRun& run) const override;
   std::string feedback(const ResponseRecord& response) const override;
+  const SurveyPlan& plan() const override { return study_.session; }
+  std::vector<NamedCondition> conditions() const override { return namedOf(study_.conditions); }
 
  private:
   static constexpr double kBeyond = 0.15;  // of the arc's ends over the strokes' [rad]

@@ -47,6 +47,8 @@ contact::Polyline movedArc(double radius, double sweep, const Vec3& centre_W) {
 void validate(const LocalisationStudy& s) {
   const RangeCheck check("repeated-localisation");
   visitParameters(s, check);
+  visitParameters(s.session, RangeCheck("repeated-localisation: session", "session"));
+  validate(s.session, "repeated-localisation");
   check("spacing", s.spacing, Parameter{"", {0, 2 * kTactorReach / (s.places - 1), true, "All places lie within 0.016 m."}});
   check("radius_min", s.radius_min, Parameter{"", {0.02, s.radius_max, false, kAsPublished}});
 }

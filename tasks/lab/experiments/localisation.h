@@ -12,6 +12,7 @@
 #include "pincer/tasks/lab/experiments/arc_trial.h"
 #include "pincer/tasks/lab/experiments/study.h"
 #include "pincer/tasks/lab/participants/place_observer.h"
+#include "pincer/tasks/lab/study/survey.h"
 
 namespace pincer::tasks {
 
@@ -27,6 +28,7 @@ struct LocalisationStudy {
   double finger_radius = 0.013;                 // [m]
   double stiffness = 1000;                      // [N/m]
   double published_error = 1.3e-3;              // mean absolute [m]
+  SurveyPlan session = oneFingerSurvey();       // what people read, train and are asked
 };
 
 void validate(const LocalisationStudy& study);
@@ -40,6 +42,8 @@ class LocalisationExperiment final : public Experiment {
   StudyPage introduction(const StudyRun& run) const override;
   std::vector<ListedStimulus> training(const StudyRun& run) const override;
   std::string feedback(const ResponseRecord& response) const override;
+  const SurveyPlan& plan() const override { return study_.session; }
+  std::vector<NamedCondition> conditions() const override { return {{"tactor", ""}}; }
 
  private:
   ArcTrialSetup setupOf(const StudyTrial& trial, const PlaceCues& cues) const;

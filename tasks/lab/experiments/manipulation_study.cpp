@@ -89,6 +89,8 @@ void validate(const ManipulationStudy& study) {
   visitParameters(study, RangeCheck("study"));
   visitParameters(study.training, RangeCheck("study: training", "training"));
   visitParameters(study.people, RangeCheck("study: people", "people"));
+  visitParameters(study.session, RangeCheck("study: session", "session"));
+  validate(study.session, "study");
   if (study.tasks.empty()) throw ParameterError("tasks", "study: tasks is empty. Give sphere-pickup, cylinder-alignment, or both.");
   validate(pickupOf(study, false));
   CylinderAlignmentOptions alignment = study.alignment;
@@ -129,6 +131,27 @@ std::unique_ptr<Participant> makeParticipant(const ManipulationStudy& study, con
 
 namespace {
 
+std::string partName(const ManipulationStudy& study, const ManipulationTrial& spec) {
+  const bool training = spec.task == HandTask::kPickup ? spec.pickup.training : spec.alignment.training;
+  return fmt::format("{}, {}{}", spec.task == HandTask::kPickup ? "sphere pickup" : "cylinder alignment",
+                     spec.condition() == PickupCondition::kForce ? "force only" : "display and force", training ? ", training" : "");
+}
+
+// What a person reads before a part.
+StudyPage partPage(const ManipulationStudy& study, const ManipulationTrial& spec, bool rests) {
+  StudyPage page{partName(study, spec), study.session.instructions};
+  if (page.lines.empty()) {
+    page.lines =
+        spec.task == HandTask::kPickup
+            ? std::vector<std::string>{"Pinch the sphere between index finger and thumb, lift it by 50 mm and hold it there for a second."}
+            : std::vector<std::string>{"Find the flat of the cylinder, then turn the cylinder so that the flat faces the monitor.",
+                                       "Enter says that it does."};
+    page.lines.push_back("A tone begins each trial, another one ends it.");
+  }
+  if (rests) page.lines.push_back("Rest as long as you like before you go on.");
+  return page;
+}
+
 // One trial by whoever does it. `fault`: why a gate tripped; empty: none did.
 struct DoneTrial {
   ServoReport servo;
@@ -152,7 +175,8 @@ DoneTrial runTrial(const ManipulationStudy& study, HandTrial& trial, const Manip
 
 std::size_t runManipulationStudy(const ManipulationStudy& study, const ServoOptions& servo, RecordSink& sink,
                                  const std::atomic<bool>& interrupted, const StudyHooks& hooks) {
-  const auto trials = manipulationTrials(study);
+  auto trials = manipulationTrials(study);
+  if (hooks.host.person) std::erase_if(trials, [&](const ManipulationTrial& t) { return t.participant() != *hooks.host.person; });
   const PickupObject object = makePickupObject(study.pickup);
   const auto report = [&](std::size_t done) {
     if (hooks.progress) hooks.progress({done, trials.size()});
@@ -160,8 +184,12 @@ std::size_t runManipulationStudy(const ManipulationStudy& study, const ServoOpti
   std::size_t done = hooks.finished.size();
   if (hooks.host.arm && !hooks.host.arm("The session begins.")) return done;
   report(done);
+  std::string begun;  // the part that goes on: one task in one condition, training or not
   for (const ManipulationTrial& spec : trials) {
     if (hooks.finished.contains(spec.trial())) continue;
+    const std::string part = fmt::format("{}, {}", spec.participant(), partName(study, spec));
+    if (part != begun && hooks.host.show && !hooks.host.show(partPage(study, spec, !begun.empty()))) break;
+    begun = part;
     const std::unique_ptr<HandTrial> trial = makeTrial(study, object, spec, sink);
     const DoneTrial ended = runTrial(study, *trial, spec, servo, interrupted, hooks, {done, trials.size()});
     if (hooks.served) hooks.served(ended.servo);

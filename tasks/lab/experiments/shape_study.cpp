@@ -43,6 +43,8 @@ void validate(const ShapeStudy& s) {
   if (s.sizes.sides % 2 != 0)
     throw ParameterError("sizes.sides", fmt::format("shape-identification: sides = {} is odd, but an even number is needed. {}",
                                                     s.sizes.sides, kAsPublished));
+  visitParameters(s.session, RangeCheck("shape-identification: session", "session"));
+  validate(s.session, "shape-identification");
   if (s.conditions.empty()) throw ParameterError("conditions", "shape-identification: conditions is empty. Give at least one.");
 }
 

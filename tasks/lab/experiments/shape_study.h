@@ -9,6 +9,7 @@
 #include "pincer/tasks/lab/experiments/shape_trial.h"
 #include "pincer/tasks/lab/experiments/solids.h"
 #include "pincer/tasks/lab/experiments/study.h"
+#include "pincer/tasks/lab/study/survey.h"
 
 namespace pincer::tasks {
 
@@ -27,6 +28,7 @@ struct ShapeStudy {
   double finger_radius = 8e-3;  // [m] (ours)
   double stiffness = 1000;      // [N/m] (ours)
   std::vector<ShapeCondition> conditions = published();
+  SurveyPlan session = oneFingerSurvey();  // what people read, train and are asked
 
   static std::vector<ShapeCondition> published();
 };
@@ -42,6 +44,8 @@ class ShapeExperiment final : public Experiment {
   StudyPage introduction(const StudyRun& run) const override;
   std::vector<ListedStimulus> training(const StudyRun& run) const override;
   std::string feedback(const ResponseRecord& response) const override;
+  const SurveyPlan& plan() const override { return study_.session; }
+  std::vector<NamedCondition> conditions() const override { return namedOf(study_.conditions); }
 
  private:
   ShapeStudy study_;

@@ -49,7 +49,7 @@ void requireSameTrial(const ResponseRecord& earlier, const StudyTrial& trial) {
   throw InputError(
       fmt::format("trial {} of the session isn't the one that this study would show: participant {}, {}, level {}. Resume with "
                   "the parameters and the seed of the session.",
-                  trial.trial, earlier.participant, earlier.condition, earlier.level));
+                  trial.trial + 1, earlier.participant + 1, earlier.condition, earlier.level));
 }
 
 // Keeps nothing: of trials of training.
@@ -79,8 +79,6 @@ class StudyRunner {
         if (progress) progress({(static_cast<double>(k) + state.share()) / static_cast<double>(runs_.size())});
       }
     }
-    const bool show = host.show && !outcome_.interrupted;
-    if (show) host.show({"That was all", {"Thank you."}});
     return outcome_;
   }
 
@@ -122,7 +120,8 @@ class StudyRunner {
     const FingerHost& host = experiment_.host();
     if (!host.show) return;
     StudyPage page = experiment_.introduction(run);
-    const bool trains = !goes_on && !experiment_.training(run).empty();
+    if (!experiment_.plan().instructions.empty()) page.lines = experiment_.plan().instructions;
+    const bool trains = !goes_on && experiment_.plan().training > 0;
     if (trains) page.lines.push_back("First you train: the object and your finger are shown. Nothing of it is kept.");
     if (goes_on || outcome_.trials > 0) page.lines.push_back("Rest as long as you like before you go on.");
     outcome_.interrupted = !host.show(page);
@@ -131,9 +130,9 @@ class StudyRunner {
 
   void train(const StudyRun& run) {
     NoSink nothing;
-    std::int64_t index = 0;
-    for (const ListedStimulus& stimulus : experiment_.training(run)) {
-      StudyTrial trial = trialOf(run, index++, stimulus, kTraining);
+    const std::vector<ListedStimulus> stimuli = experiment_.training(run);
+    for (std::int64_t index = 0; index < experiment_.plan().training; ++index) {
+      StudyTrial trial = trialOf(run, index, stimuli[static_cast<std::size_t>(index) % stimuli.size()], kTraining);
       trial.training = true;
       const auto response = experiment_.present(trial, nothing, interrupted_, outcome_.servo);
       outcome_.interrupted = !response || !experiment_.host().show({"Training", {experiment_.feedback(*response)}});

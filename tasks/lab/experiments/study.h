@@ -30,6 +30,13 @@ struct StudyRun {
   std::vector<ListedStimulus> list;  // where there is no staircase
 };
 
+template <class Condition>
+std::vector<NamedCondition> namedOf(const std::vector<Condition>& conditions) {
+  std::vector<NamedCondition> named;
+  for (const Condition& c : conditions) named.push_back({c.name, c.label});
+  return named;
+}
+
 // One trial to be presented.
 struct StudyTrial {
   std::int64_t trial = 0, index = 0;  // in the session, in the run
@@ -49,9 +56,11 @@ class Experiment {
   // rest is filled in by the caller. Absent if `interrupted` turned true. Adds what the servo says to `served`.
   virtual std::optional<ResponseRecord> present(const StudyTrial& trial, StudySink& sink, const std::atomic<bool>& interrupted,
                                                 ServoReport& served) = 0;
-  // What a person reads before the run, and its trials of training.
+  // What a person reads before the run, and stimuli to train with, in turn; at least one.
   virtual StudyPage introduction(const StudyRun& run) const = 0;
   virtual std::vector<ListedStimulus> training(const StudyRun& run) const = 0;
+  virtual const SurveyPlan& plan() const = 0;
+  virtual std::vector<NamedCondition> conditions() const = 0;
   // What was right, said after a trial of training: "The second was the smooth one; you said 1."
   virtual std::string feedback(const ResponseRecord& response) const = 0;
 

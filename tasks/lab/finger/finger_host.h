@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "pincer/tasks/lab/finger/finger_trial.h"
+#include "pincer/tasks/lab/finger/survey_form.h"
 
 namespace pincer::tasks {
 
@@ -28,6 +29,7 @@ struct FingerHost {
   std::function<ServoReport(FingerTrial& trial, const TrialPlace& place)> serve;
   // False: the person has left.
   std::function<bool(const StudyPage& page)> show;
+  AskPerson ask;  // a question of the survey
   // Asks the operator whether forces may come on: before the first trial, and before the one after a fault. False ends the session.
   std::function<bool(const std::string& why)> arm;
   // Only this one of the study's participants, from 0; absent: all of them.

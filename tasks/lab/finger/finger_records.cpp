@@ -8,7 +8,7 @@ namespace {
 
 std::array<double, 3> tripleOf(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 std::array<double, 2> pairOf(const Vec2& v) { return {v.x(), v.y()}; }
-Vec3 vectorOf(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
+Vec3 vec3Of(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
 
 void keepValue(const Vec3& value, std::array<double, 3>& kept) { kept = tripleOf(value); }
 void keepValue(const Vec2& value, std::array<double, 2>& kept) { kept = pairOf(value); }
@@ -51,8 +51,8 @@ FingerInputs samplesOf(const FingerInputRecord& record) {
   inputs.arm.time = record.arm_time;
   inputs.arm.valid = has(Record::kValid);
   inputs.arm.gave_up = has(Record::kGaveUp);
-  inputs.arm.p_DF = vectorOf(record.p_DF);
-  if (has(Record::kVelocity)) inputs.arm.v_DF = vectorOf(record.v_DF);
+  inputs.arm.p_DF = vec3Of(record.p_DF);
+  if (has(Record::kVelocity)) inputs.arm.v_DF = vec3Of(record.v_DF);
   if (has(Record::kOrientation)) inputs.arm.q_DF = Quat(record.q_DF[0], record.q_DF[1], record.q_DF[2], record.q_DF[3]);
   if (has(Record::kSwitches)) inputs.arm.switches = record.switches;
   if (has(Record::kJacobian)) inputs.arm.J = Eigen::Map<const Mat3>(record.J.data());
@@ -78,7 +78,7 @@ devices::ArmCapabilities capabilitiesOf(const HandsRecord::Finger& finger) {
   devices::ArmCapabilities arm;
   arm.peak_force = finger.peak_force;
   arm.continuous_force = finger.continuous_force;
-  if (!std::isnan(finger.peak_torque[0])) arm.peak_torque = vectorOf(finger.peak_torque);
+  if (!std::isnan(finger.peak_torque[0])) arm.peak_torque = vec3Of(finger.peak_torque);
   if (!std::isnan(finger.tip_mass)) arm.tip_mass = finger.tip_mass;
   if (!std::isnan(finger.tip_damping)) arm.tip_damping = finger.tip_damping;
   return arm;

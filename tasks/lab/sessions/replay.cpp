@@ -131,8 +131,8 @@ std::vector<StoredTrial> wantedTrials(const SessionReader& session, std::optiona
     stored.hands = hands;
   }
   if (wanted.empty()) {
-    throw InputError(
-        fmt::format("{}: holds no finished trial{}. `pincer report` lists them.", session.path(), trial ? fmt::format(" {}", *trial) : ""));
+    throw InputError(fmt::format("{}: holds no finished trial{}. `pincer report` lists them.", session.path(),
+                                 trial ? fmt::format(" {}", *trial + 1) : ""));
   }
   return wanted;
 }
@@ -177,8 +177,8 @@ class Replayer {
     const bool whole = stored.hands && readInputs(session_, stored);
     if (!whole || stored.inputs.empty()) {
       result.notes.push_back(
-          fmt::format("Trial {}: {} inputs of its first ticks are kept, then some were lost; it is compared up to there.", stored.row.trial,
-                      stored.inputs.size()));
+          fmt::format("Trial {}: {} inputs of its first ticks are kept, then some were lost; it is compared up to there.",
+                      stored.row.trial + 1, stored.inputs.size()));
       stored.finished = false;
       if (stored.inputs.empty()) return true;
     }

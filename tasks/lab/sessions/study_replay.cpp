@@ -83,6 +83,8 @@ class ReplayedStudy final : public Experiment {
   StudyPage introduction(const StudyRun&) const override { return {}; }
   std::vector<ListedStimulus> training(const StudyRun&) const override { return {}; }
   std::string feedback(const ResponseRecord&) const override { return {}; }
+  const SurveyPlan& plan() const override { return study_->plan(); }
+  std::vector<NamedCondition> conditions() const override { return study_->conditions(); }
   std::size_t answers() const { return responses_.size(); }
 
   std::optional<ResponseRecord> present(const StudyTrial& trial, StudySink&, const std::atomic<bool>& interrupted,
@@ -98,7 +100,7 @@ class ReplayedStudy final : public Experiment {
     comparison.end();
     if (!stored.has_all_inputs) {
       result_.notes.push_back(
-          fmt::format("Trial {}: {} inputs of its first ticks are kept, then some were lost; it is compared up to there.", trial.trial,
+          fmt::format("Trial {}: {} inputs of its first ticks are kept, then some were lost; it is compared up to there.", trial.trial + 1,
                       stored.inputs.size()));
       return stored.response;
     }
@@ -177,7 +179,7 @@ void replayStudy(const StudyReplay& replay, ReplayResult& result) {
   const bool known = !replay.trial || *replay.trial < static_cast<std::int64_t>(study.answers() + (has_cut_short ? 1 : 0));
   if ((study.answers() == 0 && !has_cut_short) || !known) {
     throw InputError(fmt::format("{}: holds no finished trial{}. `pincer report` lists them.", replay.session.path(),
-                                 replay.trial ? fmt::format(" {}", *replay.trial) : ""));
+                                 replay.trial ? fmt::format(" {}", *replay.trial + 1) : ""));
   }
   StudyRows rows(study, replay);
   runStudy(study, replay.session.info().seed, {}, rows, replay.interrupted);

@@ -25,6 +25,16 @@ class StudyFileSink final : public StudySink {
   const bool inputs_;
 };
 
+// What the study asks people at this moment. False: the person has left.
+bool askSurvey(const Experiment& experiment, const StudySession& session, const std::string& moment, SessionWriter& writer) {
+  if (!session.host.ask) return true;
+  const SurveyPlan& plan = experiment.plan();
+  const SurveyForm form{questionsOf(moment == "before" ? plan.demographics : plan.survey, {session.info.task}, experiment.conditions()),
+                        moment, session.host.person.value_or(0)};
+  return fillForm(form, SessionReader(session.path).survey(), session.host.ask,
+                  [&](const SurveyRecord& answer) { writer.addSurvey(answer); });
+}
+
 }  // namespace
 
 SessionInfo studySessionInfo(const std::string& task, std::uint64_t seed, const std::string& protocol_json,
@@ -56,7 +66,12 @@ StudyOutcome runStudySession(Experiment& experiment, const StudySession& session
   experiment.serveWith(session.host);
   StudyFileSink sink(writer, session.host.isPersons());
   try {
-    StudyOutcome outcome = runStudy(experiment, session.info.seed, earlier, sink, interrupted, progress);
+    const auto ask = [&](const char* moment) { return askSurvey(experiment, session, moment, writer); };
+    StudyOutcome outcome;
+    outcome.interrupted = !ask("before");
+    if (!outcome.interrupted) outcome = runStudy(experiment, session.info.seed, earlier, sink, interrupted, progress);
+    if (!outcome.interrupted) outcome.interrupted = !ask("after");
+    if (!outcome.interrupted && session.host.show) session.host.show({"That was all", {"Thank you."}});
     outcome.interrupted ? writer.abort("interrupted by the user") : writer.close();
     return outcome;
   } catch (const std::bad_alloc&) {
