@@ -164,13 +164,15 @@ std::vector<StudyRun> ArcExperiment::runs() const {
   std::vector<StudyRun> runs;
   std::vector<const ArcCondition*> ordered, pilots;
   for (const ArcCondition& c : study_.conditions) (c.pilot ? pilots : ordered).push_back(&c);
-  const auto rows = reducedLatinSquare(std::max(1, static_cast<int>(ordered.size())));
   for (int p = 0; p < study_.participants; ++p) {
     std::int64_t place = 0;
-    const auto add = [&](const ArcCondition& c) { runs.push_back({p, place++, c.name, c.staircase, {}}); };
-    if (!ordered.empty())
-      for (const int c : rows[static_cast<std::size_t>(p) % rows.size()]) add(*ordered[static_cast<std::size_t>(c)]);
-    for (const ArcCondition* c : pilots) add(*c);
+    for (int block = 0; block < study_.session.blocks; ++block) {
+      for (const int c : conditionOrder(study_.session.order, ordered.size(), p, block, study_.seed)) {
+        const ArcCondition& condition = *ordered[static_cast<std::size_t>(c)];
+        runs.push_back({p, place++, condition.name, condition.staircase, {}});
+      }
+      for (const ArcCondition* c : pilots) runs.push_back({p, place++, c->name, c->staircase, {}});
+    }
   }
   return runs;
 }

@@ -49,6 +49,7 @@ void validate(const LocalisationStudy& s) {
   visitParameters(s, check);
   visitParameters(s.session, RangeCheck("repeated-localisation: session", "session"));
   validate(s.session, "repeated-localisation");
+  requireOneBlock(s.session, "repeated-localisation", false);
   check("spacing", s.spacing, Parameter{"", {0, 2 * kTactorReach / (s.places - 1), true, "All places lie within 0.016 m."}});
   check("radius_min", s.radius_min, Parameter{"", {0.02, s.radius_max, false, kAsPublished}});
 }

@@ -7,6 +7,7 @@
 #include "pincer/tasks/lab/experiments/cylinder_trial.h"
 #include "pincer/tasks/lab/experiments/pickup_trial.h"
 #include "pincer/tasks/lab/experiments/simulated_hands.h"
+#include "pincer/tasks/lab/experiments/study.h"
 #include "pincer/tasks/lab/experiments/study_parameters.h"
 
 namespace pincer::tasks {
@@ -30,15 +31,14 @@ class TrialList {
   std::vector<ManipulationTrial> take() {
     for (std::int64_t person = 0; person < study_.participants; ++person) {
       index_ = 0;
-      for (std::size_t half = 0; half < study_.conditions.size(); ++half) addHalf(person, half);
+      for (const int place : conditionOrder(study_.session.order, study_.conditions.size(), person, 0, study_.seed))
+        addPart(person, study_.conditions[static_cast<std::size_t>(place)]);
     }
     return std::move(trials_);
   }
 
  private:
-  void addHalf(std::int64_t person, std::size_t half) {
-    const std::size_t place = person % 2 == 1 ? study_.conditions.size() - 1 - half : half;
-    const PickupCondition condition = study_.conditions[place];
+  void addPart(std::int64_t person, PickupCondition condition) {
     if (has(study_, HandTask::kPickup)) {
       addPickups(trained_, person, condition, study_.training.pickups, true);
       addPickups(counted_, person, condition, std::numeric_limits<int>::max(), false);
@@ -91,6 +91,7 @@ void validate(const ManipulationStudy& study) {
   visitParameters(study.people, RangeCheck("study: people", "people"));
   visitParameters(study.session, RangeCheck("study: session", "session"));
   validate(study.session, "study");
+  requireOneBlock(study.session, "study", true);
   if (study.tasks.empty()) throw ParameterError("tasks", "study: tasks is empty. Give sphere-pickup, cylinder-alignment, or both.");
   validate(pickupOf(study, false));
   CylinderAlignmentOptions alignment = study.alignment;

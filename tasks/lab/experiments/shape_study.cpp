@@ -45,6 +45,7 @@ void validate(const ShapeStudy& s) {
                                                     s.sizes.sides, kAsPublished));
   visitParameters(s.session, RangeCheck("shape-identification: session", "session"));
   validate(s.session, "shape-identification");
+  requireOneBlock(s.session, "shape-identification", false);
   if (s.conditions.empty()) throw ParameterError("conditions", "shape-identification: conditions is empty. Give at least one.");
 }
 

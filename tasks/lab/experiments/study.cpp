@@ -11,7 +11,7 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr std::uint64_t kPeople = 1, kTrials = 2, kTraining = 3;  // parts of the seed
+constexpr std::uint64_t kPeople = 1, kTrials = 2, kTraining = 3, kOrders = 4;  // parts of the seed
 
 // What a run shows next.
 class RunProgress {
@@ -152,6 +152,17 @@ class StudyRunner {
 };
 
 }  // namespace
+
+Order conditionOrder(ConditionOrder order, std::size_t count, std::int64_t participant, int block, std::uint64_t seed) {
+  if (count == 0) return {};
+  const auto rows = reducedLatinSquare(static_cast<int>(count));
+  if (order == ConditionOrder::kBalanced) return rows[static_cast<std::size_t>(participant + block) % rows.size()];
+  Order listed = rows[0];
+  if (order == ConditionOrder::kListed) return listed;
+  Random random(seedFor(seedFor(seedFor(seed, kOrders), static_cast<std::uint64_t>(participant)), static_cast<std::uint64_t>(block)));
+  shuffle(listed, random);
+  return listed;
+}
 
 std::unique_ptr<WornFinger> Experiment::wornBy(const FingerPlace& place, OneFingerObserver& observer) const {
   if (host_.finger) return host_.finger(place);

@@ -11,7 +11,9 @@
 #include <vector>
 
 #include "pincer/tasks/lab/finger/finger_host.h"
+#include "pincer/tasks/lab/study/counterbalance.h"
 #include "pincer/tasks/lab/study/staircase.h"
+#include "pincer/tasks/lab/study/survey.h"
 #include "pincer/tasks/run/records.h"
 #include "pincer/tasks/run/servo/servo.h"
 
@@ -29,6 +31,9 @@ struct StudyRun {
   std::optional<StaircaseRule> staircase;
   std::vector<ListedStimulus> list;  // where there is no staircase
 };
+
+// In which order the participant does `count` conditions, in the block.
+Order conditionOrder(ConditionOrder order, std::size_t count, std::int64_t participant, int block, std::uint64_t seed);
 
 template <class Condition>
 std::vector<NamedCondition> namedOf(const std::vector<Condition>& conditions) {

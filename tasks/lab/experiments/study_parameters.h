@@ -32,6 +32,7 @@ template <class T, class Of>
 concept FieldsOf = std::same_as<std::remove_const_t<T>, Of>;
 
 inline constexpr std::array<std::string_view, 4> kAnswerKindNames = {"scale", "number", "choice", "text"};
+inline constexpr std::array<std::string_view, 3> kConditionOrderNames = {"balanced", "listed", "shuffled"};
 inline constexpr std::array<std::string_view, 3> kAskedForNames = {"session", "condition", "task and condition"};
 
 template <FieldsOf<SurveyItem> Item, class Visit>
@@ -51,6 +52,9 @@ void visitParameters(Item& i, Visit&& visit) {
 
 template <FieldsOf<SurveyPlan> Plan, class Visit>
 void visitParameters(Plan& p, Visit&& visit) {
+  visit("order", p.order,
+        Parameter{"of the conditions: balanced over participants, as listed, or shuffled by the seed", {}, kConditionOrderNames});
+  visit("blocks", p.blocks, Parameter{"how often a participant goes through all conditions", {1, 100, false, "1 is usual."}});
   visit("instructions", p.instructions, Parameter{"lines read before each condition, in place of the program's own"});
   visit("training", p.training, Parameter{"trials before each condition of an experiment with one finger", {0, 100, false, "1 is usual."}});
   visit("demographics", p.demographics, Parameter{"asked before the first trial"});

@@ -28,7 +28,13 @@ struct SurveyItem {
   bool operator==(const SurveyItem&) const = default;
 };
 
+// In which order a participant does the conditions: balanced over the participants (a Latin square; of two, every other participant begins with the
+// second), as the file lists them, or shuffled by the seed.
+enum class ConditionOrder : std::uint8_t { kBalanced, kListed, kShuffled };
+
 struct SurveyPlan {
+  ConditionOrder order = ConditionOrder::kBalanced;
+  int blocks = 1;                         // how often a participant goes through all conditions
   std::vector<std::string> instructions;  // read before each condition, in place of the program's own; empty: those
   int training = 1;                       // trials before each condition of an experiment with one finger
   std::vector<SurveyItem> demographics;   // asked before the first trial
@@ -43,6 +49,9 @@ SurveyPlan oneFingerSurvey();
 
 // Throws ParameterError: two items of one name, a choice of fewer than two, low not below high.
 void validate(const SurveyPlan& plan, std::string_view of);
+
+// Of a study whose trials the file doesn't repeat by blocks, and, without conditions to order, neither orders. Throws ParameterError.
+void requireOneBlock(const SurveyPlan& plan, std::string_view of, bool orders_conditions);
 
 // An item that is to be asked, of one condition or task if it is asked for each.
 struct SurveyQuestion {
