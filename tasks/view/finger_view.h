@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 
+#include "pincer/tasks/lab/finger/answer_box.h"
 #include "pincer/tasks/lab/finger/finger_host.h"
 #include "pincer/tasks/view/view_run.h"
 

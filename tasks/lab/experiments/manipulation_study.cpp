@@ -132,7 +132,7 @@ std::unique_ptr<Participant> makeParticipant(const ManipulationStudy& study, con
 
 namespace {
 
-std::string partName(const ManipulationStudy& study, const ManipulationTrial& spec) {
+std::string partName(const ManipulationTrial& spec) {
   const bool training = spec.task == HandTask::kPickup ? spec.pickup.training : spec.alignment.training;
   return fmt::format("{}, {}{}", spec.task == HandTask::kPickup ? "sphere pickup" : "cylinder alignment",
                      spec.condition() == PickupCondition::kForce ? "force only" : "display and force", training ? ", training" : "");
@@ -140,7 +140,7 @@ std::string partName(const ManipulationStudy& study, const ManipulationTrial& sp
 
 // What a person reads before a part.
 StudyPage partPage(const ManipulationStudy& study, const ManipulationTrial& spec, bool rests) {
-  StudyPage page{partName(study, spec), study.session.instructions};
+  StudyPage page{partName(spec), study.session.instructions};
   if (page.lines.empty()) {
     page.lines =
         spec.task == HandTask::kPickup
@@ -188,7 +188,7 @@ std::size_t runManipulationStudy(const ManipulationStudy& study, const ServoOpti
   std::string begun;  // the part that goes on: one task in one condition, training or not
   for (const ManipulationTrial& spec : trials) {
     if (hooks.finished.contains(spec.trial())) continue;
-    const std::string part = fmt::format("{}, {}", spec.participant(), partName(study, spec));
+    const std::string part = fmt::format("{}, {}", spec.participant(), partName(spec));
     if (part != begun && hooks.host.show && !hooks.host.show(partPage(study, spec, !begun.empty()))) break;
     begun = part;
     const std::unique_ptr<HandTrial> trial = makeTrial(study, object, spec, sink);
