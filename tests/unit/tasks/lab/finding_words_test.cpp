@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "pincer/tests/support/error_of.h"
+#include "pincer/tests/support/run_app.h"
 
 namespace pincer::tasks {
 namespace {

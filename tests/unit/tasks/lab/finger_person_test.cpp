@@ -128,7 +128,7 @@ ArcStudy briefBacklash() {
 }
 
 TEST(FingerPerson, AnswersByKeysAndComesAgainToTheBit) {
-  const TemporaryDirectory dir("finger_person");
+  const TemporaryDirectory dir;
   ArcExperiment experiment(briefBacklash(), {}, 20);
   MousePerson person;
   const StudySession session = sessionOf("backlash-discrimination", briefBacklash(), dir / "session.db", person);
@@ -157,7 +157,7 @@ TEST(FingerPerson, AnswersByKeysAndComesAgainToTheBit) {
 TEST(FingerPerson, SeesNothingButThePadInACountedTrial) {
   ArcExperiment experiment(briefBacklash(), {}, 20);
   MousePerson person;
-  const TemporaryDirectory dir("finger_hidden");
+  const TemporaryDirectory dir;
   const std::atomic<bool> no{false};
   runStudySession(experiment, sessionOf("backlash-discrimination", briefBacklash(), dir / "session.db", person), no, {});
   EXPECT_TRUE(person.last_told.hidden);
@@ -165,7 +165,7 @@ TEST(FingerPerson, SeesNothingButThePadInACountedTrial) {
 }
 
 TEST(FingerPerson, APlaceIsKeptAndFoundAgain) {
-  const TemporaryDirectory dir("finger_place");
+  const TemporaryDirectory dir;
   LocalisationStudy study;
   study.participants = 1;
   study.places = 2;
@@ -182,7 +182,7 @@ TEST(FingerPerson, APlaceIsKeptAndFoundAgain) {
 }
 
 TEST(FingerPerson, NamesASolidByOneKey) {
-  const TemporaryDirectory dir("finger_solid");
+  const TemporaryDirectory dir;
   ShapeStudy study;
   study.participants = study.runs = 1;
   study.conditions = {study.conditions[2]};
@@ -199,7 +199,7 @@ TEST(FingerPerson, NamesASolidByOneKey) {
 }
 
 TEST(FingerPerson, WhoLeavesInATrialGoesOnLaterAndTheTrialThatWasLeftComesAgainToo) {
-  const TemporaryDirectory dir("finger_left");
+  const TemporaryDirectory dir;
   MousePerson person;
   StudySession session = sessionOf("backlash-discrimination", briefBacklash(), dir / "session.db", person);
   const std::atomic<bool> no{false};
@@ -221,7 +221,7 @@ TEST(FingerPerson, WhoLeavesInATrialGoesOnLaterAndTheTrialThatWasLeftComesAgainT
 }
 
 TEST(FingerPerson, AnAnswerThatWasChangedAfterwardsIsFound) {
-  const TemporaryDirectory dir("finger_changed");
+  const TemporaryDirectory dir;
   MousePerson person;
   const StudySession session = sessionOf("backlash-discrimination", briefBacklash(), dir / "session.db", person);
   const std::atomic<bool> no{false};
@@ -236,7 +236,7 @@ TEST(FingerPerson, AnAnswerThatWasChangedAfterwardsIsFound) {
 
 // Simulated participants, whose devices and decisions follow from the seed.
 TEST(StudyReplay, SimulatedAnswersComeAgainToTheBit) {
-  const TemporaryDirectory dir("study_replay");
+  const TemporaryDirectory dir;
   ArcExperiment experiment(briefBacklash(), {}, 10);
   StudySession session;
   session.path = dir / "session.db";

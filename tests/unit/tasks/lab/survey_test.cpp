@@ -9,6 +9,7 @@
 #include "pincer/tasks/run/session/csv_export.h"
 #include "pincer/tasks/run/session_store.h"
 #include "pincer/tests/support/error_of.h"
+#include "pincer/tests/support/run_app.h"
 #include "pincer/tests/support/temporary_directory.h"
 
 namespace pincer::tasks {
@@ -37,7 +38,8 @@ TEST(Survey, NobodyPrefersOneConditionOfOne) {
 }
 
 TEST(Survey, TakesWhatFitsAndSaysWhatWould) {
-  SurveyItem scale{"sure", "I was sure"}, choice{"hand", "Which hand?", AnswerKind::kChoice};
+  SurveyItem scale, choice;
+  choice.kind = AnswerKind::kChoice;
   choice.choices = {"right", "left"};
   EXPECT_EQ(answerOf(scale, " 7 ").value, 7);
   for (const char* bad : {"", "0", "8", "3.5", "7x", "nan", "inf", "very"})
@@ -75,7 +77,7 @@ TEST(Survey, GoesOnWhereItWasLeft) {
 }
 
 TEST(Survey, IsKeptInTheSessionAndExported) {
-  const tests::TemporaryDirectory dir("survey");
+  const tests::TemporaryDirectory dir;
   SessionInfo info;
   info.task = "manipulation";
   SessionWriter writer = SessionWriter::create(dir / "s.db", info);

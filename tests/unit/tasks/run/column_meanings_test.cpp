@@ -7,7 +7,7 @@
 
 #include "pincer/tasks/run/session/bids_export.h"
 #include "pincer/tasks/run/session/csv_export.h"
-#include "pincer/tests/support/error_of.h"
+#include "pincer/tests/support/run_app.h"
 #include "pincer/tests/support/temporary_directory.h"
 
 namespace pincer::tasks {
@@ -36,7 +36,7 @@ TEST(ColumnMeanings, SayWhichFingerAxisAndUnit) {
 
 // People count from 1: in rows as in the names of files.
 TEST(ColumnMeanings, ExportsCountFromOne) {
-  const tests::TemporaryDirectory dir("count");
+  const tests::TemporaryDirectory dir;
   SessionInfo info;
   info.task = "sphere-pickup";
   SessionWriter writer = SessionWriter::create(dir / "s.db", info);

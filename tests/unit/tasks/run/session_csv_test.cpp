@@ -197,7 +197,7 @@ TEST(CsvExport, WritesEachTableWithUnitsInTheNames) {
   ASSERT_EQ(trials.size(), 2u);
   const auto duration = std::find(trials[0].begin(), trials[0].end(), "duration_s") - trials[0].begin();
   EXPECT_EQ(trials[1].at(static_cast<std::size_t>(duration)), "12.5");
-  EXPECT_EQ(parse(readFile(dir / "new/csv/event.csv"))[1], (std::vector<std::string>{"0", "0.25", "slip", "thumb, \"fast\""}));
+  EXPECT_EQ(parse(readFile(dir / "new/csv/event.csv"))[1], (std::vector<std::string>{"1", "0.25", "slip", "thumb, \"fast\""}));
 }
 
 TEST(AtomicFile, LeavesTheOldFileUntilTheNewOneIsWhole) {
