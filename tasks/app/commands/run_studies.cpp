@@ -137,7 +137,6 @@ std::unique_ptr<FingerCast> castOf(const std::string& task, const StudyArguments
   if (arguments.view.view) servo.clock = ServoClock::kPaced;
   DeviceRunOptions devices = arguments.devices;
   devices.which.fingers = 1;
-  devices.which.needs_displays = false;
   cast->devices = openDevices(devices, servo);
   ViewOptions view = arguments.view;
   view.title = task;

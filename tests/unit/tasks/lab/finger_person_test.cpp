@@ -80,7 +80,7 @@ struct MousePerson {
     if (ticks >= 300 && ticks < 800) finger->hand().move({0, 4e-5, 0});
     if (ticks >= 900 && ticks < 1400) finger->hand().move({0, -4e-5, 0});
     if (ticks == 1450) keys.press(devices::kKeyEnter);  // too early: nothing comes of it
-    if (ticks >= 1500 && ticks < 1800) finger->hand().move({0, 0, 1.2e-4});
+    if (ticks >= 1500 && ticks < 1700) finger->hand().move({0, 0, 7e-5});
     if (ticks == 2200) keys.press(devices::kKeyEnter);
   }
   // Down, along the finger until the tactor is where it should be, Enter; then up.

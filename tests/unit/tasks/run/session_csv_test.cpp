@@ -178,7 +178,7 @@ TEST(CsvExport, WritesEachTableWithUnitsInTheNames) {
   writer.finishTrial(trial);
   writer.close();
   const auto paths = exportCsv(SessionReader(dir / "a.db"), dir / "new/csv", {.stride = 3});
-  ASSERT_EQ(paths.size(), 6u);
+  ASSERT_EQ(paths.size(), 7u);
 
   const auto session = parse(readFile(dir / "new/csv/session.csv"));
   ASSERT_EQ(session.size(), 2u);
