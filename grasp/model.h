@@ -55,12 +55,31 @@ struct FingerModel {
   double reach = 30e-3;                // nearer than this to a body, its nearest point is reported (for pre-positioning) [m], >= 0
 };
 
+// A surface that fingers feel in place of a body's own shape, which other bodies meet and which has the mass: a mesh shaded smooth over a solid
+// with a closed form.
+struct FeltSurface {
+  int collider = 0;  // of the world's, that it stands for
+  contact::Shape shape;
+};
+
 struct GraspModel {
   engine::WorldModel world;  // its first points are the fingers' proxies, in order
   std::vector<FingerModel> fingers;
+  std::vector<FeltSurface> felt = {};  // few
 };
 
 // Checks the fingers, adds their proxies to `builder` (which must hold no point yet) and builds the world. Throws InputError.
 GraspModel buildGrasp(engine::WorldBuilder builder, std::vector<FingerModel> fingers);
+
+// From now on fingers feel `shape` where the body has its only one. Throws InputError for a body of several, and for half-spaces and dishes.
+void feelAs(GraspModel& model, int body, contact::Shape shape);
+
+// The surface that fingers feel of a shape of the world.
+inline const contact::Shape& feltShape(const GraspModel& model, int collider) {
+  for (const FeltSurface& felt : model.felt) {
+    if (felt.collider == collider) return felt.shape;
+  }
+  return model.world.colliders[static_cast<std::size_t>(collider)].shape;
+}
 
 }  // namespace pincer::grasp

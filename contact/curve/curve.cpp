@@ -31,15 +31,15 @@ Curve::Curve(const Polyline& polyline, SurfaceVariant variant) : variant_(varian
   if (variant == SurfaceVariant::smooth_published) {
     throw InputError("curve: the variant smooth_published exists for meshes only. Allowed: smooth, facet, force.");
   }
-  requireSound(polyline, variant == SurfaceVariant::smooth ? kSharpestBend : kSharpestCorner);
-  addSegments(polyline);
-  if (variant == SurfaceVariant::smooth) addBends();
+  const CorneredPath path = requireSound(polyline, variant == SurfaceVariant::smooth ? kSharpestBend : kSharpestCorner, kSharpestCorner);
+  addSegments(path);
+  if (variant == SurfaceVariant::smooth) addBends(path);
   addGates();
 }
 
-void Curve::addSegments(const Polyline& polyline) {
-  const std::vector<Vec2>& p = polyline.vertices;
-  const std::size_t n = polyline.is_closed ? p.size() : p.size() - 1;
+void Curve::addSegments(const CorneredPath& path) {
+  const std::vector<Vec2>& p = path.vertices;
+  const std::size_t n = path.is_closed ? p.size() : p.size() - 1;
   for (std::size_t i = 0; i < n; ++i) {
     const Vec2 d = p[(i + 1) % p.size()] - p[i];
     const double length = d.norm();
@@ -52,18 +52,23 @@ void Curve::addSegments(const Polyline& polyline) {
   }
 }
 
-void Curve::addBends() {
+void Curve::addBends(const CorneredPath& path) {
   const std::size_t n = segments_.size();
   for (std::size_t i = is_closed_ ? 0 : 1; i < n; ++i) {
     const Segment &before = segments_[(i + n - 1) % n], &after = segments_[i];
     const double a = 0.5 * before.length, b = 0.5 * after.length;
+    if (path.is_sharp[i]) {
+      bends_.push_back(
+          {before.start + a * before.e, after.start, after.start + b * after.e, before.e, before.n, 0, 0, a, true, after.e, after.n});
+      continue;
+    }
     const double turn_sine = cross(before.e, after.e), turn_cosine = before.e.dot(after.e);
     const double beta = math::atan2(turn_sine, turn_cosine);
     // O lies on both bisectors, at rho from M0: rho sin(beta) = a cos(beta) + b
     const double kappa = std::abs(beta) < kLeastBend ? 0 : turn_sine / (a * turn_cosine + b);
     PINCER_ASSERT(a * turn_cosine + b > 0);  // paths turn by less than a right angle
-    bends_.push_back(
-        {before.start + a * before.e, after.start, after.start + b * after.e, before.e, before.n, beta, kappa, a + b * turn_cosine});
+    bends_.push_back({before.start + a * before.e, after.start, after.start + b * after.e, before.e, before.n, beta, kappa,
+                      a + b * turn_cosine, false, after.e, after.n});
   }
 }
 
@@ -145,6 +150,19 @@ Curve::Tangent Curve::onBend(const Bend& bend, const Vec2& C, double& t) const {
   return line;
 }
 
+// One of the two segments, where the finger's centre is over it, in a hollow the nearer; between them the corner itself.
+Curve::Tangent Curve::onCorner(const Bend& bend, const Vec2& C) {
+  const Vec2 from = C - bend.P;
+  const double h_before = from.dot(bend.n), h_after = from.dot(bend.n_after);
+  const Tangent before{C - h_before * bend.n, bend.n, h_before}, after{C - h_after * bend.n_after, bend.n_after, h_after};
+  const bool over_before = from.dot(bend.e) <= 0, over_after = from.dot(bend.e_after) >= 0;
+  if (over_before && over_after) return h_before < h_after ? before : after;
+  if (over_before) return before;
+  if (over_after) return after;
+  const double distance = from.norm();  // > 0: neither product is 0
+  return {bend.P, from / distance, distance};
+}
+
 // Contact with the end point itself: the finger rolls over it, as over an open border of a mesh.
 Curve::Tangent Curve::beyondEnd(const Tangent& line, const Vec2& C, std::int32_t cell) const {
   const Segment& segment = cell == 0 ? segments_.front() : segments_.back();
@@ -163,7 +181,8 @@ CurveContact Curve::follow(const Vec2& C, double r, CurveTracker& tracker) const
   const auto cell = static_cast<std::size_t>(tracker.cell);
   Tangent line;
   if (variant_ == SurfaceVariant::smooth && !isEnd(tracker.cell)) {
-    line = onBend(bends_[is_closed_ ? cell : cell - 1], C, tracker.t);
+    const Bend& bend = bends_[is_closed_ ? cell : cell - 1];
+    line = bend.is_corner ? onCorner(bend, C) : onBend(bend, C, tracker.t);
   } else {
     line = onSegment(segments_[std::min(cell, segments_.size() - 1)], C);
     if (isEnd(tracker.cell)) line = beyondEnd(line, C, tracker.cell);

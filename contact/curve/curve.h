@@ -11,6 +11,7 @@
 //   alpha    angle of F about the local centre O, from M0 on [rad];  beta  that of M1: the turn of the path at P
 //   O        where the perpendicular bisectors of the two segments meet [m]; at infinity where the path is straight, then t is linear
 //
+// A vertex that is named twice is a sharp corner: straight on both sides up to P, between them contact is with P itself.
 // Neighbouring arcs share the tangent line at M, so contact point and normal are continuous. On an arc of radius R with `beta` between
 // segments, contact runs at the radius R cos(beta/2) (-0.405 % at 0.18 rad), and the normal turns per arc length by
 // tan(b)/b * {cos^2(b) .. 1} / cos(b) times 1/R, b = beta/2: -0.14 to +0.68 % at 0.18 rad.
@@ -49,8 +50,8 @@ struct CurveContact {
 
 class Curve {
  public:
-  // Throws InputError for a polyline that requireSound() refuses: turns of 90 degrees and more for `smooth`, spikes (179 degrees) for the
-  // others; and for `smooth_published`, which exists for meshes only.
+  // Throws InputError for a polyline that requireSound() refuses: turns of 90 degrees and more for `smooth` but at sharp corners (vertices named
+  // twice in a row), spikes (179 degrees) at those and for the others; and for `smooth_published`, which exists for meshes only.
   Curve(const Polyline& polyline, SurfaceVariant variant);
 
   // Contact of a circle of radius `r` > 0 [m] about the finite `p_BC`. While it touches (phi <= 0), contact is followed from `tracker` on;
@@ -69,20 +70,23 @@ class Curve {
     double beta;     // [rad]
     double kappa;    // of the circle about O through M0 [1/m], 0 where straight
     double reach;    // from M0 to M1 along e [m]
+    bool is_corner;  // sharp: no arc round P
+    Vec2 e_after, n_after;
   };
   struct Gate {
     Vec2 p, d;  // contact is ahead where (C - p) . d > 0
   };
   struct Tangent;  // the line that the finger meets
 
-  void addSegments(const Polyline& polyline);
-  void addBends();
+  void addSegments(const CorneredPath& path);
+  void addBends(const CorneredPath& path);
   void addGates();
   bool isEnd(std::int32_t cell) const;
   std::int32_t nearestCell(const Vec2& C) const;
   std::int32_t walk(const Vec2& C, std::int32_t cell) const;
   Tangent onSegment(const Segment& segment, const Vec2& C) const;
   Tangent onBend(const Bend& bend, const Vec2& C, double& t) const;
+  static Tangent onCorner(const Bend& bend, const Vec2& C);
   Tangent beyondEnd(const Tangent& line, const Vec2& C, std::int32_t cell) const;
   CurveContact follow(const Vec2& C, double r, CurveTracker& tracker) const;
 

@@ -10,28 +10,46 @@ namespace {
 
 double turnBetween(const Vec2& a, const Vec2& b) { return math::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b)); }
 
-void requireVertex(const Polyline& polyline, std::size_t i, double largest_turn) {
-  const std::vector<Vec2>& p = polyline.vertices;
+// `names`: of the vertices, as the caller counts them.
+void requireVertex(const CorneredPath& path, const std::vector<std::size_t>& names, std::size_t i, double largest_turn) {
+  const std::vector<Vec2>& p = path.vertices;
   const std::size_t n = p.size(), next = (i + 1) % n, last = (i + n - 1) % n;
-  if (!p[i].allFinite()) throw InputError(fmt::format("polyline: vertex {} isn't finite.", i));
-  if (!polyline.is_closed && next == 0) return;
-  if (p[next] == p[i]) throw InputError(fmt::format("polyline: vertices {} and {} are at the same place. Name it once.", i, next));
-  if (!polyline.is_closed && i == 0) return;
+  if (!p[i].allFinite()) throw InputError(fmt::format("polyline: vertex {} isn't finite.", names[i]));
+  if (!path.is_closed && path.is_sharp[i] && (i == 0 || next == 0))
+    throw InputError(fmt::format("polyline: vertex {} is an end of an open path, which has no corner there. Name it once.", names[i]));
+  if (!path.is_closed && next == 0) return;
+  if (p[next] == p[i])
+    throw InputError(fmt::format("polyline: vertices {} and {} are at the same place. Name it once, or twice in a row for a sharp corner.",
+                                 names[i], names[next]));
+  if (!path.is_closed && i == 0) return;
   const double turn = turnBetween(p[i] - p[last], p[next] - p[i]);
   if (std::abs(turn) < largest_turn) return;
-  throw InputError(fmt::format(
-      "polyline: the path turns by {:.1f} degrees at vertex {}, allowed is less than {:.0f}. Add vertices there, or use the variant facet.",
-      turn / kDegree, i, largest_turn / kDegree));
+  throw InputError(
+      fmt::format("polyline: the path turns by {:.1f} degrees at vertex {}, allowed is less than {:.0f}. Add vertices there, name it twice "
+                  "(a sharp corner), or use the variant facet.",
+                  turn / kDegree, names[i], largest_turn / kDegree));
 }
 
 }  // namespace
 
-void requireSound(const Polyline& polyline, double largest_turn) {
-  const std::size_t least = polyline.is_closed ? 3 : 2;
-  if (polyline.vertices.size() < least) {
-    throw InputError(fmt::format("polyline: {} vertices, needed are at least {}.", polyline.vertices.size(), least));
+CorneredPath requireSound(const Polyline& polyline, double largest_turn, double largest_corner) {
+  CorneredPath path{{}, {}, polyline.is_closed};
+  std::vector<std::size_t> names;
+  for (std::size_t i = 0; i < polyline.vertices.size(); ++i) {
+    const Vec2& p = polyline.vertices[i];
+    if (!path.vertices.empty() && p == path.vertices.back() && !path.is_sharp.back()) {
+      path.is_sharp.back() = true;
+      continue;
+    }
+    path.vertices.push_back(p);
+    path.is_sharp.push_back(false);
+    names.push_back(i);
   }
-  for (std::size_t i = 0; i < polyline.vertices.size(); ++i) requireVertex(polyline, i, largest_turn);
+  const std::size_t least = polyline.is_closed ? 3 : 2;
+  if (path.vertices.size() < least)
+    throw InputError(fmt::format("polyline: {} vertices, needed are at least {}.", path.vertices.size(), least));
+  for (std::size_t i = 0; i < path.vertices.size(); ++i) requireVertex(path, names, i, path.is_sharp[i] ? largest_corner : largest_turn);
+  return path;
 }
 
 Polyline arcPolygon(double radius, double turn, double sweep) {

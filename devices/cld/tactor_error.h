@@ -5,8 +5,9 @@
 //
 // All of it root mean square over the time watched [m], on the place (both axes together). The chain is that of the simulated display
 // (sim_cld.h) with the device's figures; the total is taken from the tactor itself where its place is known (`shown`), else from the chain.
-// What it is measured against: people localise a contact to 1.3 mm (mean absolute), notice play of 0.46 mm (felt alone) or 0.93 mm (while
-// exploring), and a delay of 61 ms (A. J. Doxon, doctoral dissertation, University of Utah, 2014, ch. 2 to 4).
+// What it is measured against: people localise a contact to 1.3 mm (mean absolute), notice a delay of 61 ms, and
+// play of 0.69 mm (low curvature) or 1.16 mm (an edge): 0.46 and 0.93 mm were added to their display's own 0.23 mm, which is taken for unfelt (A. J.
+// Doxon, doctoral dissertation, University of Utah, 2014, ch. 2 to 4).
 #pragma once
 #include <array>
 #include <optional>
@@ -15,9 +16,9 @@
 
 namespace pincer::devices {
 
-inline constexpr double kLocalisationLimit = 1.3e-3;                               // [m]
-inline constexpr double kPlayLimitAlone = 0.46e-3, kPlayLimitExploring = 0.93e-3;  // [m]
-inline constexpr double kDelayLimit = 61e-3;                                       // [s]
+inline constexpr double kLocalisationLimit = 1.3e-3;                                 // [m]
+inline constexpr double kPlayLimitLowCurvature = 0.69e-3, kPlayLimitEdge = 1.16e-3;  // of all play together [m]
+inline constexpr double kDelayLimit = 61e-3;                                         // [s]
 
 struct DisplayFigures {
   double delay = 1.5e-3;         // [s], 0 .. 0.05, in milliseconds' steps as the meter is fed

@@ -78,7 +78,7 @@ class BaselineFinger {
     if (engine::isOnlySeen(c.bits)) return;
     const Pose X_WS = engine::poseOf(c, engine::bodyPose(model_.world, state_.world, c.body));
     const Vec3 p_SC = X_WS.q.conjugate() * (p_W - X_WS.p);
-    if (contact::lowerBoundOfGap(c.shape, p_SC, finger_.radius) > margin) return;
+    if (contact::lowerBoundOfGap(feltShape(model_, collider), p_SC, finger_.radius) > margin) return;
     const contact::FingerContacts found =
         fingerOnShape(model_, state_, scratch_.world.patches, index_, collider, X_WS, {input_.q_WF, p_W}, margin);
     for (int i = 0; i < found.count; ++i) {
@@ -118,10 +118,24 @@ class BaselineFinger {
     return memory_.body < 0 ? memory_.p_P : engine::bodyPose(model_.world, state_.world, memory_.body) * memory_.p_P;
   }
 
+  // The same but for shading, and for what had begun to slip.
+  Vec3 goalOnCircle(const Vec3& proxy_W, const NearSurface& resting) {
+    const Vec3 way = input_.p_WF - proxy_W;
+    const double pressed = -way.dot(resting.facet_W);
+    if (pressed <= 0) return input_.p_WF;
+    const Vec3 along = way + pressed * resting.facet_W;
+    const engine::Material& material = materialOf(resting);
+    const double length = along.norm();
+    report_.sliding = length > (memory_.slips ? material.mu_d : material.mu_s) * pressed;
+    const double kept = report_.sliding ? std::max(0.0, 1 - material.mu_d * pressed / length) : 0;
+    return proxy_W + kept * along - pressed * resting.facet_W;
+  }
+
   // Where the proxy is to go: the device, or what friction and shading leave of the way to it.
   Vec3 goalFor(const Vec3& proxy_W, const NearSurface* resting) {
     const Vec3 way = input_.p_WF - proxy_W;
     if (method_ == FingerMethod::kGodObject || !resting || resting->phi > kResting) return input_.p_WF;
+    if (method_ == FingerMethod::kFrictionCone) return goalOnCircle(proxy_W, *resting);
     const double pressed = -way.dot(resting->n_W);
     if (pressed <= 0) return input_.p_WF;
     const Vec3 along = way + pressed * resting->n_W;
@@ -162,7 +176,7 @@ class BaselineFinger {
       if (lambda > most) main = i;
       most = std::max(most, lambda);
     }
-    memory_ = {true, -1, proxy_W, memory_.p_WF};
+    memory_ = {true, report_.sliding, -1, proxy_W, memory_.p_WF};
     if (main < 0) return;
     const Vec3 f_W = k_ * (proxy_W - input_.p_WF);
     for (int i = 0; i < near.count; ++i) {

@@ -59,10 +59,10 @@ class FingerLook {
   // Its bounds are a sphere about `centre_W`.
   void at(const Place& place, const Vec3& centre_W, double bounding_radius) {
     if (engine::isOnlySeen(place.collider.bits)) return;
-    const contact::Shape& shape = place.collider.shape;
     const Vec3& p_WC = point_.p_mid_W;
     const Vec3 p_SC = place.R_WS.transpose() * (p_WC - place.p_WS);
     const int number = static_cast<int>(&place.collider - model_.world.colliders.data());
+    const contact::Shape& shape = feltShape(model_, number);
     const std::size_t pair = trackerOf(model_, finger_, number);
     if (!isWithinReach(centre_W, bounding_radius)) {
       const double bound = bounding_radius < kEndless ? (p_WC - centre_W).norm() - bounding_radius - f_.radius
@@ -156,7 +156,7 @@ contact::FingerContacts fingerOnShape(const GraspModel& model, GraspState& state
                                       const Pose& X_WS, const Pose& X_WF, double margin) {
   PINCER_ASSERT(isIndex(finger, model.fingers.size()) && isIndex(collider, model.world.colliders.size()));
   const FingerModel& f = model.fingers[finger];
-  const contact::Shape& shape = model.world.colliders[collider].shape;
+  const contact::Shape& shape = feltShape(model, collider);
   const std::size_t pair = trackerOf(model, finger, collider);
   const Pose X_BF = X_WS.inverse() * X_WF;
   PINCER_ASSERT(!f.shape || state.tips.size() == state.trackers.size());

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "pincer/contact/functions/invariants.h"
+#include "pincer/contact/pair_query.h"
 
 namespace pincer::grasp {
 namespace {
@@ -93,6 +94,22 @@ GraspModel buildGrasp(engine::WorldBuilder builder, std::vector<FingerModel> fin
     }
   }
   return {builder.build(), std::move(fingers)};
+}
+
+void feelAs(GraspModel& model, int body, contact::Shape shape) {
+  PINCER_DEMAND(isIndex(body, model.world.bodies.size()), "feelAs: there is such a body");
+  engine::BodyModel& b = model.world.bodies[static_cast<std::size_t>(body)];
+  engine::ColliderModel& collider = model.world.colliders[static_cast<std::size_t>(b.first_collider)];
+  const double reach = contact::boundingRadius(shape);
+  if (b.collider_count != 1 || !std::isfinite(reach) || !std::isfinite(collider.bounding_radius))
+    throw InputError(
+        fmt::format("body \"{}\": fingers can feel another surface of a body of one bounded shape only. Give it one, or give its "
+                    "shapes the surface that is to be felt.",
+                    b.name));
+  collider.bounding_radius = std::max(collider.bounding_radius, reach);
+  b.bounding_radius = std::max(b.bounding_radius, reach + (collider.X_BS.p - b.X_BI.p).norm());
+  if (std::holds_alternative<contact::Mesh>(shape)) b.may_be_hollow = model.world.has_hollows = true;
+  model.felt.push_back({b.first_collider, std::move(shape)});
 }
 
 }  // namespace pincer::grasp

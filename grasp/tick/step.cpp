@@ -187,6 +187,7 @@ GraspScratch::GraspScratch(const GraspModel& model)
       fingers(model.fingers.size()),
       orientations(model.fingers.size()),
       taxels(model.fingers.size()) {
+  if (!model.felt.empty()) world.patches = contact::PatchCache();  // the world may have room for one patch only
   for (std::size_t i = 0; i < taxels.size(); ++i) {
     const PressureGrid& grid = model.fingers[i].taxels;
     taxels[i].resize(static_cast<std::size_t>(grid.rows * grid.columns));

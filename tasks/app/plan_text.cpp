@@ -101,13 +101,17 @@ std::string surfaceForm(const contact::Shape& shape) {
   const auto* mesh = std::get_if<contact::Mesh>(&shape);
   if (!mesh) return "closed form";
   const contact::SurfaceVariant variant = mesh->surface->variant();
-  if (variant == contact::SurfaceVariant::smooth) return "smooth surface, warm-started search";
+  if (variant == contact::SurfaceVariant::smooth) {
+    const auto patches = static_cast<std::int64_t>(mesh->surface->triangles().triangles.size());
+    return fmt::format("smooth surface of {} shaded {}, warm-started search", patches, patches == 1 ? "patch" : "patches");
+  }
   return fmt::format("mesh with shading {}, warm-started search", contact::kSurfaceVariantNames[static_cast<std::size_t>(variant)]);
 }
 
-std::string touchForm(const engine::ColliderModel& collider) {
+std::string touchForm(const grasp::GraspModel& model, const engine::ColliderModel& collider) {
   if (engine::isOnlySeen(collider.bits)) return "only seen";
-  return fmt::format("{}; {}", surfaceForm(collider.shape), frictionText(collider.material));
+  const contact::Shape& felt = grasp::feltShape(model, static_cast<int>(&collider - model.world.colliders.data()));
+  return fmt::format("{}; {}", surfaceForm(felt), frictionText(collider.material));
 }
 
 // What the coupling asks of an arm, by Colgate and Schenkel's bound, and whether its arm has it.
@@ -137,22 +141,21 @@ std::string tipForm(const grasp::FingerModel& f, grasp::FingerMethod method) {
 }
 
 // One line per body, or per shape where they differ.
-void describeTouch(const engine::WorldModel& world, const std::string& finger, const engine::BodyModel& body,
-                   std::vector<PlanLine>& lines) {
-  const auto shapes = engine::collidersOf(world, body);
-  const std::string first = touchForm(shapes.front());
-  const auto is_alike = [&](const engine::ColliderModel& c) { return touchForm(c) == first; };
+void describeTouch(const grasp::GraspModel& model, const std::string& finger, const engine::BodyModel& body, std::vector<PlanLine>& lines) {
+  const auto shapes = engine::collidersOf(model.world, body);
+  const std::string first = touchForm(model, shapes.front());
+  const auto is_alike = [&](const engine::ColliderModel& c) { return touchForm(model, c) == first; };
   if (std::all_of(shapes.begin(), shapes.end(), is_alike))
     return lines.push_back({"touch", fmt::format("{} - {}", finger, body.name), first});
   for (const engine::ColliderModel& c : shapes)
-    lines.push_back({"touch", fmt::format("{} - {}.{}", finger, body.name, c.name), touchForm(c)});
+    lines.push_back({"touch", fmt::format("{} - {}.{}", finger, body.name, c.name), touchForm(model, c)});
 }
 
 void describeFinger(const grasp::GraspModel& model, std::size_t finger, grasp::FingerMethod method, std::vector<PlanLine>& lines) {
   const grasp::FingerModel& f = model.fingers[finger];
   lines.push_back({"finger", f.name, fmt::format("{}, {}", tipForm(f, method), couplingForm(f.coupling, model.world.point_forms[finger]))});
   lines.push_back({"arm", f.name, armForm(f, model.world.options.h)});
-  for (const engine::BodyModel& body : model.world.bodies) describeTouch(model.world, f.name, body, lines);
+  for (const engine::BodyModel& body : model.world.bodies) describeTouch(model, f.name, body, lines);
 }
 
 void describeMany(const grasp::GraspModel& model, std::vector<PlanLine>& lines) {

@@ -15,6 +15,8 @@
 #include "pincer/tasks/app/print.h"
 #include "pincer/tasks/app/progress.h"
 #include "pincer/tasks/app/usage.h"
+#include "pincer/tasks/lab/experiments/cylinder_alignment.h"
+#include "pincer/tasks/lab/experiments/pickup_scene.h"
 #include "pincer/tasks/run/files/json_writer.h"
 #include "pincer/tasks/run/scene/builtin_scenes.h"
 #include "pincer/tasks/run/scene/tick_times.h"
@@ -27,8 +29,11 @@ constexpr const char* kPlanExample = R"(
 What runs in a tick of a scene and in which specialised form, what is left out, and what each stage costs on this machine, measured over
 a run of the scene (begun again where it ends before the wanted number of ticks).
 
-Example:
-  pincer plan tasks/scenes/pickup.json --ticks 20000)";
+Of the manipulation tasks, sphere-pickup and cylinder-alignment, what runs is named; times are those of a scene.
+
+Examples:
+  pincer plan tasks/scenes/pickup.json --ticks 20000
+  pincer plan sphere-pickup)";
 
 struct PlanArguments {
   std::string scene;
@@ -84,15 +89,36 @@ PlanTimes measureStages(const Scene& scene, std::int64_t ticks) {
   return times;
 }
 
+// The scene of a manipulation task.
+std::optional<grasp::GraspModel> taskModel(const std::string& name) {
+  const SpherePickupOptions pickup;
+  if (name == "sphere-pickup") return makePickupScene(pickup, makePickupObject(pickup), {}).model.grasp;
+  if (name == "cylinder-alignment") return makeCylinderScene({}, {}).model.grasp;
+  return std::nullopt;
+}
+
+std::string linesText(const std::vector<PlanLine>& plan) {
+  std::size_t width = 0;
+  for (const PlanLine& line : plan) width = std::max(width, line.name.size());
+  std::string out;
+  for (const PlanLine& line : plan) out += fmt::format("  {:<8} {:<{}}  {}\n", line.part, line.name, width, line.form);
+  return out;
+}
+
+void writeLines(const std::vector<PlanLine>& plan, JsonWriter& json) {
+  json.key("plan").beginArray();
+  for (const PlanLine& line : plan)
+    json.beginObject().key("part").value(line.part).key("name").value(line.name).key("form").value(line.form).endObject();
+  json.endArray();
+}
+
 std::string timesRow(const char* name, const TickTimes& times) {
   return fmt::format("  {:<18} {:>9.3f} {:>9.3f}\n", name, 1e6 * times.quantile(0.5), 1e6 * times.quantile(0.999));
 }
 
 std::string planText(const Scene& scene, const std::vector<PlanLine>& plan, const PlanTimes& times) {
   std::string out = fmt::format("{}\n{}\n\n", printable(scene.file), printable(scene.description, kLongestMessage));
-  std::size_t width = 0;
-  for (const PlanLine& line : plan) width = std::max(width, line.name.size());
-  for (const PlanLine& line : plan) out += fmt::format("  {:<8} {:<{}}  {}\n", line.part, line.name, width, line.form);
+  out += linesText(plan);
   out += fmt::format("\n  {:<18} {:>9} {:>9}   [us], {} ticks\n", "stage", "median", "p99.9", times.whole.count());
   for (std::size_t i = 0; i < times.stages.size(); ++i) out += timesRow(engine::kStageNames[i], times.stages[i]);
   out += timesRow("whole tick", times.whole);
@@ -107,17 +133,25 @@ void writeTimes(const char* name, const TickTimes& times, JsonWriter& json) {
 
 std::string planJson(const Scene& scene, const std::vector<PlanLine>& plan, const PlanTimes& times) {
   JsonWriter json;
-  json.beginObject().key("scene").value(scene.file).key("plan").beginArray();
-  for (const PlanLine& line : plan) {
-    json.beginObject().key("part").value(line.part).key("name").value(line.name).key("form").value(line.form).endObject();
-  }
-  json.endArray().key("ticks").value(times.whole.count()).key("clock_us").value(1e6 * times.clock_cost).key("stages").beginArray();
+  json.beginObject().key("scene").value(scene.file);
+  writeLines(plan, json);
+  json.key("ticks").value(times.whole.count()).key("clock_us").value(1e6 * times.clock_cost).key("stages").beginArray();
   for (std::size_t i = 0; i < times.stages.size(); ++i) writeTimes(engine::kStageNames[i], times.stages[i], json);
   writeTimes("whole tick", times.whole, json);
   return json.endArray().endObject().text();
 }
 
+int showTaskPlan(const std::string& task, const grasp::GraspModel& model, bool as_json) {
+  const std::vector<PlanLine> plan = describePlan(model, std::vector<grasp::FingerMethod>(model.fingers.size()));
+  JsonWriter json;
+  json.beginObject().key("task").value(task);
+  writeLines(plan, json);
+  print("{}", as_json ? json.endObject().text() : task + "\n\n" + linesText(plan));
+  return kExitOk;
+}
+
 int runPlan(const PlanArguments& arguments) {
+  if (const auto task = taskModel(arguments.scene)) return showTaskPlan(arguments.scene, *task, arguments.json);
   const Scene scene = readSceneOrBuiltin(arguments.scene);
   const std::vector<PlanLine> plan = describePlan(buildWorld(scene), methodsOf(scene));
   const PlanTimes times = measureStages(scene, arguments.ticks);
@@ -132,7 +166,8 @@ int runPlan(const PlanArguments& arguments) {
 void addPlanCommand(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<PlanArguments>();
   CLI::App* command = app.add_subcommand("plan", "What runs in a tick of a scene, and what it costs");
-  command->add_option("scene", arguments->scene, "Scene file (JSON), or the name of a built-in scene")->required();
+  command->add_option("scene", arguments->scene, "Scene file (JSON), the name of a built-in scene, sphere-pickup or cylinder-alignment")
+      ->required();
   command->add_option("--ticks", arguments->ticks, "Ticks to measure")->check(wholeWithin(1, 10'000'000))->capture_default_str();
   command->add_flag("--json", arguments->json, "Print the plan as JSON");
   command->footer(kPlanExample);

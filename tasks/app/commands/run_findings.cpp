@@ -48,16 +48,24 @@ FindingsResult runManipulationFindings(const FindingsOptions& options, const std
   });
 }
 
-ClaimTable runStudyFindings(StudyRuns studies, const FindingsOptions& options, const std::string& directory) {
+StudySessions runStudyFindings(StudyRuns studies, const FindingsOptions& options, const std::string& directory) {
   studies.seed = options.seed;
   studies.threads = options.threads;
   studies.only = options.only;
   studies.directory = directory;
   std::unique_ptr<Progress> line;
-  const StudySessions sessions = runPublishedStudies(studies, interruptFlag(), [&](std::int64_t done, std::int64_t total) {
+  return runPublishedStudies(studies, interruptFlag(), [&](std::int64_t done, std::int64_t total) {
     if (!line) line = std::make_unique<Progress>("studies", total);
     line->update(done);
   });
+}
+
+// Of both: the manipulation tasks' own people, and the same with the tactors parked.
+ClaimTable judgeAll(StudySessions sessions, const FindingsResult& result) {
+  for (const VariantResult& variant : result.variants) {
+    if (variant.name == findingsVariants().front().name) sessions.studies["manipulation"] = variant.sessions;
+    if (variant.name == "frozen-tactor") sessions.controls["manipulation"] = variant.sessions;
+  }
   return judgeClaims(sessions.studies, sessions.controls);
 }
 
@@ -80,8 +88,9 @@ int runFindingsCommand(FindingsArguments arguments) {
   asUsage([&] { validate(arguments.options); });
   readPart(arguments.part, arguments.studies);
   const std::string directory = outputDirectory(arguments.run, "findings");
-  const ClaimTable claims = runStudyFindings(arguments.studies, arguments.options, directory + "/sessions");
+  const StudySessions studies = runStudyFindings(arguments.studies, arguments.options, directory + "/sessions");
   const FindingsResult result = runManipulationFindings(arguments.options, directory + "/sessions");
+  const ClaimTable claims = judgeAll(studies, result);
   const bool interrupted = interruptFlag();
   if (result.variants.empty() && isEmpty(claims)) {
     if (!interrupted) refuseUsage(fmt::format("findings: no variant's or study's name holds one of \"{}\".", arguments.options.only));

@@ -53,6 +53,8 @@ Examples:
   pincer run manipulation --study study.json --out out/study
   pincer run manipulation --resume --out out/study)";
 
+constexpr const char* kExactly = "exactly";
+
 struct ManipulationArguments {
   RunOptions run;
   DeviceRunOptions devices;
@@ -88,7 +90,11 @@ ManipulationSessionOptions optionsOf(const ManipulationArguments& arguments) {
     refuseUsage("run: --size is that of a mesh, and none is given. Give --object FILE, or --radius for the sphere.");
   }
   if (arguments.object.empty() && !arguments.shading.empty()) {
-    refuseUsage("run: --shading is that of a mesh, and none is given. Give --object FILE; the sphere is one exactly.");
+    options.study.pickup.shading.reset();
+    if (arguments.shading != kExactly) options.study.pickup.shading = variantOf(arguments.shading);
+    options.study.alignment.shading = options.study.pickup.shading;
+  } else if (arguments.shading == kExactly) {
+    refuseUsage("run: --shading exactly is for sphere and cylinder, and --object FILE has no closed form. Leave one of them out.");
   }
   return options;
 }
@@ -220,6 +226,11 @@ int runManipulation(const ManipulationArguments& arguments) {
   return finish(directory, result);
 }
 
+void addShadingOption(CLI::App& command, ManipulationArguments& arguments) {
+  command.add_option("--shading", arguments.shading, "How fingers feel the object's mesh (default: smooth); exactly: the closed form")
+      ->check(CLI::IsMember({"smooth", "facet", "force", "smooth_published", kExactly}));
+}
+
 void addPickupOptions(CLI::App& command, ManipulationArguments& arguments) {
   SpherePickupOptions& pickup = arguments.study.pickup;
   command.add_option("--repetitions", pickup.repetitions, "Of every friction per condition")->capture_default_str();
@@ -229,14 +240,14 @@ void addPickupOptions(CLI::App& command, ManipulationArguments& arguments) {
   command.add_option("--object", arguments.object, "Closed mesh (OBJ, STL, PLY or OFF) to pick up in place of the sphere");
   command.add_option("--units", arguments.units, "Length unit of the mesh (default: mm)")->check(CLI::IsMember({"m", "cm", "mm", "in"}));
   command.add_option("--size", arguments.size, "Scales the mesh to this largest dimension, in place of --units [m]");
-  command.add_option("--shading", arguments.shading, "How the fingers feel the mesh (default: smooth)")
-      ->check(CLI::IsMember({"smooth", "facet", "force", "smooth_published"}));
+  addShadingOption(command, arguments);
 }
 
 void addAlignmentOptions(CLI::App& command, ManipulationArguments& arguments) {
   CylinderAlignmentOptions& alignment = arguments.study.alignment;
   command.add_option("--repetitions", alignment.repetitions, "Trials per condition")->capture_default_str();
   command.add_option("--friction", alignment.friction, "Static friction of the cylinder")->capture_default_str();
+  addShadingOption(command, arguments);
   command.add_flag("--free-body", arguments.free_body, "The cylinder stands free on a table in place of a pivot");
 }
 

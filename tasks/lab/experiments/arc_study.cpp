@@ -22,7 +22,6 @@ using contact::SurfaceVariant;
 
 constexpr double kLargestTurn = 0.5;                        // of a polygon that still covers the strokes [rad]
 constexpr double kBladeFlank = 0.03;                        // length of its sides [m]
-constexpr double kBladeTurn = 0.1;                          // from segment to segment of its tip [rad]
 constexpr std::uint64_t kWhichInterval = 1, kWhoFeels = 2;  // parts of a trial's seed
 
 StaircaseRule smoothnessRule() {
@@ -205,7 +204,7 @@ const ArcCondition& ArcExperiment::conditionNamed(const std::string& name) const
 }
 
 double ArcExperiment::pathRadius(const ArcCondition& condition) const {
-  return study_.finger_radius + (condition.edge ? study_.edge_radius : study_.arc_radius);
+  return study_.finger_radius + (condition.edge ? 0 : study_.arc_radius);
 }
 
 StrokeCues ArcExperiment::cuesOf(const StudyTrial& trial) const {
@@ -302,17 +301,11 @@ ArcPicture ArcExperiment::pictureOf(const ArcCondition& condition) const {
   return {contact::Convex{contact::Polytope::hullOf(corners, "the edge")}, {}};
 }
 
-// Up one side and down the other, the body on the left: from the right flank over the tip to the left one.
+// Up one side and down the other, the body on the left: from the right flank over the edge, a sharp corner, to the left one.
 contact::Polyline ArcExperiment::blade() const {
-  const double lean = 0.5 * (std::numbers::pi - study_.edge_angle);  // of a flank's normal from +z
-  contact::Polyline polyline;
-  const int segments = static_cast<int>(std::ceil(2 * lean / kBladeTurn));
-  const auto onTip = [&](double a) { return Vec2(study_.edge_radius * Vec2(-math::sin(a), math::cos(a))); };
-  const auto along = [&](double a) { return Vec2(-math::cos(a), -math::sin(a)); };  // counter-clockwise
-  polyline.vertices.push_back(onTip(-lean) - kBladeFlank * along(-lean));
-  for (int k = 0; k <= segments; ++k) polyline.vertices.push_back(onTip(lean * (2.0 * k / segments - 1)));
-  polyline.vertices.push_back(onTip(lean) + kBladeFlank * along(lean));
-  return polyline;
+  const double half = 0.5 * study_.edge_angle;
+  const Vec2 down = kBladeFlank * Vec2(math::sin(half), -math::cos(half));
+  return {{down, Vec2::Zero(), Vec2::Zero(), Vec2(-down.x(), down.y())}, false};
 }
 
 }  // namespace pincer::tasks

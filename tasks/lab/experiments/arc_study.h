@@ -16,8 +16,7 @@
 //
 // Thresholds are counted in segments of the published arc (tasks/lab/study/arc_segments.h). What the text leaves open is ours:
 //   - the exact arc is the 2D algorithm on a polygon of a quarter of a degree: smooth, 0.24 um off the circle; polygons' vertices lie on it;
-//   - the 2-degree edge is a blade of 2 degrees, its tip rounded with a radius of 0.5 mm: the finger goes round it, so that the tactor moves as
-//     fast as the finger;
+//   - the 2-degree edge is a blade whose edge is sharp: contact stays on it, so that the tactor moves as fast as the finger, backwards;
 //   - "front end": a sweep begins from rest on one side; where the tactor has come two thirds of its travel from there it freezes until the finger is
 //     10 mm up, so that the onset is felt and the end never;
 //   - in the two on the base cylinder the finger may roll, as people do; on the edge and in smoothness it doesn't;
@@ -53,7 +52,6 @@ struct ArcStudy {
   double finger_radius = 0.02;         // [m]
   double arc_radius = 0.1;             // [m]
   double edge_angle = 0.0349066;       // of the blade [rad]
-  double edge_radius = 0.5e-3;         // of its tip [m]
   double tactor_reach = 8e-3;          // either way [m]
   double reference_turn = 0.00436332;  // from segment to segment of the exact arc's polygon [rad]
   double stiffness = 1000;             // of the surface [N/m]

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "pincer/engine/state.h"
+#include "pincer/tasks/lab/experiments/shaded_objects.h"
 #include "pincer/tasks/lab/experiments/study_parameters.h"
 #include "pincer/tasks/lab/participants/random.h"
 
@@ -68,6 +69,10 @@ HandScene makeCylinderScene(const CylinderAlignmentOptions& options, const Cylin
   if (!options.pivot) starts.emplace_back();
   starts.push_back(start);
   HandScene scene = makeHandScene(options.hand, world, starts, middle_W, options.radius, spec.condition == PickupCondition::kCldForce);
+  if (options.shading) {
+    const auto felt = shadedCylinder(options.radius, 0.5 * options.length, flatDistance(options), *options.shading);
+    grasp::feelAs(scene.model.grasp, object, contact::Mesh{felt});
+  }
   scene.object = object;
   scene.cues.seed = spec.seed;
   scene.cues.mass = options.mass;

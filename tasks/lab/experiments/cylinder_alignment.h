@@ -30,9 +30,10 @@ struct CylinderAlignmentOptions {
   double pivot_damping = 0.01;      // [N m s/rad], 0 .. 0.1
   double table_friction = 0.5;      // mu of the table under a free cylinder [-], 0 .. 5
   HandSetup hand;
-  double start_min = 0.7854, start_max = 3.1416;  // of |theta - theta*| [rad], 0 .. pi
-  double timeout = 120;                           // [s], 1 .. 600
-  int repetitions = 10;                           // per condition, 1 .. 1000
+  std::optional<contact::SurfaceVariant> shading = contact::SurfaceVariant::smooth;  // as of the sphere (sphere_pickup.h)
+  double start_min = 0.7854, start_max = 3.1416;                                     // of |theta - theta*| [rad], 0 .. pi
+  double timeout = 120;                                                              // [s], 1 .. 600
+  int repetitions = 10;                                                              // per condition, 1 .. 1000
   std::vector<PickupCondition> conditions{PickupCondition::kForce, PickupCondition::kCldForce};
   int participants = 1;  // 1 .. 1000
   std::uint64_t seed = 1;

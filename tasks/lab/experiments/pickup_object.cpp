@@ -12,6 +12,7 @@
 #include "pincer/engine/motion/mass.h"
 #include "pincer/engine/state.h"
 #include "pincer/engine/step.h"
+#include "pincer/tasks/lab/experiments/shaded_objects.h"
 
 namespace pincer::tasks {
 namespace {
@@ -166,6 +167,7 @@ PickupObject makePickupObject(const SpherePickupOptions& options) {
   if (options.object) return objectFromFile(options);
   PickupObject object;
   object.shape = contact::Sphere{options.radius};
+  if (options.shading) object.felt = contact::Mesh{shadedSphere(options.radius, *options.shading)};
   object.rest_X_WB.p = object.place_W = Vec3(0, 0, options.radius);
   object.half_width = options.radius;
   return object;

@@ -5,6 +5,7 @@
 // The pinch is planned along W's x axis through the centre of mass.
 #pragma once
 #include <cstdint>
+#include <optional>
 
 #include "pincer/contact/shape.h"
 #include "pincer/engine/model.h"
@@ -14,11 +15,12 @@ namespace pincer::tasks {
 
 struct PickupObject {
   contact::Shape shape;
-  Pose rest_X_WB;              // at rest in the dish
-  Vec3 place_W;                // of the pinch: the centre of mass at rest [m]
-  double half_width = 0;       // half the distance between the outermost surface points on the pinch line [m]
-  double asymmetry = 0;        // how far the middle of these two is from `place_W` along the pinch line [m]
-  double antipodal_angle = 0;  // largest angle between the pinch line and the surface normal at its two ends [rad]
+  std::optional<contact::Shape> felt;  // by fingers in its place
+  Pose rest_X_WB;                      // at rest in the dish
+  Vec3 place_W;                        // of the pinch: the centre of mass at rest [m]
+  double half_width = 0;               // half the distance between the outermost surface points on the pinch line [m]
+  double asymmetry = 0;                // how far the middle of these two is from `place_W` along the pinch line [m]
+  double antipodal_angle = 0;          // largest angle between the pinch line and the surface normal at its two ends [rad]
 };
 
 // Reads, checks and settles the object. Throws InputError: unreadable or open mesh, unknown unit, wrong size, an object that finds no rest

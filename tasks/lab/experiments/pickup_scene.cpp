@@ -15,6 +15,7 @@ HandScene makePickupScene(const SpherePickupOptions& options, const PickupObject
   HandScene scene = makeHandScene(options.hand, pickupWorld(options, object.shape, spec.mu_s, spec.mu_d),
                                   {{}, {object.rest_X_WB, Vec3::Zero(), Vec3::Zero()}}, object.place_W, object.half_width,
                                   spec.condition == PickupCondition::kCldForce);
+  if (object.felt) grasp::feelAs(scene.model.grasp, kObjectBody, *object.felt);
   scene.object = kObjectBody;
   scene.cues.seed = spec.seed;
   scene.cues.mass = options.mass;

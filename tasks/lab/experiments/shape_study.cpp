@@ -13,8 +13,9 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr std::uint64_t kModelOrder = 4, kExplorer = 5;  // parts of seeds
-constexpr double kPublishedRight = 0.819;                // of all conditions together
+constexpr std::uint64_t kModelOrder = 4, kExplorer = 5, kWayOfPoints = 6;  // parts of seeds
+constexpr int kRunsOfSession = 4;
+constexpr double kPublishedRight = 0.819;  // of all conditions together
 
 int solidOf(const std::string& name) {
   return static_cast<int>(std::find(kSolidNames.begin(), kSolidNames.end(), name) - kSolidNames.begin());
@@ -25,6 +26,12 @@ std::string namesAndKeys() {
   std::string text;
   for (std::size_t k = 0; k < kSolids; ++k) text += fmt::format("{}{} {}", k > 0 ? "   " : "", k + 1, kSolidNames[k]);
   return text;
+}
+
+void requireEven(const char* name, int value) {
+  if (value % 2 == 0) return;
+  throw ParameterError(fmt::format("sizes.{}", name),
+                       fmt::format("shape-identification: {} = {} is odd, but an even number is needed. {}", name, value, kAsPublished));
 }
 
 }  // namespace
@@ -40,9 +47,11 @@ void validate(const ShapeStudy& s) {
   const RangeCheck check("shape-identification");
   visitParameters(s, check);
   visitParameters(s.sizes, RangeCheck("shape-identification: sizes", "sizes"));
-  if (s.sizes.sides % 2 != 0)
-    throw ParameterError("sizes.sides", fmt::format("shape-identification: sides = {} is odd, but an even number is needed. {}",
-                                                    s.sizes.sides, kAsPublished));
+  requireEven("sides", s.sizes.sides);
+  requireEven("facet_sides", s.sizes.facet_sides);
+  if (s.tactor_reach > s.finger_radius)
+    throw ParameterError("tactor_reach", fmt::format("shape-identification: tactor_reach = {} is out of range (0, finger_radius]. {}",
+                                                     s.tactor_reach, kAsPublished));
   visitParameters(s.session, RangeCheck("shape-identification: session", "session"));
   validate(s.session, "shape-identification");
   requireOneBlock(s.session, "shape-identification", false);
@@ -53,45 +62,67 @@ ShapeExperiment::ShapeExperiment(const ShapeStudy& study, const ServoOptions& se
     : Experiment(servo), study_(study), stride_(stride) {
   validate(study);
   for (std::size_t k = 0; k < kSolids; ++k) {
-    for (const bool shaded : {false, true}) solids_[shaded][k] = makeSolid(kSolidNames[k], shaded, study.sizes);
+    for (const bool shaded : {false, true}) {
+      for (const bool left : {false, true}) {
+        auto& solid = solids_[shaded][left][k];
+        const bool same = left && !isPointed(kSolidNames[k]);
+        solid = same ? solids_[shaded][false][k] : makeSolid(kSolidNames[k], shaded, study.sizes, left);
+      }
+    }
   }
 }
 
-// A run shows the models of the conditions with the display, or of those without.
+// Models of the conditions with the display, or of those without. In the first of the two such runs of a session a pointed one points to a side
+// that is drawn, in the second to the other.
+StudyRun ShapeExperiment::runOf(int participant, int run, bool display) const {
+  StudyRun shown{participant, run, "", {}, {}};
+  const auto pair = static_cast<std::uint64_t>(participant * study_.sessions * kRunsOfSession + run) / 2;
+  Random sides(seedFor(seedFor(study_.seed, kWayOfPoints), pair));
+  for (const ShapeCondition& c : study_.conditions) {
+    for (const char* solid : kSolidNames) {
+      if (c.display_tactile != display) continue;
+      const double side = sides.below(2) == static_cast<std::uint64_t>(run % 2) ? 1 : -1;
+      shown.list.push_back({solid, isPointed(solid) ? side : std::nan(""), c.name});
+    }
+  }
+  Random random(
+      seedFor(seedFor(study_.seed, kModelOrder), static_cast<std::uint64_t>(participant * study_.sessions * kRunsOfSession + run)));
+  shuffle(shown.list, random);
+  return shown;
+}
+
 std::vector<StudyRun> ShapeExperiment::runs() const {
   std::vector<StudyRun> runs;
   for (int p = 0; p < study_.participants; ++p) {
-    for (int k = 0; k < study_.runs; ++k) {
-      const bool display = (p + k) % 2 == 1;
-      StudyRun run{p, k, "", {}, {}};
-      for (const ShapeCondition& c : study_.conditions) {
-        for (const char* solid : kSolidNames)
-          if (c.display_tactile == display) run.list.push_back({solid, std::nan(""), c.name});
-      }
-      if (run.list.empty()) continue;
-      Random random(seedFor(seedFor(study_.seed, kModelOrder), static_cast<std::uint64_t>(p * study_.runs + k)));
-      shuffle(run.list, random);
-      runs.push_back(std::move(run));
+    for (int k = 0; k < study_.sessions * kRunsOfSession; ++k) {
+      const bool second_half = k % kRunsOfSession >= kRunsOfSession / 2;
+      StudyRun run = runOf(p, k, second_half == (p % 2 == 0));
+      if (!run.list.empty()) runs.push_back(std::move(run));
     }
   }
   return runs;
+}
+
+ShapeTrialSetup ShapeExperiment::setupOf(const StudyTrial& trial, const ShapeCondition& condition) const {
+  ShapeTrialSetup setup;
+  setup.solid = solids_[condition.shaded][trial.stimulus.level < 0][static_cast<std::size_t>(solidOf(trial.stimulus.name))];
+  setup.display_tactile = condition.display_tactile && !study_.frozen_tactor;
+  setup.friction = study_.friction;
+  setup.finger_radius = study_.finger_radius;
+  setup.stiffness = study_.stiffness;
+  setup.tactor_reach = study_.tactor_reach;
+  setup.asked.trial = trial.trial;
+  setup.asked.stride = stride_;
+  setup.asked.training = trial.training;
+  setup.asked.texts.feel = namesAndKeys();
+  return setup;
 }
 
 std::optional<ResponseRecord> ShapeExperiment::present(const StudyTrial& trial, StudySink& sink, const std::atomic<bool>& interrupted,
                                                        ServoReport& served) {
   const auto condition = std::find_if(study_.conditions.begin(), study_.conditions.end(),
                                       [&](const ShapeCondition& c) { return c.name == trial.stimulus.condition; });
-  const auto solid = static_cast<std::size_t>(solidOf(trial.stimulus.name));
-  ShapeTrialSetup setup;
-  setup.solid = solids_[condition->shaded][solid];
-  setup.display_tactile = condition->display_tactile;
-  setup.friction = study_.friction;
-  setup.finger_radius = study_.finger_radius;
-  setup.stiffness = study_.stiffness;
-  setup.asked.trial = trial.trial;
-  setup.asked.stride = stride_;
-  setup.asked.training = trial.training;
-  setup.asked.texts.feel = namesAndKeys();
+  const ShapeTrialSetup setup = setupOf(trial, *condition);
   ShapeExplorer explorer(trial.person_seed);
   explorer.begin(shapeCues(setup, seedFor(trial.seed, kExplorer)));
   const auto finger = wornBy(shapePlace(setup), explorer);
@@ -100,7 +131,7 @@ std::optional<ResponseRecord> ShapeExperiment::present(const StudyTrial& trial, 
   const int named = cycle.isPersons() ? cycle.chosen() - 1 : explorer.answer();
   ResponseRecord response;
   response.stimulus = trial.stimulus.name;
-  response.level = std::nan("");
+  response.level = trial.stimulus.level;
   response.answer_value = cycle.isPersons() ? std::nan("") : explorer.sureness();
   response.answer = cycle.answered() ? kSolidNames[static_cast<std::size_t>(named)] : "";
   response.correct = response.answer == response.stimulus;

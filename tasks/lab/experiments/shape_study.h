@@ -1,8 +1,9 @@
 // shape_study: which of seven solids is it? Shaded or not, with the contact location display or force only.
 //
-// Source: A. J. Doxon, doctoral dissertation, University of Utah (2014), ch. 2: 14 models (seven solids, shaded or not), 8 runs in 2 sessions;
-// 81.9 % right. Runs with and without the display take turns in an order balanced over participants, sessions are pairs of four runs; each run
-// shows each model once, shuffled by the seed (ours).
+// Source: A. J. Doxon, doctoral dissertation, University of Utah (2014), ch. 2: 18 people; two sessions of four runs, two with the display, then two
+// without, for every other person the reverse; each run shows all 14 models (seven solids, shaded or not) once, shuffled. Cone and tetrahedron point
+// left or right, each once per session and way of rendering. 81.9 % right. A 1-DOF display on a finger of 20 mm radius, as in ch. 2's first experiment (ours);
+// friction 0.1 (ours).
 #pragma once
 #include <array>
 
@@ -20,13 +21,15 @@ struct ShapeCondition {
 };
 
 struct ShapeStudy {
-  int participants = 12;
+  int participants = 18;
   std::uint64_t seed = 1;
-  int runs = 8;  // half of them with the display
+  int sessions = 2;
   SolidSizes sizes;
   double friction = 0.1;        // [-] (ours)
-  double finger_radius = 8e-3;  // [m] (ours)
+  double finger_radius = 0.02;  // [m] (ours)
   double stiffness = 1000;      // [N/m] (ours)
+  double tactor_reach = 8e-3;   // either way [m] (ours)
+  bool frozen_tactor = false;   // a control: the tactor is parked in every condition
   std::vector<ShapeCondition> conditions = published();
   SurveyPlan session = oneFingerSurvey();  // what people read, train and are asked
 
@@ -48,9 +51,14 @@ class ShapeExperiment final : public Experiment {
   std::vector<NamedCondition> conditions() const override { return namedOf(study_.conditions); }
 
  private:
+  using Solids = std::array<std::shared_ptr<const contact::SmoothMesh>, kSolids>;
+
+  StudyRun runOf(int participant, int run, bool display) const;
+  ShapeTrialSetup setupOf(const StudyTrial& trial, const ShapeCondition& condition) const;
+
   ShapeStudy study_;
   int stride_;
-  std::array<std::array<std::shared_ptr<const contact::SmoothMesh>, kSolids>, 2> solids_;  // not shaded, shaded
+  std::array<std::array<Solids, 2>, 2> solids_;  // not shaded, shaded; pointing right, left
 };
 
 }  // namespace pincer::tasks

@@ -1,19 +1,18 @@
 #include "pincer/tasks/lab/experiments/shape_trial.h"
 
+#include <algorithm>
 #include <cmath>
 
-#include "pincer/devices/cld/sim_cld.h"
 #include "pincer/tasks/lab/finger/finger_records.h"
 
 namespace pincer::tasks {
 namespace {
 
-// The solid stands where the arm reaches all round it: its middle 20 mm up and 20 mm towards the operator of the arm's reset place.
+// The solid stands where the arm reaches over it and to both ends: its middle 20 mm below the arm's reset place.
 Pose shapeArmBase() {
   Mat3 R;
   R << 1, 0, 0, 0, 0, -1, 0, 1, 0;
-  const Quat q_WD(R);
-  return {q_WD, -(q_WD * Vec3(0, 0.02, 0.02))};
+  return {Quat(R), Vec3(0, 0, 0.02)};
 }
 
 TickModel shapeModel(const ShapeTrialSetup& setup, const FingerWear& wear) {
@@ -37,7 +36,7 @@ TickModel shapeModel(const ShapeTrialSetup& setup, const FingerWear& wear) {
   return model;
 }
 
-Vec3 homeOf(const ShapeLimits& limits) { return limits.distance * Vec3::UnitX(); }
+Vec3 homeOf(const ShapeLimits& limits) { return limits.distance * Vec3::UnitZ(); }
 
 TickState shapeState(const TickModel& model) {
   TickState state;
@@ -52,19 +51,30 @@ std::array<double, 3> tripleIn(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
 }  // namespace
 
+// Places on the pad are azimuthal about its middle: the direction of the contact from the finger's centre, and that one's angle fore-aft.
+devices::TactileCommand onRoller(const devices::TactileCommand& command, double r, double reach) {
+  const double way = command.place_L.norm();
+  if (command.parked || !(way > 0)) return {command.parked, Vec2::Zero()};
+  const auto [sine, cosine] = math::sinCos(way / r);
+  const double angle = math::atan2(sine * command.place_L.x() / way, cosine);
+  return {false, {std::clamp(r * angle, -reach, reach), 0}};
+}
+
 FingerPlace shapePlace(const ShapeTrialSetup& setup) {
   Mat3 R_WF;  // a person's finger points away, its pad down, where no gimbal tells more
   R_WF << 0, -1, 0, 1, 0, 0, 0, 0, 1;
-  return {shapeArmBase(), homeOf({}), setup.finger_radius, false, Quat(R_WF)};
+  return {shapeArmBase(), homeOf({}), setup.finger_radius, Quat(R_WF)};
 }
 
 ShapeCues shapeCues(const ShapeTrialSetup& setup, std::uint64_t seed) {
   const Pose X_WD = shapeArmBase();
-  return {seed, X_WD.q, X_WD.p, Vec3::Zero(), setup.finger_radius, devices::SimCld().capabilities().reach.minCoeff()};
+  return {seed, X_WD.q, X_WD.p, Vec3::Zero(), setup.finger_radius, setup.tactor_reach};
 }
 
 ShapeTrial::ShapeTrial(const ShapeTrialSetup& setup, WornFinger& finger, StudySink& sink)
     : FingerTrial(setup.asked, finger, sink),
+      finger_radius_(setup.finger_radius),
+      tactor_reach_(setup.tactor_reach),
       model_(shapeModel(setup, finger.wear())),
       state_(shapeState(model_)),
       scratch_(model_),
@@ -73,7 +83,7 @@ ShapeTrial::ShapeTrial(const ShapeTrialSetup& setup, WornFinger& finger, StudySi
 FingerOutputs ShapeTrial::step(const FingerInputs& inputs, double now, double) {
   samples_[0] = inputs;
   status_ = tasks::tick(model_, state_, scratch_, samples_, now).status;
-  return scratch_.outputs[0];
+  return {scratch_.outputs[0].f_D, onRoller(scratch_.outputs[0].tactile, finger_radius_, tactor_reach_)};
 }
 
 FingerTrial::Felt ShapeTrial::felt() const {

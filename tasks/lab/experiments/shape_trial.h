@@ -1,7 +1,10 @@
-// shape_trial: one trial of shape identification (tasks/lab/finger/finger_trial.h): a finger on its arm, wearing a 2-DOF contact location display,
+// shape_trial: one trial of shape identification (tasks/lab/finger/finger_trial.h): a finger on its arm, wearing a 1-DOF contact location display,
 // feels a solid that stands still, through the tick of tasks/run/tick/tick.h; at the end it is named.
 //
-// The arm's base frame D has x right, y up and z towards the operator (W: x right, y away, z up); the solid's middle is W's origin.
+//   s = r a,  a the fore-aft angle of the contact on the finger, |s| <= reach        place of the roller; left-right isn't shown
+//
+// The finger waits a second above the solid, then a tone; time and contact are counted from the first touch to the answer. The arm's base frame D
+// has x right, y up and z towards the operator (W: x right, y away, z up); the solid's middle is W's origin, the finger points away (+y).
 #pragma once
 #include "pincer/tasks/lab/finger/finger_trial.h"
 #include "pincer/tasks/lab/participants/shape_explorer.h"
@@ -13,11 +16,15 @@ struct ShapeTrialSetup {
   std::shared_ptr<const contact::SmoothMesh> solid;
   bool display_tactile = true;  // false: the tactor is parked
   double friction = 0.1;        // of the solid [-]
-  double finger_radius = 8e-3;  // [m]
+  double finger_radius = 0.02;  // [m]
+  double tactor_reach = 8e-3;   // either way [m]
   double stiffness = 1000;      // of the coupling [N/m]
   double damping = 2;           // [N s/m]
-  FingerTrialSetup asked = {.question = TrialQuestion::kName, .choices = kSolids};
+  FingerTrialSetup asked = {.wait = 1, .counts_from_touch = true, .question = TrialQuestion::kName, .choices = kSolids};
 };
+
+// The roller's command for a place on the pad (devices/cld/tactile_display.h) of a finger of radius `r` [m].
+devices::TactileCommand onRoller(const devices::TactileCommand& command, double r, double reach);
 
 FingerPlace shapePlace(const ShapeTrialSetup& setup);
 // What a participant is told of the trial.
@@ -39,6 +46,7 @@ class ShapeTrial final : public FingerTrial {
   devices::GateState& gate() override { return state_.mounts[0].gate; }
   void fill(SampleRecord& sample) const override;
 
+  double finger_radius_, tactor_reach_;  // [m]
   TickModel model_;
   TickState state_;
   TickScratch scratch_;

@@ -3,6 +3,12 @@
 #include "pincer/contact/functions/invariants.h"
 
 namespace pincer::tasks {
+namespace {
+
+constexpr std::size_t kThumb = 1;
+constexpr double kThumbRing = 0.021;  // [m]; the index finger's has 19 mm (Doxon 2014, ch. 4)
+
+}  // namespace
 
 SimulatedHands::SimulatedHands(const HandScene& scene, Participant& participant) : participant_(participant), samples_(kHandFingers) {
   for (std::size_t i = 0; i < kHandFingers; ++i) {
@@ -13,6 +19,7 @@ SimulatedHands::SimulatedHands(const HandScene& scene, Participant& participant)
     arms_.back().setGimbal(scene.q_DF[i]);
     devices::SimCldSettings display;
     display.serial = arm.serial;
+    if (i == kThumb) display.geometry.ring_radius = kThumbRing;
     displays_.emplace_back(display);
   }
   participant_.begin(scene.cues);

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "pincer/contact/error.h"
+#include "pincer/contact/generated_meshes.h"
 #include "pincer/contact/mesh/lathe.h"
 #include "pincer/contact/mesh/round_edges.h"
 
@@ -25,12 +26,13 @@ std::vector<Vec2> ballProfile(double radius, int sides) {
   return profile;
 }
 
-contact::TriangleMesh solidMesh(const std::string& name, const SolidSizes& s) {
+// About z, a corner on +x.
+contact::TriangleMesh uprightSolid(const std::string& name, const SolidSizes& s, int sides) {
   const double half = 0.5 * s.length;
-  if (name == "cone") return contact::lathe(pyramidProfile(s.radius, half), s.sides);
-  if (name == "cylinder") return contact::lathe(prismProfile(s.radius, half), s.sides);
+  if (name == "cone") return contact::lathe(pyramidProfile(s.radius, half), sides);
+  if (name == "cylinder") return contact::lathe(prismProfile(s.radius, half), sides);
   if (name == "cube") return contact::lathe(prismProfile(s.radius, s.radius / std::numbers::sqrt2), 4);
-  if (name == "sphere") return contact::lathe(ballProfile(s.radius, s.sides), s.sides);
+  if (name == "sphere") return contact::lathe(ballProfile(s.radius, sides), sides);
   if (name == "tetrahedron") return contact::lathe(pyramidProfile(s.radius, half), 3);
   if (name == "octagon") return contact::lathe(prismProfile(s.radius, half), 8);
   if (name == "triangle") return contact::lathe(prismProfile(s.radius, half), 3);
@@ -38,10 +40,22 @@ contact::TriangleMesh solidMesh(const std::string& name, const SolidSizes& s) {
       "shape-identification: there is no solid \"{}\". Take cone, cylinder, cube, sphere, tetrahedron, octagon or triangle.", name));
 }
 
+// z to the right, +x up; a face up by half of what lies between two corners.
+Quat lyingPose(const std::string& name, bool points_left) {
+  Mat3 R;
+  R << Vec3::UnitZ(), -Vec3::UnitY(), Vec3::UnitX();
+  const double pi = std::numbers::pi;
+  const double turn = name == "cube" ? pi / 4 : name == "octagon" ? pi / 8 : 0;
+  return quatFromRotationVector((points_left ? pi : 0) * Vec3::UnitZ()) * Quat(R) * quatFromRotationVector(turn * Vec3::UnitZ());
+}
+
 }  // namespace
 
-std::shared_ptr<const contact::SmoothMesh> makeSolid(const std::string& name, bool shaded, const SolidSizes& sizes) {
-  contact::TriangleMesh mesh = solidMesh(name, sizes);
+bool isPointed(const std::string& name) { return name == "cone" || name == "tetrahedron"; }
+
+std::shared_ptr<const contact::SmoothMesh> makeSolid(const std::string& name, bool shaded, const SolidSizes& sizes, bool points_left) {
+  contact::TriangleMesh mesh = contact::transformed(uprightSolid(name, sizes, shaded ? sizes.sides : sizes.facet_sides),
+                                                    {lyingPose(name, points_left), Vec3::Zero()});
   mesh.source = name;
   contact::SurfaceOptions options;
   if (!shaded) {

@@ -44,6 +44,8 @@ struct SpherePickupOptions {
   int participants = 1;  // 1 .. 1000
   std::uint64_t seed = 1;
   std::optional<ObjectFile> object;  // in place of the sphere
+  // Shading by which fingers feel the sphere, a mesh; absent: its closed form. Bodies and mass know the closed form in any case.
+  std::optional<contact::SurfaceVariant> shading = contact::SurfaceVariant::smooth;
 };
 
 // Throws InputError naming the first value out of range, its range and the remedy.

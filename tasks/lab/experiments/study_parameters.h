@@ -98,8 +98,7 @@ void visitParameters(Study& s, Visit&& visit) {
   visit("seed", s.seed, Parameter{"of all that varies"});
   visit("finger_radius", s.finger_radius, Parameter{"[m]", {2e-3, 0.05, false, kAsPublished}});
   visit("arc_radius", s.arc_radius, Parameter{"of the curve that is stroked [m]", {0.01, 0.2, false, kAsPublished}});
-  visit("edge_angle", s.edge_angle, Parameter{"of the edge, a blade [rad]", {0, 3.14159, true, kAsPublished}});
-  visit("edge_radius", s.edge_radius, Parameter{"of its tip [m]", {1e-4, 0.05, false, kAsPublished}});
+  visit("edge_angle", s.edge_angle, Parameter{"of the edge, a blade [rad]", {0.0175, 3.14159, false, kAsPublished}});
   visit("tactor_reach", s.tactor_reach, Parameter{"either way, at most `finger_radius` [m]", {0, 8e-3, true, kAsPublished}});
   visit("reference_turn", s.reference_turn, Parameter{"from segment to segment of the reference [rad]", {1e-4, 0.1, false, kAsPublished}});
   visit("stiffness", s.stiffness, Parameter{"of the surface [N/m]", {0, 3500, true, kAsPublished}});
@@ -132,7 +131,8 @@ void visitParameters(Sizes& s, Visit&& visit) {
   visit("radius", s.radius, Parameter{"of round ones [m]", {0.02, 0.045, false, kAsPublished}});
   visit("length", s.length, Parameter{"[m]", {0.04, 0.09, false, kAsPublished}});
   visit("edge_radius", s.edge_radius, Parameter{"of shaded ones' edges [m]", {0, 5e-3, true, kAsPublished}});
-  visit("sides", s.sides, Parameter{"of round ones, an even number", {12, 200, false, kAsPublished}});
+  visit("sides", s.sides, Parameter{"of shaded round ones, an even number", {12, 200, false, kAsPublished}});
+  visit("facet_sides", s.facet_sides, Parameter{"of round ones that aren't shaded, an even number", {12, 360, false, kAsPublished}});
 }
 
 template <FieldsOf<ShapeCondition> Condition, class Visit>
@@ -149,11 +149,13 @@ template <FieldsOf<ShapeStudy> Study, class Visit>
 void visitParameters(Study& s, Visit&& visit) {
   visit("participants", s.participants, Parameter{"how many", {1, 10'000, false, kAsPublished}});
   visit("seed", s.seed, Parameter{"of all that varies"});
-  visit("runs", s.runs, Parameter{"per participant, half of them with the display", {1, 100, false, kAsPublished}});
+  visit("sessions", s.sessions, Parameter{"per participant, of two runs with the display and two without", {1, 100, false, kAsPublished}});
   visit("sizes", s.sizes, Parameter{"of the solids"});
   visit("friction", s.friction, Parameter{"of the solids", {0, 2, false, kAsPublished}});
-  visit("finger_radius", s.finger_radius, Parameter{"[m]", {4e-3, 0.015, false, kAsPublished}});
+  visit("finger_radius", s.finger_radius, Parameter{"[m]", {8e-3, 0.03, false, kAsPublished}});
   visit("stiffness", s.stiffness, Parameter{"of finger and proxy [N/m]", {0, 3500, true, kAsPublished}});
+  visit("tactor_reach", s.tactor_reach, Parameter{"either way [m]", {0, 8e-3, true, kAsPublished}});
+  visit("frozen_tactor", s.frozen_tactor, Parameter{"true: the tactor is parked in every condition (a control)"});
   visit("conditions", s.conditions, Parameter{"a list replaces all of them"});
   visit("session", s.session, Parameter{"what people read, train and are asked; simulated participants none of it"});
 }
@@ -190,6 +192,7 @@ void visitParameters(Options& o, Visit&& visit) {
   visit("frictions", o.frictions,
         Parameter{"mu_s of the object", {0.05, 5, false, "A static friction coefficient; skin on plastic has about 0.6."}});
   visit("object", o.object, Parameter{"a closed mesh in place of the sphere"});
+  visit("shading", o.shading, Parameter{"how fingers feel the sphere, a mesh; null: its closed form", {}, contact::kSurfaceVariantNames});
 }
 
 template <FieldsOf<ObjectFile> Object, class Visit>
@@ -221,6 +224,7 @@ void visitParameters(Options& o, Visit&& visit) {
   visit("table_friction", o.table_friction,
         Parameter{"mu of the table under a free cylinder", {0, 5, false, "A friction coefficient; the usual table has 0.5."}});
   visitParameters(o.hand, visit);
+  visit("shading", o.shading, Parameter{"how fingers feel the cylinder, a mesh; null: its closed form", {}, contact::kSurfaceVariantNames});
   visit("start_min", o.start_min,
         Parameter{"of the flat's start from its target, either way [rad]",
                   {0, 3.1416, false, "It is in radians; 0.7854, 45 degrees, is usual."}});

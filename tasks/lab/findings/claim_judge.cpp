@@ -52,6 +52,11 @@ double publishedTest(const Claim& claim, const StudyMeasures& study) {
   return 1;
 }
 
+bool isPaired(const Claim& claim, const StudyMeasures& study) {
+  const auto one_each = [&](const char* measure) { return study.of(measure).size() == study.persons; };
+  return claim.test != ClaimTest::kAboveZero && one_each(claim.a) && one_each(claim.b);
+}
+
 // Over the studies.
 struct Collected {
   std::vector<double> a, b, difference, effect, half;
@@ -85,14 +90,15 @@ void addComparison(const Claim& claim, const StudyMeasures& study, ClaimEvidence
   const Estimate b = estimateMean(finiteValues(study.of(claim.b)));
   const bool against_zero = claim.test == ClaimTest::kAboveZero;
   const Estimate a = against_zero ? Estimate{b.n, 0, 0} : estimateMean(finiteValues(study.of(claim.a)));
-  if (a.n < 2 || b.n < 2) return;
+  const int fewest = claim.test == ClaimTest::kNone ? 1 : 2;  // some untested measures are of the whole study
+  if (a.n < fewest || b.n < fewest) return;
   ++e.studies;
   const double difference = b.mean - a.mean, p = publishedTest(claim, study);
   e.that_way += difference > 0;
   e.other_way += difference < 0;
   e.significant += p < kSignificance;
   e.significant_that_way += p < kSignificance && difference > 0;
-  if (!against_zero) {
+  if (isPaired(claim, study)) {
     const PairedTest paired = comparePairs(study.of(claim.a), study.of(claim.b));
     e.paired += paired.p_t < kSignificance && paired.difference.mean > 0;
     if (std::isfinite(paired.effect)) all.effect.push_back(paired.effect);
@@ -136,6 +142,10 @@ std::vector<StudyMeasures> readStudies(const std::vector<std::string>& paths, Co
     const SessionReader session(path);
     if (!session.complete()) continue;
     ground.require(session);
+    if (!isStudy(session.info().task)) {
+      studies.push_back(measuresOf(session.trials()));
+      continue;
+    }
     const std::vector<ResponseRecord> responses = session.responses();
     studies.push_back(measuresOf(summariseStudy(session, responses), responses));
   }

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pincer/tasks/lab/findings/shape_measures.h"
+#include "pincer/tasks/lab/report/person_means.h"
+
 namespace pincer::tasks {
 namespace {
 
@@ -74,6 +77,11 @@ const std::vector<double>& StudyMeasures::of(const std::string& measure) const {
 
 StudyMeasures measuresOf(const StudySummary& summary, const std::vector<ResponseRecord>& responses) {
   StudyMeasures measures;
+  measures.persons = static_cast<std::size_t>(summary.participants);
+  if (summary.info.task == "shape-identification") {
+    addShapeMeasures(responses, measures);
+    return measures;
+  }
   for (const StudyCondition& c : summary.conditions) {
     for (const StudyPerson& person : c.people) measures.people[c.name].push_back(summary.headline.scale * person.headline);
     measures.unsettled[c.name] = isUnsettled(c);
@@ -84,6 +92,26 @@ StudyMeasures measuresOf(const StudySummary& summary, const std::vector<Response
   std::vector<double> errors;
   for (std::size_t i = 0; i < delays.size(); ++i) errors.push_back(1e-3 * delays[i] * speeds[i]);
   if (!errors.empty()) measures.people["place-error"] = errors;
+  return measures;
+}
+
+StudyMeasures measuresOf(const std::vector<TrialRecord>& trials) {
+  const std::map<std::string, std::string> names = {
+      {"tries", "tries"}, {"pickup_time", "pickup-time"}, {"alignment_error", "alignment-error"}, {"alignment_time", "alignment-time"}};
+  std::map<std::int64_t, std::vector<TrialRecord>> of_person;
+  for (const TrialRecord& t : trials) of_person[t.participant].push_back(t);
+  StudyMeasures measures;
+  measures.persons = of_person.size();
+  for (const auto& [person, own] : of_person) {
+    const PersonMeans means = personMeans(own);
+    for (std::size_t m = 0; m < findingMeasures().size(); ++m) {
+      const auto name = names.find(findingMeasures()[m].key);
+      if (name == names.end()) continue;
+      measures.people[name->second + ":force"].push_back(means.force[m]);
+      measures.people[name->second + ":cld"].push_back(means.cld[m]);
+      measures.people[name->second + ":longer"].push_back(means.cld[m] - means.force[m]);
+    }
+  }
   return measures;
 }
 

@@ -6,6 +6,10 @@
 //   error                of matched places, mean absolute [mm];   error:inner, error:outer  at the inner and the two outermost places
 //   inward:outer         signed error towards the pad's middle at the two outermost places [mm]
 //
+//   tries:C, pickup-time:C, alignment-error:C, alignment-time:C     of both manipulation tasks, C "force" or "cld" [-], [s], [deg], [s]
+//   alignment-time:longer                                            with the display, against without [s]
+//   shape identification: shape_measures.h
+//
 // Who has no value has NaN; people stand in the same order everywhere.
 #pragma once
 #include <map>
@@ -19,10 +23,13 @@ namespace pincer::tasks {
 struct StudyMeasures {
   std::map<std::string, std::vector<double>> people;
   std::map<std::string, bool> unsettled;  // measures whose staircases found no threshold
+  std::size_t persons = 0;                // only measures of so many values, one per person, can be paired
 
   const std::vector<double>& of(const std::string& measure) const;  // empty where there is none
 };
 
 StudyMeasures measuresOf(const StudySummary& summary, const std::vector<ResponseRecord>& responses);
+// Of the manipulation tasks.
+StudyMeasures measuresOf(const std::vector<TrialRecord>& trials);
 
 }  // namespace pincer::tasks

@@ -27,7 +27,7 @@ std::string publishedText(const Claim& c) {
   return c.kind == ClaimKind::kOrder ? "this order" : c.kind == ClaimKind::kNull ? "no difference" : "-";
 }
 
-bool hasEvidence(const Claim& c, const ClaimEvidence& e) { return isJudged(c) && e.studies > 0 && c.mark != ClaimMark::kNotAsPublished; }
+bool hasEvidence(const Claim& c, const ClaimEvidence& e) { return isJudged(c) && e.studies > 0; }
 
 std::string foundText(const Claim& c, const ClaimEvidence& e) {
   if (!hasEvidence(c, e)) return "";

@@ -46,7 +46,7 @@ std::string nullVerdict(const Claim& c, const ClaimEvidence& e) {
 
 std::string verdictOn(const Claim& c, const ClaimEvidence& e) {
   if (c.kind == ClaimKind::kBench || c.kind == ClaimKind::kPeopleOnly || c.kind == ClaimKind::kNotTested) return "-";
-  if (c.mark == ClaimMark::kNotAsPublished || e.studies == 0) return "not run";
+  if (e.studies == 0) return "not run";
   if (c.mark == ClaimMark::kCalibration) return "calibration";
   if (e.studies < kFewestStudies) return "too few studies";
   if (c.kind == ClaimKind::kFigure) return figureVerdict(c, e);
@@ -68,5 +68,7 @@ std::string claimsHash() {
   for (const char ch : claimsText()) hash = (hash ^ static_cast<unsigned char>(ch)) * 1099511628211u;
   return fmt::format("{:016x}", hash);
 }
+
+std::string claimsJson(const std::string& hash) { return fmt::format("{{\"claims\": \"{}\"}}", hash); }
 
 }  // namespace pincer::tasks

@@ -24,7 +24,7 @@ enum class ClaimKind : std::uint8_t { kFigure, kOrder, kNull, kBench, kPeopleOnl
 // kTukey: among C1 .. C4. kAboveZero: of one group. The rest compare a and b.
 enum class ClaimTest : std::uint8_t { kNone, kTukey, kStudent, kWelch, kPaired, kAboveZero, kOneWay };
 enum class MarginKind : std::uint8_t { kNone, kDifference, kRatio };
-enum class ClaimMark : std::uint8_t { kCounted, kCalibration, kPilot, kNotAsPublished };
+enum class ClaimMark : std::uint8_t { kCounted, kCalibration, kPilot };
 
 struct Claim {
   const char *id, *study;
@@ -44,6 +44,7 @@ const std::vector<Claim>& publishedClaims();
 // All that decides a verdict, as text, and its fingerprint, which sessions keep.
 std::string claimsText();
 std::string claimsHash();
+std::string claimsJson(const std::string& hash);  // as a session keeps it
 
 // What many studies said of a claim.
 struct ClaimEvidence {

@@ -97,7 +97,7 @@ ManipulationStudy experimentOf(const FindingsOptions& options, const FindingsVar
 }
 
 VariantResult judgeVariant(const FindingsVariant& variant, const std::vector<std::string>& sessions) {
-  VariantResult result{variant.name, variant.what, "", {}};
+  VariantResult result{variant.name, variant.what, "", {}, sessions};
   const auto experiments = experimentsOf(sessions, result.hash);
   if (experiments.empty()) return result;
   for (std::size_t m = 0; m < findingMeasures().size(); ++m) result.findings.push_back(summarise(experiments, m));

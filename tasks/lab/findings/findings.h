@@ -53,8 +53,9 @@ struct FindingResult {
 };
 
 struct VariantResult {
-  std::string name, what, hash;         // of the participants' parameters
-  std::vector<FindingResult> findings;  // one per measure
+  std::string name, what, hash;            // of the participants' parameters
+  std::vector<FindingResult> findings;     // one per measure
+  std::vector<std::string> sessions = {};  // that it was judged by
 };
 
 // What the sessions of a variant's experiments say; those that aren't whole are left out. No findings where none is. Throws InputError for one that

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -54,13 +55,14 @@ bool FingerTrial::tick(double servo_time) {
   finger_.advanceTo(servo_time);
   const double now = finger_.time(servo_time), dt = now > now_ ? now - now_ : 1e-3;
   now_ = now;
-  const double start = steadySeconds();
+  const bool kept = ticks_ % asked_.stride == 0;  // reading the clock takes as long as the display's tick
+  const double start = kept ? steadySeconds() : 0;
   cause_ = cut_ ? devices::Trip::kMissedDeadline : finger_.cut();
   if (cause_ != devices::Trip::kNone) devices::trip(gate(), cause_);
   inputs_ = finger_.sample();
   outputs_ = step(inputs_, now, dt);
-  const double took = steadySeconds() - start;
-  if (stage_ == Stage::kInterval) count(dt);
+  const double took = kept ? steadySeconds() - start : 0;
+  if (isCounted()) count(dt);
   const FingerDeed deed = finger_.apply(outputs_, cue_, now);
   const OneFingerAction action = hear(deed);
   if (action.enters && entered_places_.size() < entered_places_.capacity()) entered_places_.push_back(finger_.tactorPlace());
@@ -110,7 +112,7 @@ void FingerTrial::advance(const OneFingerAction& action, double now) {
   cue_ = Cue::kNone;
   if (gate().trip != devices::Trip::kNone) return end("fault");
   if (!isPersons() && now > asked_.timeout) return end("timeout");
-  const bool ready = now >= gateLimits().ramp_time && (!isPersons() || felt().gap > kIsRaised);
+  const bool ready = now >= std::max(asked_.wait, gateLimits().ramp_time) && (!isPersons() || felt().gap > kIsRaised);
   if (stage_ == Stage::kPrepare ? ready : stage_ == Stage::kPause && now >= entered_ + kPauseTime) {
     enter(Stage::kInterval, now);
     cue_ = Cue::kStart;
@@ -137,6 +139,13 @@ void FingerTrial::end(const char* outcome) {
   outcome_ = outcome;
   stage_ = Stage::kOver;
   note(outcome);
+}
+
+bool FingerTrial::isCounted() {
+  if (!asked_.counts_from_touch) return stage_ == Stage::kInterval;
+  const bool runs = stage_ == Stage::kInterval || stage_ == Stage::kAnswer;
+  has_touched_ = has_touched_ || (runs && felt().touches);
+  return runs && has_touched_;
 }
 
 void FingerTrial::count(double dt) {

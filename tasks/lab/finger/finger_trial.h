@@ -35,8 +35,10 @@ struct TrialTexts {
 
 struct FingerTrialSetup {
   std::int64_t trial = 0;
-  int stride = 50;       // every stride-th tick is recorded
-  double timeout = 120;  // of simulated participants [s]
+  int stride = 50;                 // every stride-th tick is recorded
+  double timeout = 120;            // of simulated participants [s]
+  double wait = 0;                 // until the first tone, at least [s]
+  bool counts_from_touch = false;  // duration and contact are counted from the first touch to the answer; else over the intervals
   int intervals = 1;
   TrialQuestion question = TrialQuestion::kWhich;
   int choices = 2;                 // of the keys that answer
@@ -127,6 +129,7 @@ class FingerTrial : public ServoCycle {
   bool isOnTarget() const;
   void advance(const OneFingerAction& action, double now);
   void enter(Stage stage, double now);
+  bool isCounted();
   void count(double dt);
   void record(const FingerDeed& deed, double now, double took);
   void end(const char* outcome);
@@ -140,7 +143,7 @@ class FingerTrial : public ServoCycle {
   Stage stage_ = Stage::kPrepare;
   Cue cue_ = Cue::kNone;
   int shown_ = 0, chosen_ = 0;
-  bool answered_ = false, has_entered_ = false, must_raise_ = false;
+  bool answered_ = false, has_entered_ = false, must_raise_ = false, has_touched_ = false;
   double now_ = 0, entered_ = 0;              // [s]
   double shown_time_ = 0, contact_time_ = 0;  // [s]
   double answered_after_ = 0;                 // [s]

@@ -11,7 +11,8 @@ devices::MouseMount mountAt(const FingerPlace& place) {
 
 }  // namespace
 
-MouseFinger::MouseFinger(const FingerPlace& place, AnswerBox& keys) : keys_(keys), hand_({mountAt(place)}), display_(place) {
+MouseFinger::MouseFinger(const FingerPlace& place, AnswerBox& keys)
+    : keys_(keys), hand_({mountAt(place)}), display_(simulatedDisplay(place.finger_radius)) {
   wear_.arm = hand_.arm(0).capabilities();
   wear_.is_person = wear_.draws_touch = true;
 }

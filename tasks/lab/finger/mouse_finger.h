@@ -23,7 +23,7 @@ class MouseFinger final : public WornFinger {
  private:
   AnswerBox& keys_;
   devices::MouseHand hand_;
-  SimulatedDisplay display_;
+  devices::SimOneDofCld display_;
   FingerWear wear_;
   FingerInputs inputs_;
   double now_ = 0, tactor_place_ = 0;  // [s], [m]

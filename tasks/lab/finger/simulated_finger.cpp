@@ -12,35 +12,15 @@ devices::SimArmSettings fingerArm(const FingerPlace& place) {
 
 }  // namespace
 
-SimulatedDisplay::SimulatedDisplay(const FingerPlace& place) {
-  if (!place.one_dof) {
-    two_dof_.emplace();
-    return;
-  }
+devices::SimOneDofCld simulatedDisplay(double finger_radius) {
   devices::SimOneDofCldSettings settings;
   settings.serial = "index";
-  settings.map.finger_diameter = 2 * place.finger_radius;
-  one_dof_.emplace(settings);
-}
-
-void SimulatedDisplay::advance(double dt) { one_dof_ ? one_dof_->advance(dt) : two_dof_->advance(dt); }
-devices::TactileSample SimulatedDisplay::sample() { return one_dof_ ? one_dof_->sample() : two_dof_->sample(); }
-void SimulatedDisplay::command(const devices::TactileCommand& command) {
-  one_dof_ ? one_dof_->command(command) : two_dof_->command(command);
-}
-void SimulatedDisplay::setTransmission(const devices::VirtualTransmission& transmission) {
-  if (one_dof_) one_dof_->setTransmission(transmission);
-}
-const devices::TactileCapabilities& SimulatedDisplay::capabilities() const {
-  return one_dof_ ? one_dof_->capabilities() : two_dof_->capabilities();
-}
-double SimulatedDisplay::truePlace() {
-  if (one_dof_) return one_dof_->trueRoller();
-  return two_dof_->sample().place_L.value_or(Vec2::Zero()).x();
+  settings.map.finger_diameter = 2 * finger_radius;
+  return devices::SimOneDofCld(settings);
 }
 
 SimulatedFinger::SimulatedFinger(const FingerPlace& place, OneFingerObserver& observer)
-    : q_WD_(place.X_WD.q), observer_(observer), arm_(fingerArm(place)), display_(place) {
+    : q_WD_(place.X_WD.q), observer_(observer), arm_(fingerArm(place)), display_(simulatedDisplay(place.finger_radius)) {
   wear_.arm = arm_.capabilities();
   // The hand is on the arm before the first tick.
   const OneFingerAction action = observer_.act({arm_.sample(), Vec3::Zero(), display_.sample()}, 0, Cue::kNone);
@@ -66,7 +46,7 @@ FingerDeed SimulatedFinger::apply(const FingerOutputs& outputs, Cue cue, double 
   display_.command(outputs.tactile);
   const OneFingerAction action = observer_.act({inputs_.arm, outputs.f_D, inputs_.tactile}, now, cue);
   arm_.setHand(action.pull);
-  tactor_place_ = display_.truePlace();
+  tactor_place_ = display_.trueRoller();
   if (action.q_WF) {
     arm_.setGimbal(q_WD_.conjugate() * *action.q_WF);
   } else if (action.pitch != 0) {

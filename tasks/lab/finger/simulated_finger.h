@@ -1,27 +1,13 @@
 // simulated_finger: a simulated arm and display in virtual time, and the participant whose finger wears them.
 #pragma once
 #include "pincer/devices/arm/sim_arm.h"
-#include "pincer/devices/cld/sim_cld.h"
 #include "pincer/devices/cld/sim_one_dof_cld.h"
 #include "pincer/tasks/lab/finger/worn_finger.h"
 
 namespace pincer::tasks {
 
-// A simulated display of the one kind or the other.
-class SimulatedDisplay {
- public:
-  explicit SimulatedDisplay(const FingerPlace& place);
-  void advance(double dt);
-  devices::TactileSample sample();
-  void command(const devices::TactileCommand& command);
-  void setTransmission(const devices::VirtualTransmission& transmission);
-  double truePlace();  // along the finger [m of arc]
-  const devices::TactileCapabilities& capabilities() const;
-
- private:
-  std::optional<devices::SimOneDofCld> one_dof_;
-  std::optional<devices::SimCld> two_dof_;
-};
+// A simulated 1-DOF display on a finger of this radius [m].
+devices::SimOneDofCld simulatedDisplay(double finger_radius);
 
 class SimulatedFinger final : public WornFinger {
  public:
@@ -39,7 +25,7 @@ class SimulatedFinger final : public WornFinger {
   Quat q_WD_;
   OneFingerObserver& observer_;
   devices::SimArm arm_;
-  SimulatedDisplay display_;
+  devices::SimOneDofCld display_;
   FingerWear wear_;
   FingerInputs inputs_;
   double now_ = 0, tactor_place_ = 0;  // [s], [m]

@@ -13,7 +13,6 @@ struct FingerPlace {
   Pose X_WD;                      // of the arm's base
   Vec3 start_W = Vec3::Zero();    // of the fingertip [m]
   double finger_radius = 0.02;    // [m]
-  bool one_dof = true;            // the tactor moves along the finger only
   std::optional<Quat> q_WF = {};  // how the finger is held, of a trial that asks; absent: the arm needn't tell
 };
 

@@ -7,70 +7,79 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr double kFeltPush = 0.3;       // while following, a weaker push means that the finger has left the surface [N]
-constexpr double kSinkSpeed = 0.05;     // then the aim goes in [m/s]
-constexpr double kRoundOff = 1e-12;     // keeps a variance of 0 positive [m^2]
-constexpr double kLeast = 1e-12;        // a likelihood: no reading rules a solid out for ever
-constexpr double kGiveWay = 20;         // else the aim goes to where the finger would feel the wanted push, at this rate [1/s]
-constexpr double kLeastReach = 0.02;    // nearer the middle the angle goes no faster [m]
-constexpr double kLeastProgress = 0.1;  // of the finger's speed: however steep the surface, the pass goes on
-constexpr double kLeastInPlane = 0.1;   // a push further than this from the pass's plane (as a cosine) doesn't say where the surface goes
+constexpr double kFeltPush = 0.3;        // while following, a weaker push means that the finger has left the surface [N]
+constexpr double kSinkSpeed = 0.05;      // then the aim goes in [m/s]
+constexpr double kRoundOff = 1e-12;      // keeps a variance of 0 positive [m^2]
+constexpr double kLeast = 1e-12;         // a likelihood: no reading rules a solid out for ever
+constexpr double kGiveWay = 20;          // else the aim goes to where the finger would feel the wanted push, at this rate [1/s]
+constexpr double kLeastReach = 0.02;     // nearer the middle the angle goes no faster [m]
+constexpr double kLeastProgress = 0.1;   // of the finger's speed: however steep the surface, the sweep goes on
+constexpr double kLeastInPlane = 0.1;    // a push further than this from the sweep's plane (as a cosine) doesn't say where the surface goes
+constexpr double kSmallestSize = 0.3;    // of a solid against what is imagined: smaller none is believed [-]
+constexpr double kLeastForeAft = 0.1;    // of a normal: the angle of one that points aside tells nothing
+constexpr double kTellsNothing = 0.01;   // chance that a reading of the tactor is of something else (choice)
+constexpr double kStep = 1e-3;           // of the differences, in the imagined solid's own size [m]
+constexpr std::uint64_t kTiltShare = 1;  // part of a person's seed
+constexpr int kSweepsOfRound = 6;
 
 double angleBetweenUnits(const Vec3& a, const Vec3& b) { return math::atan2(a.cross(b).norm(), a.dot(b)); }
 
-// Turned by a random small angle about both axes across.
-Vec3 blurred(const Vec3& direction, double sd, Random& random) {
-  const Quat q = drawRotation(sd, random);
-  return q * direction;
-}
+// Of the contact on the finger, distal positive, where the surface's normal is `n_W`.
+double foreAftAngle(const Vec3& n_W) { return math::atan2(-n_W.y(), n_W.z()); }
+
+double square(double x) { return x * x; }
+
+double within(double angle) { return angle - 2 * std::numbers::pi * std::round(angle / (2 * std::numbers::pi)); }
 
 }  // namespace
 
 ShapeExplorer::ShapeExplorer(std::uint64_t seed, const ShapeLimits& limits, const HandRanges& ranges)
-    : limits_(limits), body_(drawBody(ranges, seed)), solids_(knownSolids()), random_(seed) {}
+    : limits_(limits),
+      body_(drawBody(ranges, seed)),
+      tilt_share_(Random(seedFor(seed, kTiltShare)).uniform(limits.tilt_min, limits.tilt_max)),
+      solids_(lyingSolids()),
+      random_(seed),
+      beliefs_(solids_.size()) {}
 
 void ShapeExplorer::begin(const ShapeCues& cues) {
   cues_ = cues;
   random_ = Random(cues.seed);
   misplacement_W_ = limits_.common.placement_sd * random_.normal3();
-  q_felt_true_ = drawRotation(limits_.common.orientation_sd, random_);
-  const double variance = limits_.common.placement_sd * limits_.common.placement_sd;
-  beliefs_.fill({0, Vec3::Zero(), variance * Mat3::Identity()});
-  passes_ = 0;
-  angle_ = 0;
+  felt_tilt_error_ = limits_.common.orientation_sd * random_.normal();
+  SolidBelief fresh;
+  fresh.covariance.diagonal() << Vec3::Constant(square(limits_.common.placement_sd)), square(limits_.size_sd);
+  for (std::size_t k = 0; k < solids_.size(); ++k) {
+    beliefs_[k] = fresh;
+    beliefs_[k].log_likelihood = -math::log(solids_[k].ways);
+  }
+  sweeps_ = 0;
+  from_ = angle_ = 0;
   reach_ = limits_.distance;
   first_place_.reset();
   tactor_moves_ = false;
   enter(Phase::kListen);
 }
 
-const ShapeExplorer::Pass& ShapeExplorer::pass() const {
-  static const std::array<Pass, 3> kPasses{{{Vec3::UnitX(), Vec3::UnitY(), 2 * std::numbers::pi},
-                                            {Vec3::UnitX(), Vec3::UnitZ(), std::numbers::pi},
-                                            {-Vec3::UnitY(), Vec3::UnitZ(), std::numbers::pi}}};
-  return kPasses[static_cast<std::size_t>(passes_) % kPasses.size()];
+// Sides as far as the ends are felt; away, and less towards the body, where the display's wires bend away.
+const ShapeExplorer::Sweep& ShapeExplorer::sweep() const {
+  static const std::array<Sweep, kSweepsOfRound> kSweeps{
+      {{Vec3::UnitX(), -1.4}, {Vec3::UnitX(), 1.4}, {Vec3::UnitX(), 0}, {Vec3::UnitY(), 1.2}, {Vec3::UnitY(), -0.9}, {Vec3::UnitY(), 0}}};
+  return kSweeps[static_cast<std::size_t>(sweeps_ % kSweepsOfRound)];
 }
 
-Vec3 ShapeExplorer::ray() const {
-  if (phase_ == Phase::kAnswer) return turn_from_;
-  if (phase_ == Phase::kTurn) {
-    const Vec3 across = (pass().from - pass().from.dot(turn_from_) * turn_from_).normalized();
-    return math::cos(angle_) * turn_from_ + math::sin(angle_) * across;
-  }
-  return math::cos(angle_) * pass().from + math::sin(angle_) * pass().towards;
-}
+double ShapeExplorer::direction() const { return sweep().target < from_ ? -1 : 1; }
 
-Vec3 ShapeExplorer::along() const {
-  if (phase_ == Phase::kTurn || phase_ == Phase::kAnswer) return ray().cross(Vec3::UnitZ()).normalized();  // turns are level
-  return -math::sin(angle_) * pass().from + math::cos(angle_) * pass().towards;
-}
+Vec3 ShapeExplorer::ray() const { return math::cos(angle_) * Vec3::UnitZ() + math::sin(angle_) * sweep().side; }
 
-// F: -z towards the middle, x along the pass.
+Vec3 ShapeExplorer::along() const { return direction() * (math::cos(angle_) * sweep().side - math::sin(angle_) * Vec3::UnitZ()); }
+
+double ShapeExplorer::tilt() const { return sweep().side.y() > 0 ? -tilt_share_ * angle_ : 0; }
+
 Quat ShapeExplorer::held() const {
-  const Vec3 z = ray(), x = along();
   Mat3 R;
-  R << x, z.cross(x), z;
-  return Quat(R);
+  R << Vec3::UnitY(), -Vec3::UnitX(), Vec3::UnitZ();
+  const auto [sine, cosine] = math::sinCos(0.5 * tilt());
+  return Quat(cosine, sine, 0, 0) * Quat(R);
 }
 
 OneFingerAction ShapeExplorer::act(const FingerPercept& finger, double time, Cue cue) {
@@ -78,8 +87,8 @@ OneFingerAction ShapeExplorer::act(const FingerPercept& finger, double time, Cue
   now_ = time;
   OneFingerAction action;
   if (finger.tactile.valid && finger.tactile.place_L) {
-    if (!first_place_) first_place_ = *finger.tactile.place_L;
-    tactor_moves_ = tactor_moves_ || (*finger.tactile.place_L - *first_place_).norm() > limits_.common.tactor_moves;
+    if (!first_place_) first_place_ = finger.tactile.place_L->x();
+    tactor_moves_ = tactor_moves_ || std::abs(finger.tactile.place_L->x() - *first_place_) > limits_.common.tactor_moves;
   }
   if (phase_ == Phase::kListen && cue == Cue::kStart) enter(Phase::kApproach);
   if (phase_ == Phase::kApproach) {
@@ -87,23 +96,9 @@ OneFingerAction ShapeExplorer::act(const FingerPercept& finger, double time, Cue
     if (finger.f_D.norm() > kFeltPush || reach_ < 0) enter(Phase::kFollow);
   } else if (phase_ == Phase::kFollow) {
     follow(finger, dt);
-  } else if (phase_ == Phase::kLeave) {
-    reach_ = std::min(limits_.distance, reach_ + limits_.approach_speed * dt);
-    if (reach_ >= limits_.distance) {
-      turn_from_ = ray();
-      ++passes_;
-      angle_ = 0;
-      const bool done = passes_ >= limits_.most_passes || (passes_ >= 3 && sureness() > limits_.sure);
-      action.interval_over = done;
-      enter(done ? Phase::kAnswer : Phase::kTurn);
-    }
-  } else if (phase_ == Phase::kTurn) {
-    angle_ += limits_.approach_speed * dt / limits_.distance;
-    if (angle_ >= angleBetweenUnits(turn_from_, pass().from)) {
-      angle_ = 0;
-      enter(Phase::kApproach);
-    }
+    action.interval_over = phase_ == Phase::kAnswer;
   } else if (phase_ == Phase::kAnswer) {
+    reach_ = std::min(limits_.distance, reach_ + limits_.approach_speed * dt);
     action.answered = now_ - entered_ >= limits_.common.reaction_time;
   }
   action.q_WF = held();
@@ -130,8 +125,16 @@ void ShapeExplorer::follow(const FingerPercept& finger, double dt) {
     read_at_ = now_;
     read(finger, p_W);
   }
-  if (angle_ < pass().angle) return;
-  enter(Phase::kLeave);
+  if (direction() * (sweep().target - angle_) <= 0) endSweep();
+}
+
+void ShapeExplorer::endSweep() {
+  const bool at_middle = sweep().target == 0;
+  from_ = at_middle ? 0 : angle_;
+  ++sweeps_;
+  if (!at_middle) return;
+  angle_ = 0;
+  if (sweeps_ >= limits_.most_rounds * kSweepsOfRound || sureness() > limits_.sure) enter(Phase::kAnswer);
 }
 
 // Along the surface, and to the depth at which it pushes as hard as is wanted. `p_W` from the middle, `n_W` where the push goes, unit.
@@ -142,85 +145,126 @@ void ShapeExplorer::keepTo(const Vec3& p_W, const Vec3& n_W, double dt) {
   moveAim(body_.speed * dt * onwards - kGiveWay * dt * deeper * n_W, kLeastProgress * body_.speed * dt);
 }
 
-// By a step in the pass's plane, at least by so much along the pass [m].
+// By a step in the sweep's plane, at least by so much along the sweep [m].
 void ShapeExplorer::moveAim(const Vec3& step_W, double least) {
   const double outwards = step_W.dot(ray());
-  angle_ += std::max(least, step_W.dot(along())) / std::max(kLeastReach, reach_);
+  angle_ += direction() * std::max(least, step_W.dot(along())) / std::max(kLeastReach, reach_);
   reach_ = std::max(0.0, reach_ + outwards);
 }
 
 void ShapeExplorer::read(const FingerPercept& finger, const Vec3& p_W) {
-  const Vec3 felt_W = p_W - cues_.middle_W + misplacement_W_ + limits_.place_sd * random_.normal3();
-  const double sd_push = limits_.common.direction_sd;
-  Vec3 n_W = blurred((cues_.q_WD * finger.f_D).normalized(), sd_push, random_);
-  double sd_n = sd_push;
-  if (const auto shown = directionOfTactor(finger, held())) {
-    const double sd_place = limits_.common.tactor_sd / limits_.common.tactor_bias;
-    const double sd_shown = math::hypot(sd_place / cues_.tip_radius, limits_.common.orientation_sd);
-    const double w_push = 1 / (sd_push * sd_push), w_shown = 1 / (sd_shown * sd_shown);
-    n_W = (w_push * n_W + w_shown * *shown).normalized();
-    sd_n = 1 / std::sqrt(w_push + w_shown);
-  }
-  for (std::size_t k = 0; k < solids_.size(); ++k) believe(beliefs_[k], solids_[k], felt_W, n_W, sd_n);
+  Reading reading;
+  reading.p_W = p_W - cues_.middle_W + misplacement_W_ + limits_.place_sd * random_.normal3();
+  reading.push_W = drawRotation(limits_.common.direction_sd, random_) * (cues_.q_WD * finger.f_D).normalized();
+  readTactor(finger, reading);
+  for (std::size_t k = 0; k < solids_.size(); ++k) believe(beliefs_[k], solids_[k].solid, reading);
+}
+
+// Absent where the tactor has stood still since the trial began.
+void ShapeExplorer::readTactor(const FingerPercept& finger, Reading& reading) {
+  if (!tactor_moves_ || !finger.tactile.valid || !finger.tactile.place_L) return;
+  const double sd = limits_.common.tactor_sd / limits_.common.tactor_bias;
+  reading.shown = (finger.tactile.place_L->x() + sd * random_.normal()) / cues_.tip_radius;  // felt place over the gain
+  reading.shown_sd = math::hypot(sd / cues_.tip_radius, limits_.common.orientation_sd);
+  reading.tilt = tilt() + felt_tilt_error_;
+}
+
+// Place of the tactor for a contact with this normal, over the finger's radius.
+double ShapeExplorer::tactorAngleFor(const Vec3& n_W, double tilt) const {
+  const double most = cues_.tactor_reach / cues_.tip_radius;
+  return std::clamp(within(foreAftAngle(n_W) - tilt), -most, most);
+}
+
+ShapeExplorer::Meeting ShapeExplorer::meet(const SolidBelief& belief, const KnownSolid& solid, const Vec3& p_W) const {
+  Meeting m;
+  m.at = (p_W - belief.misplacement_W) / belief.size;
+  m.nearest = solid.nearest(m.at);
+  m.n = solid.outward(m.at);
+  m.off = belief.size * (m.at - m.nearest).norm() - cues_.tip_radius;
+  return m;
 }
 
 // The misplacement is the same in all readings of a trial: taken for noise of each it would make them tell more than they do.
-void ShapeExplorer::believe(SolidBelief& b, const KnownSolid& solid, const Vec3& felt_W, const Vec3& n_W, double sd_n) const {
-  const Vec3 q_W = felt_W - b.misplacement_W, outward_W = solid.outward(q_W);
-  const double off = (q_W - solid.nearest(q_W)).norm() - cues_.tip_radius;
-  const Vec3 spread_W = b.covariance * outward_W;
-  const double S = outward_W.dot(spread_W) + limits_.place_sd * limits_.place_sd;
-  b.log_likelihood -= 0.5 * (off * off / S + math::log(S));
-  b.log_likelihood += math::log(likelihoodOf(n_W, sd_n, solid, q_W, outward_W, off, b.covariance));
-  b.misplacement_W += spread_W * (off / S);
-  b.covariance -= spread_W * spread_W.transpose() / S;
+void ShapeExplorer::believe(SolidBelief& b, const KnownSolid& solid, const Reading& reading) const {
+  const Meeting m = meet(b, solid, reading.p_W);
+  Gain H;
+  H << m.n, m.n.dot(m.nearest);
+  const Gain spread = b.covariance * H;
+  const double S = H.dot(spread) + square(limits_.place_sd);
+  b.log_likelihood -= 0.5 * (m.off * m.off / S + math::log(S));
+  b.log_likelihood += math::log(likelihoodOf(reading, b, solid, m));
+  b.misplacement_W += spread.head<3>() * (m.off / S);
+  b.size = std::max(kSmallestSize, b.size + spread[3] * m.off / S);
+  b.covariance -= spread * spread.transpose() / S;
+  if (reading.shown) believeTactor(b, solid, reading);
 }
 
-// Of a felt direction: where the finger is on the solid is known as badly as it was felt, and near an edge another place has another direction. The
-// mean over six places spread as the place is once the finger is known to touch.
-double ShapeExplorer::likelihoodOf(const Vec3& n_W, double sd_n, const KnownSolid& solid, const Vec3& q_W, const Vec3& outward_W,
-                                   double off, const Mat3& covariance) const {
-  const Mat3 spread = covariance + limits_.place_sd * limits_.place_sd * Mat3::Identity();
-  const Vec3 gain = spread * outward_W / outward_W.dot(spread * outward_W);
-  const Vec3 touching_W = q_W - gain * off;
-  const Mat3 left = spread - gain * (spread * outward_W).transpose() + kRoundOff * Mat3::Identity();
-  const Mat3 root = std::sqrt(3.0) * Mat3(left.llt().matrixL());
+// Near an edge, or on a small round solid, a slightly other place has another direction: that much the tactor tells of the place instead.
+void ShapeExplorer::believeTactor(SolidBelief& b, const KnownSolid& solid, const Reading& reading) const {
+  const Meeting m = meet(b, solid, reading.p_W);
+  Vec3 slope;
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 step = kStep * Vec3::Unit(i);
+    const Vec3 ahead = solid.outward(m.at + step), behind = solid.outward(m.at - step);
+    slope[i] = (tactorAngleFor(ahead, reading.tilt) - tactorAngleFor(behind, reading.tilt)) / (2 * kStep);
+  }
+  Gain H;  // of m and c: q / c = (p - m) / c
+  H << -slope / b.size, -slope.dot(m.at) / b.size;
+  const double fore_aft = std::max(kLeastForeAft, math::hypot(m.n.y(), m.n.z()));
+  const double y = *reading.shown - tactorAngleFor(m.n, reading.tilt), variance = square(reading.shown_sd / fore_aft);
+  const Gain spread = b.covariance * H;
+  const double S = H.dot(spread) + variance;
+  const double density = math::exp(-0.5 * y * y / S) / std::sqrt(2 * std::numbers::pi * S);
+  const double elsewhere = kTellsNothing / (2 * std::numbers::pi), told = (1 - kTellsNothing) * density;
+  b.log_likelihood += math::log(told + elsewhere);
+  const double trust = told / (told + elsewhere);
+  b.misplacement_W += trust * y / S * spread.head<3>();
+  b.size = std::max(kSmallestSize, b.size + trust * y / S * spread[3]);
+  b.covariance -= trust / S * spread * spread.transpose();
+}
+
+// Of the felt push: where the finger is on the solid is known as badly as it was felt, and near an edge another place has another direction.
+// The mean over six places spread as the place is once the finger is known to touch.
+double ShapeExplorer::likelihoodOf(const Reading& reading, const SolidBelief& b, const KnownSolid& solid, const Meeting& m) const {
+  Eigen::Matrix<double, 3, kUnknowns> J;
+  J << Mat3::Identity(), m.at;
+  const Mat3 spread = J * b.covariance * J.transpose() + square(limits_.place_sd) * Mat3::Identity();
+  const Vec3 gain = spread * m.n / m.n.dot(spread * m.n);
+  const Vec3 touching = m.at - gain * (m.off / b.size);
+  const Mat3 left = spread - gain * (spread * m.n).transpose() + kRoundOff * Mat3::Identity();
+  const Mat3 root = std::sqrt(3.0) / b.size * Mat3(left.llt().matrixL());
   double sum = 0;
   for (int i = 0; i < 3; ++i) {
     for (const double sign : {-1.0, 1.0}) {
-      const double angle = angleBetweenUnits(n_W, solid.outward(touching_W + sign * root.col(i))) / sd_n;
-      sum += math::exp(-0.5 * angle * angle);
+      const Vec3 n = solid.outward(touching + sign * root.col(i));
+      sum += math::exp(-0.5 * square(angleBetweenUnits(reading.push_W, n) / limits_.common.direction_sd));
     }
   }
   return sum / 6 + kLeast;
 }
 
-// Out of the surface, from where the contact is on the pad. Absent where the tactor has stood still since the trial began, or may be at its stop.
-std::optional<Vec3> ShapeExplorer::directionOfTactor(const FingerPercept& finger, const Quat& q_WF) {
-  if (!tactor_moves_ || !finger.tactile.valid || !finger.tactile.place_L) return std::nullopt;
-  const double sd = limits_.common.tactor_sd / limits_.common.tactor_bias;
-  const Vec2 place = *finger.tactile.place_L + sd * random_.normal2();  // felt place over the gain
-  if (place.norm() > cues_.tactor_reach - sd) return std::nullopt;
-  const double a = place.norm() / cues_.tip_radius;
-  Vec3 to_contact_F(0, 0, -1);
-  if (a > 0) {
-    const Vec2 along = place.normalized();
-    // L: first axis x of F; second axis pad normal x distal = -z x x = -y of F
-    to_contact_F = Vec3(math::sin(a) * along.x(), -math::sin(a) * along.y(), -math::cos(a));
+std::array<double, kSolids> ShapeExplorer::chances() const {
+  double best = beliefs_[0].log_likelihood;
+  for (const SolidBelief& b : beliefs_) best = std::max(best, b.log_likelihood);
+  std::array<double, kSolids> chances{};
+  double sum = 0;
+  for (std::size_t k = 0; k < beliefs_.size(); ++k) {
+    const double weight = math::exp(beliefs_[k].log_likelihood - best);
+    chances[static_cast<std::size_t>(solids_[k].name)] += weight;
+    sum += weight;
   }
-  return Vec3(-(q_felt_true_ * (q_WF * to_contact_F)));
+  for (double& chance : chances) chance /= sum;
+  return chances;
 }
 
 int ShapeExplorer::answer() const {
-  const auto lessLikely = [](const SolidBelief& a, const SolidBelief& b) { return a.log_likelihood < b.log_likelihood; };
-  return static_cast<int>(std::max_element(beliefs_.begin(), beliefs_.end(), lessLikely) - beliefs_.begin());
+  const auto all = chances();
+  return static_cast<int>(std::max_element(all.begin(), all.end()) - all.begin());
 }
 
 double ShapeExplorer::sureness() const {
-  const double best = beliefs_[static_cast<std::size_t>(answer())].log_likelihood;
-  double sum = 0;
-  for (const SolidBelief& b : beliefs_) sum += math::exp(b.log_likelihood - best);
-  return 1 / sum;
+  const auto all = chances();
+  return *std::max_element(all.begin(), all.end());
 }
 
 }  // namespace pincer::tasks

@@ -6,6 +6,7 @@
 #include "pincer/tasks/lab/report/device_errors.h"
 #include "pincer/tasks/lab/report/figures.h"
 #include "pincer/tasks/lab/report/html_page.h"
+#include "pincer/tasks/lab/report/study_tests.h"
 
 namespace pincer::tasks {
 namespace {
@@ -45,6 +46,7 @@ std::string studyHtml(const StudySummary& s, const std::vector<Picture>& picture
   html += "<h2>Per condition</h2>\n<div class=\"wide\"><table>\n" + htmlRow(studyTableHeads(s), "th");
   for (const StudyCondition& c : s.conditions) html += htmlRow(studyTableRow(s, c), "td");
   html += fmt::format("</table></div>\n<p class=\"note\">{}</p>\n", escaped(studyNote(s)));
+  html += studyTestsHtml(s);
   for (const Picture& picture : pictures) html += htmlFigure(picture, figures_name);
   return html + errors + htmlFoot(s.info);
 }

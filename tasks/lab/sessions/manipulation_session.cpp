@@ -9,6 +9,7 @@
 #include "pincer/contact/error.h"
 #include "pincer/tasks/lab/experiments/manipulation_file.h"
 #include "pincer/tasks/lab/experiments/study_parameters.h"
+#include "pincer/tasks/lab/findings/claims.h"
 #include "pincer/tasks/lab/sessions/study_experiments.h"
 #include "pincer/tasks/lab/sessions/study_file.h"
 #include "pincer/tasks/run/files/json_writer.h"
@@ -124,6 +125,7 @@ SessionInfo manipulationSessionInfo(const ManipulationSessionOptions& o) {
   info.devices_json = devicesJson(o);
   info.participants_json = o.host.person ? personJson(*o.host.person) : describe(o.study.people);
   info.participants_hash = o.host.person ? fingerprint(info.participants_json) : hashOf(o.study.people);
+  if (!o.claims.empty()) info.scene_json = claimsJson(o.claims);
   return info;
 }
 

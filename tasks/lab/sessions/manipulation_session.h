@@ -14,6 +14,7 @@ struct ManipulationSessionOptions {
   ServoOptions servo;
   std::string devices = "simulated";  // who brings arms and displays, as the session says it
   TrialHost host = {};                // who watches, and whose hands they are
+  std::string claims;                 // fingerprint of the list that is to be judged by the session; empty: none
   int sample_rate =
       200;  // of the ticks that are kept [Hz], 0 (none) .. 1000; divides the servo's rate. A trial's row always counts every tick.
 };

@@ -82,9 +82,12 @@ void visitFields(const ShapeLimits& l, Visit&& visit) {
   visit("place_sd", l.place_sd);
   visit("press", l.press);
   visit("sure", l.sure);
-  visit("most_passes", l.most_passes);
+  visit("size_sd", l.size_sd);
+  visit("most_rounds", l.most_rounds);
   visit("distance", l.distance);
   visit("approach_speed", l.approach_speed);
+  visit("tilt_min", l.tilt_min);
+  visit("tilt_max", l.tilt_max);
 }
 
 template <class Visit>

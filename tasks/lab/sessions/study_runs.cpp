@@ -37,7 +37,7 @@ SessionRun runOfExperiment(const std::string& task, Study study, const StudyRuns
   StudySession session;
   session.path = pathOf(runs, task, experiment, control);
   session.info = studySessionInfo(task, study.seed, studyJson(study), participantsJson(study), {}, 0);
-  session.info.scene_json = fmt::format("{{\"claims\": \"{}\"}}", claimsHash());
+  session.info.scene_json = claimsJson(claimsHash());
   return {session.path, session.info, [=, &interrupted](bool resume, const ShareDone& share) {
             StudySession now = session;
             now.resume = resume;

@@ -46,10 +46,9 @@ SessionInfo studySessionInfo(const std::string& task, std::uint64_t seed, const 
   info.protocol_json = protocol_json;
   info.participants_json = participants_json;
   info.participants_hash = fingerprint(participants_json);
-  const char* display = task == "shape-identification" ? "simulated 2-DOF" : "simulated 1-DOF";
   JsonWriter json;
   const bool simulated = devices == "simulated" || devices == "mouse";
-  json.beginObject().key("arms").value(devices).key("tactile_display").value(simulated ? display : devices.c_str());
+  json.beginObject().key("arms").value(devices).key("tactile_display").value(simulated ? "simulated 1-DOF" : devices.c_str());
   json.key("rate").value(servo.rate);
   info.devices_json =
       json.key("sample_rate").value(sample_rate).key("real_time").value(servo.clock != ServoClock::kVirtual).endObject().text();

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "pincer/contact/io/atomic_file.h"
+#include "pincer/tasks/lab/findings/claims.h"
 #include "pincer/tasks/lab/sessions/manipulation_session.h"
 #include "pincer/tasks/lab/sessions/session_runs.h"
 #include "pincer/tasks/run/measure/timing.h"
@@ -23,6 +24,7 @@ SessionRun runOf(const FindingsOptions& options, const FindingsVariant& variant,
   ManipulationSessionOptions session;
   session.study = experimentOf(options, variant, experiment);
   session.sample_rate = 0;
+  session.claims = claimsHash();
   return {path, manipulationSessionInfo(session), [=, &interrupted, &ticks](bool resume, const ShareDone& share) {
             const auto progress = [&](const TrialProgress& p) { share(static_cast<double>(p.done) / static_cast<double>(p.total)); };
             const auto run = resume ? resumeManipulationSession : runManipulationSession;

@@ -10,7 +10,7 @@ namespace {
 
 std::string refusal(const Polyline& polyline, double largest_turn = 1.5) {
   try {
-    requireSound(polyline, largest_turn);
+    requireSound(polyline, largest_turn, 3.1);
   } catch (const InputError& e) {
     return e.what();
   }
@@ -20,11 +20,17 @@ std::string refusal(const Polyline& polyline, double largest_turn = 1.5) {
 TEST(Polyline, IsRefusedWithTheVertexAndTheRemedy) {
   EXPECT_EQ(refusal({{{0, 0}}, false}), "polyline: 1 vertices, needed are at least 2.");
   EXPECT_EQ(refusal({{{0, 0}, {1, 0}}, true}), "polyline: 2 vertices, needed are at least 3.");
-  EXPECT_EQ(refusal({{{0, 0}, {1, 0}, {1, 0}}, false}), "polyline: vertices 1 and 2 are at the same place. Name it once.");
-  EXPECT_EQ(refusal({{{0, 0}, {1, 0}, {1, 1}, {0, 0}}, true}, 3.1), "polyline: vertices 3 and 0 are at the same place. Name it once.");
+  EXPECT_EQ(refusal({{{0, 0}, {1, 0}, {1, 0}}, false}),
+            "polyline: vertex 1 is an end of an open path, which has no corner there. Name it once.");
+  EXPECT_EQ(refusal({{{0, 0}, {1, 0}, {1, 0}, {1, 0}, {1, 1}}, false}),
+            "polyline: vertices 1 and 3 are at the same place. Name it once, or twice in a row for a sharp corner.");
+  EXPECT_EQ(refusal({{{0, 0}, {1, 0}, {1, 1}, {0, 0}}, true}, 3.1),
+            "polyline: vertices 3 and 0 are at the same place. Name it once, or twice in a row for a sharp corner.");
   EXPECT_EQ(refusal({{{0, 0}, {std::numeric_limits<double>::quiet_NaN(), 0}}, false}), "polyline: vertex 1 isn't finite.");
-  EXPECT_EQ(refusal({{{0, 0}, {1, 0}, {1, 1}}, false}),
-            "polyline: the path turns by 90.0 degrees at vertex 1, allowed is less than 86. Add vertices there, or use the variant facet.");
+  EXPECT_EQ(
+      refusal({{{0, 0}, {1, 0}, {1, 1}}, false}),
+      "polyline: the path turns by 90.0 degrees at vertex 1, allowed is less than 86. Add vertices there, name it twice (a sharp corner), "
+      "or use the variant facet.");
   EXPECT_EQ(refusal({{{0, 0}, {1, 0}, {1, 1}}, false}, 1.6), "");
 }
 

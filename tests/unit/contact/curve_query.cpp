@@ -325,6 +325,49 @@ TEST(Curve, RefusesTheVariantThatExistsForMeshesOnly) {
   EXPECT_NO_THROW(Curve({{{0, 0}, {1, 0}, {1, 1}}, false}, SurfaceVariant::facet));
 }
 
+// Vertices named twice are sharp: a square so named has the distance of a square everywhere outside, and its corners push straight away from them.
+TEST(Curve, CornersNamedTwiceAreSharp) {
+  Polyline square{{}, true};
+  for (const Vec2& p : {Vec2(-0.03, -0.03), Vec2(0.03, -0.03), Vec2(0.03, 0.03), Vec2(-0.03, 0.03)}) {
+    square.vertices.push_back(p);
+    square.vertices.push_back(p);
+  }
+  const Curve curve(square, SurfaceVariant::smooth);
+  RandomNumbers random(3);
+  for (int i = 0; i < 500; ++i) {
+    const Vec2 C(random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1));
+    if (C.cwiseAbs().maxCoeff() < 0.031) continue;
+    const Vec2 away = C - C.cwiseMax(-0.03).cwiseMin(0.03);
+    const CurveContact found = queryFresh(curve, C, 0.005);
+    EXPECT_NEAR(found.phi, away.norm() - 0.005, 1e-15);
+    EXPECT_LT((found.n_B - away.normalized()).norm(), 1e-12);
+  }
+}
+
+// The published edge: 2 degrees between its faces. A finger that goes round it stays on it, and its contact turns as it does.
+TEST(Curve, AFingerGoesRoundASharpEdge) {
+  const double half = kDegree;
+  const Vec2 down = 0.03 * Vec2(std::sin(half), -std::cos(half));
+  const Curve blade({{down, Vec2::Zero(), Vec2::Zero(), Vec2(-down.x(), down.y())}, false}, SurfaceVariant::smooth);
+  CurveTracker tracker;
+  for (int k = -60; k <= 60; ++k) {
+    const double a = k * kDegree;
+    const CurveContact found = blade.queryCircle(onCircle(0.0129, a), 0.013, tracker);
+    EXPECT_LT(found.p_BS.norm(), 1e-15);
+    EXPECT_NEAR(found.phi, -1e-4, 1e-15);
+    EXPECT_NEAR(found.finger_angle, a, 1e-12);
+  }
+}
+
+// In a sharp hollow the nearer side counts, and from one to the other the depth goes on.
+TEST(Curve, TheNearerSideOfASharpHollowCounts) {
+  const Curve hollow({{Vec2(0.1, 0.1), Vec2::Zero(), Vec2::Zero(), Vec2(-0.1, 0.1)}, false}, SurfaceVariant::smooth);
+  const double side = std::sqrt(0.5);
+  EXPECT_NEAR(queryFresh(hollow, {0.001, 0.05}, 0.01).phi, side * 0.049 - 0.01, 1e-15);
+  EXPECT_NEAR(queryFresh(hollow, {-0.001, 0.05}, 0.01).phi, side * 0.049 - 0.01, 1e-15);
+  EXPECT_GT(queryFresh(hollow, {-0.001, 0.05}, 0.01).n_B.x(), 0);
+}
+
 TEST(Curve, AllocatesNothing) {
   if (!pincer::tests::allocationsAreCounted()) GTEST_SKIP() << "this build can't count allocations";
   const Curve curve(ellipse(0.05, 0.03, 40), SurfaceVariant::smooth);

@@ -58,7 +58,8 @@ TEST(NearestOutside, IsTheNearestPointOfTheWedge) {
 }
 
 TEST(Baselines, AllPressWithTheSpringsForce) {
-  for (const FingerMethod method : {FingerMethod::kGodObject, FingerMethod::kForceShading, FingerMethod::kPenalty}) {
+  for (const FingerMethod method :
+       {FingerMethod::kGodObject, FingerMethod::kForceShading, FingerMethod::kPenalty, FingerMethod::kFrictionCone}) {
     OnPlate f(method, 0.5, 0.5);
     f.lead(Vec3(0, 0, 8e-3));
     for (int i = 1; i <= 100; ++i) f.lead(Vec3(0, 0, 8e-3 - 2e-5 * i));
@@ -86,6 +87,24 @@ TEST(Baselines, ForceShadingSticksInTheConeAndSlidesOnIt) {
   EXPECT_NEAR(f.scratch.fingers[0].tangential_force / f.scratch.fingers[0].normal_force, 0.4, 0.21);  // between the two cones
 }
 
+// Two cones: held until 0.6 of the normal force, then 0.4 of it for as long as it slips, in any direction, and held again once it is within 0.4.
+TEST(Baselines, FrictionConeSlipsAtTheStaticConeAndSlidesOnTheDynamicOne) {
+  OnPlate f(FingerMethod::kFrictionCone, 0.6, 0.4);
+  f.lead(Vec3(0, 0, 8e-3));
+  for (int i = 0; i < 3; ++i) f.lead(Vec3(0, 0, 6e-3));
+  EXPECT_NEAR(f.lead(Vec3(1.19e-3, 0, 6e-3)).tangential_force, 1.19, 1e-9);  // 0.595 of 2 N
+  EXPECT_FALSE(f.scratch.fingers[0].sliding);
+  EXPECT_NEAR(f.lead(Vec3(1.21e-3, 0, 6e-3)).tangential_force, 0.8, 1e-9);
+  EXPECT_TRUE(f.scratch.fingers[0].sliding);
+  for (int i = 1; i <= 50; ++i) {
+    const Vec3 way(1.21e-3 + 5e-5 * i, 1e-4 * i, 6e-3);
+    EXPECT_NEAR(f.lead(way).tangential_force, 0.8, 1e-9);
+  }
+  const Vec3 back(1.21e-3 + 5e-5 * 50 - 2e-4, 1e-4 * 50, 6e-3);
+  EXPECT_LT(f.lead(back).tangential_force, 0.8);
+  EXPECT_FALSE(f.scratch.fingers[0].sliding);
+}
+
 TEST(Baselines, PenaltyCreepsUnderALoadThatFrictionShouldHold) {
   OnPlate f(FingerMethod::kPenalty, 0.5, 0.5);
   f.lead(Vec3(0, 0, 6e-3));
@@ -94,7 +113,8 @@ TEST(Baselines, PenaltyCreepsUnderALoadThatFrictionShouldHold) {
 
 // As outer forces on bodies: a ball that two such fingers squeeze stays between them, and action is reaction over a tick.
 TEST(Baselines, ActOnBodies) {
-  for (const FingerMethod method : {FingerMethod::kGodObject, FingerMethod::kForceShading, FingerMethod::kPenalty}) {
+  for (const FingerMethod method :
+       {FingerMethod::kGodObject, FingerMethod::kForceShading, FingerMethod::kPenalty, FingerMethod::kFrictionCone}) {
     tests::GraspWorld w = tests::pinchedBall(0.075, 0.6);
     w.model.world.options.gravity_W.setZero();
     BaselineFingers fingers({method, method});
@@ -112,7 +132,8 @@ TEST(Baselines, ActOnBodies) {
 
 TEST(Baselines, AllocateNothing) {
   if (!tests::allocationsAreCounted()) GTEST_SKIP() << "a sanitizer owns the allocator";
-  for (const FingerMethod method : {FingerMethod::kGodObject, FingerMethod::kForceShading, FingerMethod::kPenalty}) {
+  for (const FingerMethod method :
+       {FingerMethod::kGodObject, FingerMethod::kForceShading, FingerMethod::kPenalty, FingerMethod::kFrictionCone}) {
     OnPlate f(method, 0.5, 0.5);
     f.lead(Vec3(0, 0, 6e-3));
     const auto before = tests::allocationCount();

@@ -125,7 +125,9 @@ std::vector<Record> policyErrors(double speed) {
   const devices::TactorErrors e = meter.result();
   return {atMost("rms error (people localise to 1.3 mm)", 1e3 * e.total, "mm", speed < 0.03 ? 1.3 : 4),
           unbounded("its share from bandwidth", 1e3 * e.bandwidth, "mm"),
-          unbounded("its share from backlash (noticed from 0.46 / 0.93 mm)", 1e3 * e.play, "mm"),
+          unbounded(fmt::format("its share from backlash (noticed from {:.2f} / {:.2f} mm of play)", 1e3 * devices::kPlayLimitLowCurvature,
+                                1e3 * devices::kPlayLimitEdge),
+                    1e3 * e.play, "mm"),
           unbounded("its share from delay", 1e3 * e.delay, "mm"),
           unbounded("quantisation of what the host is told", 1e3 * e.quantisation, "mm"),
           unbounded("time with more than 1.3 mm", 100 * e.beyond_limit, "%")};

@@ -16,8 +16,8 @@ namespace {
 
 using grasp::FingerMethod;
 
-constexpr std::array<FingerMethod, 4> kMethods = {FingerMethod::kProxy, FingerMethod::kForceShading, FingerMethod::kGodObject,
-                                                  FingerMethod::kPenalty};
+constexpr std::array<FingerMethod, 5> kMethods = {FingerMethod::kProxy, FingerMethod::kFrictionCone, FingerMethod::kForceShading,
+                                                  FingerMethod::kGodObject, FingerMethod::kPenalty};
 
 std::string_view nameOfMethod(FingerMethod method) { return grasp::kFingerMethodNames[static_cast<std::size_t>(method)]; }
 

@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <filesystem>
 
+#include "pincer/tasks/lab/report/study_tests.h"
 #include "pincer/tasks/lab/sessions/study_file.h"
 #include "pincer/tasks/run/session/database.h"
 #include "pincer/tests/support/run_app.h"
@@ -104,6 +106,26 @@ TEST(StudyReport, CountsSmoothnessInSegmentsAndAveragesThem) {
   EXPECT_NEAR(levelShown(s, 55), 180 / M_PI * 0.9 / 54, 1e-12);
   const std::string table = formatStudyTable(s);
   EXPECT_TRUE(contains(table, "threshold [segments]") && contains(table, "55.00 (0.95°)") && contains(table, "104")) << table;
+}
+
+// 1, 2, 3 against 4, 5, 7 of the same people: F(1, 4) = 10 and t(4) = 3.16, p = .034; within people F(1, 2) = 100, t = 10, p = .010, d_z = 5.77.
+TEST(StudyReport, ComparesConditionsAsPublishedAndWithinPeople) {
+  StudySummary s;
+  s.headline = {"threshold", "ms", 1e3, "ms", 1e3};
+  for (const auto& [name, figures] : {std::pair("a", std::array{1e-3, 2e-3, 3e-3}), std::pair("b", std::array{4e-3, 5e-3, 7e-3})}) {
+    StudyCondition c;
+    c.name = name;
+    for (std::size_t i = 0; i < figures.size(); ++i) c.people.push_back({static_cast<std::int64_t>(i), figures[i]});
+    c.headline = estimateMean({figures.begin(), figures.end()});
+    s.conditions.push_back(c);
+  }
+  const std::string html = studyTestsHtml(s);
+  EXPECT_TRUE(contains(html, "F(1, 4) = 10.00, p = 0.034")) << html;
+  EXPECT_TRUE(contains(html, "F(1, 2) = 100.00, p = 0.010")) << html;
+  EXPECT_TRUE(contains(html, "t(4) = 3.16, p 0.034")) << html;
+  EXPECT_TRUE(contains(html, "<td>3.33</td>") && contains(html, "<td>5.77</td>")) << html;
+  s.conditions.pop_back();
+  EXPECT_EQ(studyTestsHtml(s), "") << "one condition can't differ";
 }
 
 TEST(StudyReport, SaysWhereStaircasesNeverSettled) {

@@ -8,9 +8,6 @@
 
 #include "pincer/tasks/lab/experiments/arc_study.h"
 #include "pincer/tasks/lab/experiments/localisation.h"
-#include "pincer/tasks/lab/experiments/shape_study.h"
-#include "pincer/tasks/lab/experiments/shape_trial.h"
-#include "pincer/tasks/lab/finger/simulated_finger.h"
 #include "pincer/tasks/lab/sessions/study_file.h"
 #include "pincer/tasks/lab/sessions/study_session.h"
 #include "pincer/tasks/run/session/database.h"
@@ -121,66 +118,6 @@ TEST(Study, PlacesAreFoundAgain) {
     sum += std::abs(r.answer_value - r.level);
   }
   EXPECT_LT(sum / 10, 3e-3);  // 1.3 mm expected, its SD over ten answers 0.31 mm: five of them
-}
-
-TEST(Study, SolidsAreFeltWithoutAFault) {
-  ShapeStudy study;
-  study.participants = 1;
-  study.runs = 1;
-  study.conditions = {study.conditions[2]};  // shaded, force only
-  ShapeExperiment experiment(study, {}, 50);
-  auto runs = experiment.runs();
-  ASSERT_EQ(runs.size(), 1u);
-  ASSERT_EQ(runs[0].list.size(), 7u);
-  StudyMemory memory;
-  const std::atomic<bool> no{false};
-  ServoReport served;
-  for (std::size_t k = 0; k < (std::getenv("PINCER_LONG_TESTS") ? 7u : 2u); ++k) {
-    const auto response = experiment.present({0, 0, &runs[0], runs[0].list[k], k, 1}, memory, no, served);
-    ASSERT_TRUE(response);
-    EXPECT_EQ(response->outcome, "answered") << response->stimulus;
-    EXPECT_GT(response->contact_share, 0.2) << response->stimulus;
-  }
-}
-
-struct PushMemory final : StudySink {
-  void sample(const SampleRecord& s) override {
-    const auto& f = s.fingers[0].f_arm_D;
-    ++samples;
-    hard += std::hypot(f[0], f[1], f[2]) > 3;
-  }
-  void event(const EventRecord&) override {}
-  void response(const ResponseRecord&) override {}
-  int samples = 0, hard = 0;
-};
-
-// The aim ran ahead on faces that lie 60 degrees across the way, and the hand pushed against all that the arm has (8.5 N) for a fifth of the time,
-// right through the prism; one person's trials ended in a fault for it. 0.8 N is wanted.
-TEST(Study, FacesAcrossTheWayAreFeltAsLightlyAsIsWanted) {
-  ShapeTrialSetup setup;
-  setup.solid = makeSolid("triangle", false, {});
-  setup.asked.stride = 1;
-  ShapeExplorer explorer(1);
-  explorer.begin(shapeCues(setup, 0));
-  SimulatedFinger finger(shapePlace(setup), explorer);
-  PushMemory memory;
-  ShapeTrial trial(setup, finger, memory);
-  const std::atomic<bool> no{false};
-  runServo({}, trial, no);
-  EXPECT_TRUE(trial.answered());
-  EXPECT_LT(memory.hard, 0.01 * memory.samples);
-}
-
-// What the arm's joints bear limited only the gates of arc trials and sessions.
-TEST(Study, WhatTheArmCanDoLimitsTheGateOfAShapeTrial) {
-  ShapeTrialSetup setup;
-  setup.solid = makeSolid(kSolidNames[0], true, {});
-  ShapeExplorer explorer(1);
-  explorer.begin(shapeCues(setup, 0));
-  SimulatedFinger finger(shapePlace(setup), explorer);
-  StudyMemory memory;
-  const ShapeTrial trial(setup, finger, memory);
-  EXPECT_EQ(trial.gateLimits().peak_torque, devices::SimArm().peakTorque());
 }
 
 // Which sense feels what, as published: facets in both is C3, facets in force alone with the smooth tactor C4; the pilots come after the others.
