@@ -21,9 +21,9 @@ namespace pincer::tasks {
 namespace {
 
 // The program's table of contents, in the order in which --help shows it.
-constexpr std::array kCommands = {addRunCommand,     addReportCommand, addExportCommand, addReplayCommand, addSimCommand,
-                                  addPlanCommand,    addVerifyCommand, addStressCommand, addBenchCommand,  addMeshCommand,
-                                  addDevicesCommand, addSweepCommand,  addSolveCommand,  addKeysCommand,   addSchemaCommand};
+constexpr std::array kCommands = {addRunCommand,   addReportCommand, addExportCommand, addReplayCommand, addSimCommand,  addTestCommand,
+                                  addPlanCommand,  addVerifyCommand, addStressCommand, addBenchCommand,  addMeshCommand, addDevicesCommand,
+                                  addSweepCommand, addSolveCommand,  addKeysCommand,   addSchemaCommand};
 
 constexpr const char* kExamples = R"(
 Examples:

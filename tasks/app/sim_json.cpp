@@ -36,8 +36,17 @@ void writeFingers(const Simulation& simulation, JsonWriter& json) {
   json.endArray();
 }
 
+// The rest of the object.
+void writeHashExpectation(const Expectation& expected, const Outcome& outcome, JsonWriter& json) {
+  json.key("time").value(expected.time).key("value").value(*expected.hash).key("because").value(expected.because);
+  json.key("reached").value(outcome.reached);
+  if (outcome.reached) json.key("measured").value(outcome.hash).key("ok").value(outcome.holds());
+  json.endObject();
+}
+
 void writeExpectation(const Expectation& expected, const Outcome& outcome, JsonWriter& json) {
   json.beginObject().key("quantity").value(expected.quantity.name).key("unit").value(expected.quantity.kind->unit);
+  if (expected.hash) return writeHashExpectation(expected, outcome, json);
   json.key("time");
   if (expected.tick == Expectation::kAlways) {
     json.value("always");
@@ -45,7 +54,8 @@ void writeExpectation(const Expectation& expected, const Outcome& outcome, JsonW
     json.value(expected.time);
   }
   json.key("relation").value(kRelationNames[static_cast<std::size_t>(expected.relation)]).key("value").value(expected.value);
-  json.key("tolerance").value(expected.tolerance).key("because").value(expected.because).key("reached").value(outcome.reached);
+  json.key("tolerance").value(expected.tolerance);
+  json.key("because").value(expected.because).key("reached").value(outcome.reached);
   if (outcome.reached) json.key("measured").value(outcome.measured).key("ok").value(outcome.holds());
   json.endObject();
 }
@@ -53,6 +63,9 @@ void writeExpectation(const Expectation& expected, const Outcome& outcome, JsonW
 void writeTimes(const SimResult& result, JsonWriter& json) {
   json.key("tick_us").beginObject().key("median").value(1e6 * result.times.quantile(0.5));
   json.key("p999").value(1e6 * result.times.quantile(0.999)).key("max").value(1e6 * result.times.quantile(1)).endObject();
+}
+
+void writeStatuses(const SimResult& result, JsonWriter& json) {
   json.key("status").beginObject();
   for (std::size_t i = 0; i < kStatusKinds.size(); ++i) json.key(kStatusKinds[i].key).value(result.statuses.of(i));
   json.endObject();
@@ -64,7 +77,9 @@ std::string simJson(const Simulation& simulation, const SimOptions& options, con
   JsonWriter json;
   json.beginObject().key("scene").value(simulation.scene().file).key("description").value(simulation.scene().description);
   json.key("time").value(simulation.time()).key("ticks").value(simulation.ticks()).key("interrupted").value(result.interrupted);
-  writeTimes(result, json);
+  if (options.timing) writeTimes(result, json);
+  writeStatuses(result, json);
+  json.key("state_hash").value(hashText(simulation.state().world));
   writeBodies(simulation, json);
   writeFingers(simulation, json);
   if (options.grasp) writeGrasps(simulation, json);

@@ -1,11 +1,10 @@
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "pincer/contact/io/counted.h"
 #include "pincer/contact/io/printable.h"
 #include "pincer/tasks/app/grasp_text.h"
 #include "pincer/tasks/app/terminal.h"
+#include "pincer/tasks/run/scene/expectation_text.h"
 #include "pincer/tasks/run/scene/sim_run.h"
 
 namespace pincer::tasks {
@@ -13,28 +12,9 @@ namespace {
 
 std::string millimetres(const Vec3& p) { return fmt::format("{:11.6f} {:11.6f} {:11.6f}", 1e3 * p.x(), 1e3 * p.y(), 1e3 * p.z()); }
 
-std::string whenText(const Expectation& expected) {
-  return expected.tick == Expectation::kAlways ? "always" : fmt::format("at {:g} s", expected.time);
-}
-
-std::string boundText(const Expectation& expected) {
-  const std::string slack = expected.tolerance > 0 ? fmt::format(" +- {:.3g}", expected.tolerance) : "";
-  return fmt::format("{} {:.10g}{} {}", kRelationNames[static_cast<std::size_t>(expected.relation)], expected.value, slack,
-                     expected.quantity.kind->unit);
-}
-
-std::string measuredText(const Expectation& expected, const Outcome& outcome) {
-  if (!outcome.reached) return "not reached: the run ended before";
-  const std::string off =
-      expected.relation == Relation::kEqual ? fmt::format(", off by {:.3g}", std::abs(outcome.measured - expected.value)) : "";
-  const std::string when = expected.tick == Expectation::kAlways ? fmt::format(" (worst, at {:g} s)", outcome.worst_time) : "";
-  return fmt::format("measured {:.10g}{}{}", outcome.measured, off, when);
-}
-
 std::string expectationLine(const Expectation& expected, const Outcome& outcome) {
   const std::string verdict = !outcome.reached ? "  -  " : outcome.holds() ? good(" ok  ") : bad("FAILS");
-  std::string line = fmt::format("  {} {} {} {}: {}\n", verdict, expected.quantity.name, whenText(expected), boundText(expected),
-                                 measuredText(expected, outcome));
+  std::string line = fmt::format("  {} {}\n", verdict, outcomeText(expected, outcome));
   if (outcome.reached && !outcome.holds() && !expected.because.empty())
     line += fmt::format("        because {}\n", printable(expected.because, kLongestMessage));
   return line;
@@ -97,6 +77,7 @@ std::string simText(const Simulation& simulation, const SimOptions& options, con
   out += fmt::format("\n{} of {:g} ms, each: median {:.2f} us, p99.9 {:.2f} us, longest {:.1f} us\n", counted(simulation.ticks(), "tick"),
                      1e3 * scene.options.h, 1e6 * result.times.quantile(0.5), 1e6 * result.times.quantile(0.999),
                      1e6 * result.times.quantile(1));
+  out += fmt::format("State {} at {:g} s\n", hashText(simulation.state().world), simulation.time());
   if (result.interrupted) out += fmt::format("Interrupted at {:g} s of {:g} s.\n", simulation.time(), scene.duration);
   return out;
 }

@@ -1,8 +1,10 @@
 // expectation: what must be true of a scene, so that a scene is also a regression test.
 //
 //   ==  |measured - value| <= tolerance        <=  measured <= value + tolerance        >=  measured >= value - tolerance
+//   hash  every bit of the state is as it was when the hash was taken (engine::hashOf)
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,10 +19,12 @@ struct Expectation {
   Quantity quantity;
   Relation relation = Relation::kEqual;
   double value = 0;
-  double tolerance = 0;         // >= 0, in the quantity's unit
-  std::int64_t tick = kAlways;  // when it must hold
-  double time = 0;              // the same as time [s]
-  std::string because;          // why it must be so; may be empty
+  double tolerance = 0;             // >= 0, in the quantity's unit
+  std::int64_t tick = kAlways;      // when it must hold
+  double time = 0;                  // the same as time [s]
+  std::string because;              // why it must be so; may be empty
+  std::optional<std::string> hash;  // of the state, 16 hexadecimal digits, in place of the quantity; empty: not taken yet
+  int hash_line = 0;                // in the file
 
   static constexpr std::int64_t kAlways = -1;  // at the start and after every tick
 
@@ -34,6 +38,7 @@ struct Outcome {
   double measured = 0;   // at its time; of "always", the worst one
   double worst_excess = 0;
   double worst_time = 0;  // [s]
+  std::string hash;       // measured, where one is expected
 
   bool holds() const { return reached && worst_excess <= 0; }
 };

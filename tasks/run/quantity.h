@@ -39,6 +39,9 @@ struct Quantity {
   }
 };
 
+// 16 hexadecimal digits of engine::hashOf: equal states, equal text, on every machine.
+std::string hashText(const engine::WorldState& state);
+
 std::span<const QuantityKind> worldQuantities();
 std::span<const QuantityKind> bodyQuantities();
 std::span<const QuantityKind> fingerQuantities();

@@ -49,10 +49,11 @@ const std::map<std::string, std::vector<std::string>> kRooms = {
     {"engine", {"motion", "solve", "world"}},
     {"grasp", {"coupling", "tick", "baseline", "passivity", "quality"}},
     {"devices", {"arm", "cld", "usb", "falcon", "haply", "gate", "window", "emulate"}},
-    {"tasks", {"run", "lab", "judge", "view", "app"}},
-    {"tasks/run", {"process", "measure", "files", "session", "scene", "tick", "servo"}},
+    {"tasks", {"run", "lab", "judge", "view", "python", "app"}},
+    {"tasks/run", {"process", "measure", "files", "session", "scene", "rollout", "tick", "servo"}},
     {"tasks/lab", {"participants", "study", "report", "finger", "experiments", "findings", "sessions", "sweep"}},
     {"tasks/app", {"commands"}},
+    {"tasks/python", {"bindings"}},
     {"tasks/judge", {"exact", "solve", "verify", "stress", "bench", "peers"}},
 };
 
@@ -232,14 +233,17 @@ TEST(House, LibrariesStayInTheirFiles) {
   const std::map<std::string, std::string> home = {{"OpenMesh/", "_openmesh"}, {"LinearMath/", "_bullet"}, {"BulletCollision/", "_bullet"},
                                                    {"sqlite3.h", "_sqlite"},   {"libusb.h", "_libusb"},    {"nlohmann/", ""},
                                                    {"GLFW/", "_glfw"},         {"EGL/", "_egl"},           {"glad/", "_gl"},
-                                                   {"imgui", "_imgui"},        {"png.h", "_png"},          {"boost/", "_beast"}};
+                                                   {"imgui", "_imgui"},        {"png.h", "_png"},          {"boost/", "_beast"},
+                                                   {"pybind11/", "_pybind11"}, {"hdf5.h", "_hdf5"}};
   for (const auto& [folder, seen] : kMaySee) {
     for (const fs::path& file : sourcesUnder(fs::path(PINCER_SOURCE_DIR) / folder)) {
       for (const std::string& line : linesOf(file)) {
         if (line.rfind("#include <", 0) != 0) continue;
         for (const auto& [library, suffix] : home) {
           if (line.find(library) == std::string::npos) continue;
-          EXPECT_NE(file.extension(), ".h") << file << ": " << line;
+          // The module's helpers are templates over pybind11's types; nobody but the module sees them.
+          const bool is_binding = file.string().find("tasks/python/bindings/") != std::string::npos;
+          EXPECT_TRUE(is_binding || file.extension() != ".h") << file << ": " << line;
           EXPECT_NE(file.stem().string().find(suffix), std::string::npos) << file << ": " << line;
         }
       }

@@ -9,6 +9,7 @@ class App;
 namespace pincer::tasks {
 
 void addSimCommand(CLI::App& app, int& exit_code);
+void addTestCommand(CLI::App& app, int& exit_code);
 void addPlanCommand(CLI::App& app, int& exit_code);
 void addBenchCommand(CLI::App& app, int& exit_code);
 void addMeshCommand(CLI::App& app, int& exit_code);

@@ -12,6 +12,7 @@
 #include "pincer/tasks/app/progress.h"
 #include "pincer/tasks/app/usage.h"
 #include "pincer/tasks/lab/sessions/replay.h"
+#include "pincer/tasks/lab/sessions/session_hash.h"
 #include "pincer/tasks/run/scene/scene_ranges.h"
 #include "pincer/tasks/view/trial_recording.h"
 
@@ -88,6 +89,7 @@ int replay(const ReplayArguments& arguments) {
   print("The same to the bit: {}{}, {}{}\n", counted(result.trials, "trial"),
         result.cut_short > 0 ? fmt::format(" and {} that was cut short", result.cut_short) : "", counted(result.samples, "sample"),
         result.inputs > 0 ? fmt::format(", {} of a person's hands", counted(result.inputs, "tick")) : "");
+  print("state_hash {}\n", sessionHash(session));
   if (!interruptFlag()) return kExitOk;
   print(stderr, "pincer: interrupted; these are the trials that were whole.\n");
   return kExitInterrupted;

@@ -23,6 +23,7 @@
 #include "pincer/tasks/lab/report/finding_words.h"
 #include "pincer/tasks/lab/report/report.h"
 #include "pincer/tasks/lab/sessions/manipulation_session.h"
+#include "pincer/tasks/lab/sessions/session_hash.h"
 #include "pincer/tasks/run/servo/servo_text.h"
 #include "pincer/tasks/view/trial_view.h"
 
@@ -114,6 +115,7 @@ int showStudy(const ManipulationArguments& arguments, const std::string& directo
   const bool by_the_clock = servo.clock != ServoClock::kVirtual || arguments.view.view || arguments.devices.devices != "sim";
   if (by_the_clock) say(servoText(result.servo, 1 / servo.rate));
   say(fmt::format("Session: {}", printablePath(session.path())));
+  say(fmt::format("state_hash {}", sessionHash(session)));
   if (!by_the_clock) say(throughputText(static_cast<double>(result.servo.ticks) / servo.rate));
   if (result.interrupted) {
     say(fmt::format("Interrupted after {}; what is done is safe. Go on: the same command with --resume --out {}",

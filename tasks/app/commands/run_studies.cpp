@@ -20,6 +20,7 @@
 #include "pincer/tasks/app/usage.h"
 #include "pincer/tasks/lab/finger/live_finger.h"
 #include "pincer/tasks/lab/report/study_report.h"
+#include "pincer/tasks/lab/sessions/session_hash.h"
 #include "pincer/tasks/lab/sessions/study_experiments.h"
 #include "pincer/tasks/lab/sessions/study_file.h"
 #include "pincer/tasks/lab/sessions/study_session.h"
@@ -93,6 +94,7 @@ int showStudy(const StudyArguments& arguments, const std::string& directory, con
   if (by_the_clock) say(servoText(outcome.servo, 1 / arguments.run.servo.rate));
   if (!by_the_clock) say(throughputText(static_cast<double>(outcome.servo.ticks) / arguments.run.servo.rate));
   say(fmt::format("Session: {}", printablePath(session.path())));
+  say(fmt::format("state_hash {}", sessionHash(session)));
   if (outcome.interrupted) {
     say(fmt::format("Interrupted after {}; what is done is safe. Go on: the same task with --resume --out {}",
                     counted(outcome.trials, "trial"), printablePath(directory)));

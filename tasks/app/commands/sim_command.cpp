@@ -25,10 +25,12 @@ Exit code 1 if an expectation fails.
 Examples:
   pincer sim tasks/scenes/s4_pinch.json --out pinch.csv --every 0.1
   pincer sim pickup --duration 2.5 --screenshot pickup.png
-  pincer sim pickup --view --devices mouse)";
+  pincer sim pickup --view --devices mouse
+  pincer sim s1_tumbling_box s4_pinch --json)";
 
 struct SimArguments {
-  std::string scene, devices = "scene";
+  std::vector<std::string> scenes;
+  std::string devices = "scene";
   ViewOptions view;
   SimOptions options;
   bool json = false;
@@ -36,14 +38,14 @@ struct SimArguments {
 
 int watch(Simulation& simulation, const SimArguments& arguments, const std::atomic<bool>& interrupted) {
   ViewOptions view = arguments.view;
-  view.title = arguments.scene;
+  view.title = arguments.scenes.front();
   const WatchResult result = watchScene(simulation, view, arguments.devices == "mouse", interrupted);
   print("{}\nLifted by up to {:.1f} mm.\n", servoText(result.servo, simulation.scene().options.h), 1e3 * result.lift);
   return interrupted ? kExitInterrupted : kExitOk;
 }
 
-int runSim(const SimArguments& arguments) {
-  Scene scene = readSceneOrBuiltin(arguments.scene);
+int runOne(const SimArguments& arguments, const std::string& file) {
+  Scene scene = readSceneOrBuiltin(file);
   asUsage([&] { applyOptions(arguments.options, scene); });
   Simulation simulation(std::move(scene));
   const std::atomic<bool>& interrupted = interruptFlag();  // until now there was nothing to end cleanly: a signal ends the program at once
@@ -58,12 +60,28 @@ int runSim(const SimArguments& arguments) {
   return result.broke || result.log.anyFailed() ? kExitCheckFailed : kExitOk;
 }
 
+// Of several the first bad exit code; their JSON is a list.
+int runSim(const SimArguments& arguments) {
+  if (arguments.scenes.size() == 1) return runOne(arguments, arguments.scenes.front());
+  if (arguments.view.view || !arguments.view.screenshot.empty() || !arguments.options.csv.empty())
+    refuseUsage("sim: --view, --screenshot and --out are for one scene. Give one, or leave them out");
+  int exit_code = kExitOk;
+  for (const std::string& file : arguments.scenes) {
+    if (arguments.json) print("{}", &file == &arguments.scenes.front() ? "[\n" : ",\n");
+    const int code = runOne(arguments, file);
+    if (exit_code == kExitOk) exit_code = code;
+    if (code == kExitInterrupted) break;
+  }
+  if (arguments.json) print("]\n");
+  return exit_code;
+}
+
 }  // namespace
 
 void addSimCommand(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<SimArguments>();
   CLI::App* command = app.add_subcommand("sim", "Plain physics of a scene: states, records, expectations");
-  command->add_option("scene", arguments->scene, "Scene file (JSON), or the name of a built-in scene")->required();
+  command->add_option("scene", arguments->scenes, "Scene files (JSON), or names of built-in scenes")->required();
   command->add_option("--duration", arguments->options.duration, "Simulated time in place of the scene's [s]")
       ->check(within(ranges::kDuration));
   command->add_option("--every", arguments->options.every, "Time between recorded rows in place of the scene's [s]")
@@ -76,7 +94,8 @@ void addSimCommand(CLI::App& app, int& exit_code) {
   command->add_option("--devices", arguments->devices, "With --view: who moves the fingers, the scene or your mouse")
       ->check(CLI::IsMember({"scene", "mouse"}))
       ->capture_default_str();
-  command->add_flag("--json", arguments->json, "Print the result as JSON");
+  command->add_flag("--json", arguments->json, "Print the result as JSON: the same bytes at each run");
+  command->add_flag("--timing", arguments->options.timing, "With --json: also how long ticks took");
   command->footer(kSimExample);
   command->callback([arguments, &exit_code] { exit_code = runSim(*arguments); });
 }

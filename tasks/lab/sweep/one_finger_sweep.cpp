@@ -11,6 +11,7 @@
 #include "pincer/tasks/lab/experiments/study_reader.h"
 #include "pincer/tasks/lab/experiments/study_writer.h"
 #include "pincer/tasks/lab/report/study_summary.h"
+#include "pincer/tasks/lab/sweep/sweep_parts.h"
 #include "pincer/tasks/run/scene/json_change.h"
 
 namespace pincer::tasks {
@@ -35,26 +36,24 @@ class OneFingerSweep {
     published_.seed = sweep.seed;
   }
 
-  SweepTable run(const SweepOptions& options, const std::atomic<bool>& interrupted) const {
-    constexpr std::size_t kMostRuns = 1000;
-    SweepTable table;
-    table.what = fmt::format("{}, {}", task_, counted(sweep_.participants, "participant"));
-    table.points = gridOf(sweep_.variations, kMostRuns);
-    for (const Variation& variation : sweep_.variations) table.parameters.push_back(variation.path);
-    for (const std::vector<double>& point : table.points) studyAt(point);  // says what is wrong before anything runs
+  SweepTable table() const {
+    SweepTable table = tableOf(fmt::format("{}, {}", task_, counted(sweep_.participants, "participant")), sweep_.grid);
+    refuseUnreadable(table, [&](const std::vector<double>& point) { studyAt(point); });
     const StudySummary nobody = summaryOf(published_, asked());
     for (const StudyCondition& condition : nobody.conditions) {
-      table.measures.push_back(fmt::format("{}, {} [{}]", nobody.headline.name, condition.name, nobody.headline.unit));
-      table.plotted.push_back(true);
+      addMeasure(table, fmt::format("{}, {} [{}]", nobody.headline.name, condition.name, nobody.headline.unit), true);
     }
-    runSweep(table, options, interrupted, [&](std::size_t i) { return headlinesAt(table.points[i], interrupted); });
     return table;
+  }
+
+  CaseResult caseAt(std::size_t i, const std::atomic<bool>& interrupted) const {
+    return {true, headlinesAt(sweep_.grid.points[i], interrupted), "", ""};
   }
 
  private:
   Study studyAt(const std::vector<double>& point) const {
     JsonValue json = parseJson(studyText(published_), task_);
-    for (std::size_t i = 0; i < point.size(); ++i) setNumber(json, sweep_.variations[i].path, point[i]);
+    for (std::size_t i = 0; i < point.size(); ++i) setNumber(json, sweep_.grid.paths[i], point[i]);
     Study study = published_;
     readStudyText(json, study);
     return study;
@@ -90,20 +89,27 @@ class OneFingerSweep {
   }
 
   Study published_;
-  const std::string& task_;
-  const StudySweep& sweep_;
+  std::string task_;
+  StudySweep sweep_;
 };
+
+template <class Experiment, class Study>
+SweepJob jobOf(const Study& published, const std::string& task, const StudySweep& sweep) {
+  const OneFingerSweep<Experiment, Study> cases(published, task, sweep);
+  SweepJob job;
+  job.table = cases.table();
+  job.definition = studyDefinition(job.table, task, sweep.participants, sweep.seed);
+  job.measure = [cases](std::size_t i, const std::atomic<bool>& interrupted) { return cases.caseAt(i, interrupted); };
+  return job;
+}
 
 }  // namespace
 
-SweepTable sweepOneFinger(const std::string& task, const StudySweep& sweep, const SweepOptions& options,
-                          const std::atomic<bool>& interrupted) {
-  if (task == "repeated-localisation") {
-    return OneFingerSweep<LocalisationExperiment, LocalisationStudy>({}, task, sweep).run(options, interrupted);
-  }
-  if (task == "shape-identification") return OneFingerSweep<ShapeExperiment, ShapeStudy>({}, task, sweep).run(options, interrupted);
+SweepJob oneFingerSweep(const std::string& task, const StudySweep& sweep) {
+  if (task == "repeated-localisation") return jobOf<LocalisationExperiment>(LocalisationStudy{}, task, sweep);
+  if (task == "shape-identification") return jobOf<ShapeExperiment>(ShapeStudy{}, task, sweep);
   for (const ArcStudy& study : {smoothnessStudy(), backlashStudy(), delayStudy()}) {
-    if (task == study.task) return OneFingerSweep<ArcExperiment, ArcStudy>(study, task, sweep).run(options, interrupted);
+    if (task == study.task) return jobOf<ArcExperiment>(study, task, sweep);
   }
   throw InputError(fmt::format("{}: isn't a study with one finger.", task));
 }

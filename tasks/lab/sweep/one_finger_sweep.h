@@ -8,7 +8,6 @@ namespace pincer::tasks {
 // Each condition's headline (tasks/lab/report/study_summary.h): mean over the participants; NaN where its staircases found no threshold. Paths are those
 // of the study's file (pincer run TASK --print-study), as conditions[0].travel_share. `task` is one of isStudy(). Throws InputError for a path or
 // value that doesn't fit.
-SweepTable sweepOneFinger(const std::string& task, const StudySweep& sweep, const SweepOptions& options,
-                          const std::atomic<bool>& interrupted);
+SweepJob oneFingerSweep(const std::string& task, const StudySweep& sweep);
 
 }  // namespace pincer::tasks

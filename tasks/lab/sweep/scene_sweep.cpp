@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <exception>
 #include <limits>
 
 #include "pincer/contact/io/counted.h"
+#include "pincer/tasks/lab/sweep/sweep_parts.h"
+#include "pincer/tasks/run/files/fingerprint.h"
 #include "pincer/tasks/run/scene/json_change.h"
 #include "pincer/tasks/run/simulation.h"
 
@@ -54,14 +57,14 @@ std::string labelOf(const SweptMeasure& measure) {
   return fmt::format("{}{} [{}]", measure.quantity.name, over, measure.quantity.kind->unit);
 }
 
-Scene sceneAt(const NamedJson& scene, const std::vector<Variation>& variations, const std::vector<double>& point) {
+Scene sceneAt(const NamedJson& scene, const SweepGrid& grid, std::size_t point) {
   JsonValue json = scene.json;
-  for (std::size_t i = 0; i < point.size(); ++i) setNumber(json, scenePath(json, variations[i].path), point[i]);
+  for (std::size_t i = 0; i < grid.paths.size(); ++i) setNumber(json, scenePath(json, grid.paths[i]), grid.points[point][i]);
   return sceneOf(json, scene.name);
 }
 
 // What every measure came to, and then how many expectations failed. Up to where it was interrupted.
-std::vector<double> measured(Scene scene, const SceneSweep& sweep, const std::atomic<bool>& interrupted) {
+CaseResult measured(Scene scene, const SceneSweep& sweep, const std::atomic<bool>& interrupted) {
   Simulation simulation(std::move(scene));
   const std::vector<SweptMeasure> measures = measuresOf(sweep, simulation.scene());
   ExpectationLog log(simulation.scene().expectations);
@@ -81,29 +84,47 @@ std::vector<double> measured(Scene scene, const SceneSweep& sweep, const std::at
     const auto failed = std::count_if(log.outcomes().begin(), log.outcomes().end(), [](const Outcome& o) { return !o.holds(); });
     values.push_back(static_cast<double>(failed));
   }
-  return values;
+  return {true, std::move(values), hashText(simulation.state().world), ""};
+}
+
+// The first case that can be read says what is measured; the others are read when their turn comes.
+Scene firstReadable(const NamedJson& scene, const SceneSweep& sweep) {
+  std::exception_ptr first;
+  for (std::size_t i = 0; i < sweep.grid.points.size(); ++i) {
+    try {
+      return sceneAt(scene, sweep.grid, i);
+    } catch (const InputError&) {
+      if (!first) first = std::current_exception();
+    }
+  }
+  std::rethrow_exception(first);
+}
+
+std::string definitionOf(const SweepTable& table, const NamedJson& scene, std::string_view text, const SceneSweep& sweep) {
+  JsonWriter json;
+  json.beginObject().key("scene").value(scene.name).key("text").value(fingerprint(text)).key("measures").beginArray();
+  for (const std::string& measure : sweep.measures) json.value(measure);
+  json.endArray();
+  writeGrid(table, json);
+  return json.endObject().text();
 }
 
 }  // namespace
 
-SweepTable sweepScene(const NamedJson& scene, const SceneSweep& sweep, const SweepOptions& options, const std::atomic<bool>& interrupted) {
-  constexpr std::size_t kMostRuns = 100'000;
-  SweepTable table;
-  table.what = scene.name;
-  table.points = gridOf(sweep.variations, kMostRuns);
-  for (const Variation& variation : sweep.variations) table.parameters.push_back(variation.path);
-  for (const std::vector<double>& point : table.points) {
-    const Scene read = sceneAt(scene, sweep.variations, point);
-    if (!table.measures.empty()) continue;
-    for (const SweptMeasure& measure : measuresOf(sweep, read)) table.measures.push_back(labelOf(measure));
-    table.plotted.assign(table.measures.size(), true);
-    if (read.expectations.empty()) continue;
-    table.measures.push_back(fmt::format("failed of {}", counted(static_cast<std::int64_t>(read.expectations.size()), "expectation")));
-    table.plotted.push_back(table.plotted.empty());
+SweepJob sceneSweep(const NamedJson& scene, std::string_view text, const SceneSweep& sweep) {
+  SweepJob job;
+  job.table = tableOf(scene.name, sweep.grid);
+  const Scene read = firstReadable(scene, sweep);
+  for (const SweptMeasure& measure : measuresOf(sweep, read)) addMeasure(job.table, labelOf(measure), true);
+  if (!read.expectations.empty()) {
+    const auto count = static_cast<std::int64_t>(read.expectations.size());
+    addMeasure(job.table, fmt::format("failed of {}", counted(count, "expectation")), job.table.plotted.empty());
   }
-  runSweep(table, options, interrupted,
-           [&](std::size_t i) { return measured(sceneAt(scene, sweep.variations, table.points[i]), sweep, interrupted); });
-  return table;
+  job.definition = definitionOf(job.table, scene, text, sweep);
+  job.measure = [scene, sweep](std::size_t i, const std::atomic<bool>& interrupted) {
+    return measured(sceneAt(scene, sweep.grid, i), sweep, interrupted);
+  };
+  return job;
 }
 
 }  // namespace pincer::tasks

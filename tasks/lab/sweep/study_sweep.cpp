@@ -9,6 +9,7 @@
 #include "pincer/tasks/lab/experiments/manipulation_file.h"
 #include "pincer/tasks/lab/experiments/row_sink.h"
 #include "pincer/tasks/lab/report/person_means.h"
+#include "pincer/tasks/lab/sweep/sweep_parts.h"
 #include "pincer/tasks/run/scene/json_change.h"
 
 namespace pincer::tasks {
@@ -22,7 +23,7 @@ ManipulationStudy studyAt(const std::string& task, const StudySweep& sweep, cons
   if (task == "sphere-pickup") study.tasks = {HandTask::kPickup};
   if (task == "cylinder-alignment") study.tasks = {HandTask::kAlignment};
   JsonValue json = parseJson(studyFile(study), task);
-  for (std::size_t i = 0; i < point.size(); ++i) setNumber(json, sweep.variations[i].path, point[i]);
+  for (std::size_t i = 0; i < point.size(); ++i) setNumber(json, sweep.grid.paths[i], point[i]);
   return studyOfJson(json);
 }
 
@@ -49,22 +50,22 @@ std::vector<double> meansOf(const std::string& task, const ManipulationStudy& st
 
 bool isSweptStudy(const std::string& task) { return task == "sphere-pickup" || task == "cylinder-alignment" || task == "manipulation"; }
 
-SweepTable sweepStudy(const std::string& task, const StudySweep& sweep, const SweepOptions& options, const std::atomic<bool>& interrupted) {
-  constexpr std::size_t kMostRuns = 1000;
-  SweepTable table;
-  table.what = fmt::format("{}, {}", task, counted(sweep.participants, "participant"));
-  table.points = gridOf(sweep.variations, kMostRuns);
-  for (const Variation& variation : sweep.variations) table.parameters.push_back(variation.path);
-  for (const std::vector<double>& point : table.points) studyAt(task, sweep, point);  // says what is wrong before anything runs
+SweepJob studySweep(const std::string& task, const StudySweep& sweep) {
+  SweepJob job;
+  job.table = tableOf(fmt::format("{}, {}", task, counted(sweep.participants, "participant")), sweep.grid);
   for (const FindingMeasure& measure : findingMeasures()) {
     if (!isMeasured(task, measure)) continue;
     for (const char* condition : {"force only", "CLD + force"}) {
-      table.measures.push_back(fmt::format("{}, {} [{}]", measure.label, condition, *measure.unit ? measure.unit : "-"));
-      table.plotted.push_back(measure.expected != PublishedEffect::kNone);
+      const std::string label = fmt::format("{}, {} [{}]", measure.label, condition, *measure.unit ? measure.unit : "-");
+      addMeasure(job.table, label, measure.expected != PublishedEffect::kNone);
     }
   }
-  runSweep(table, options, interrupted, [&](std::size_t i) { return meansOf(task, studyAt(task, sweep, table.points[i]), interrupted); });
-  return table;
+  refuseUnreadable(job.table, [&](const std::vector<double>& point) { studyAt(task, sweep, point); });
+  job.definition = studyDefinition(job.table, task, sweep.participants, sweep.seed);
+  job.measure = [task, sweep](std::size_t i, const std::atomic<bool>& interrupted) {
+    return CaseResult{true, meansOf(task, studyAt(task, sweep, sweep.grid.points[i]), interrupted), "", ""};
+  };
+  return job;
 }
 
 }  // namespace pincer::tasks

@@ -1,6 +1,5 @@
 // study_sweep: a study of the manipulation tasks with simulated participants, for many values of its parameters, and what they did.
 #pragma once
-#include <atomic>
 #include <string>
 #include <vector>
 
@@ -8,9 +7,11 @@
 
 namespace pincer::tasks {
 
+constexpr std::size_t kMostStudyCases = 1000;
+
 struct StudySweep {
-  std::vector<Variation> variations;  // one or two; paths in the study file (pincer run manipulation --write-study FILE)
-  int participants = 4;               // at each point, 1 .. 1000; the same people at every one
+  SweepGrid grid;        // paths in the study file (pincer run manipulation --write-study FILE)
+  int participants = 4;  // at each point, 1 .. 1000; the same people at every one
   std::uint64_t seed = 1;
 };
 
@@ -18,7 +19,7 @@ struct StudySweep {
 bool isSweptStudy(const std::string& task);
 
 // Every measure (tasks/lab/report/person_means.h) twice, force only and CLD + force: means over the participants; squeezes, times and the error of
-// alignment are plotted. Without training: these participants don't learn. Throws InputError for a path or value that doesn't fit a study.
-SweepTable sweepStudy(const std::string& task, const StudySweep& sweep, const SweepOptions& options, const std::atomic<bool>& interrupted);
+// alignment are plotted. Without training: these participants don't learn. Throws InputError where no case can be read: for a path that isn't in a study.
+SweepJob studySweep(const std::string& task, const StudySweep& sweep);
 
 }  // namespace pincer::tasks

@@ -7,6 +7,7 @@
 #include "pincer/tasks/lab/report/figures.h"
 #include "pincer/tasks/lab/sweep/sweep.h"
 #include "pincer/tasks/run/csv.h"
+#include "pincer/tasks/run/files/json_writer.h"
 
 namespace pincer::tasks {
 namespace {
@@ -23,6 +24,29 @@ std::vector<double> lineValues(const SweepTable& table) {
     if (std::find(values.begin(), values.end(), point[1]) == values.end()) values.push_back(point[1]);
   }
   return values;
+}
+
+void addHeadings(const SweepTable& table, CsvTable& csv) {
+  for (const std::string& name : table.parameters) csv.add(name);
+  for (const std::string& name : table.measures) csv.add(name);
+}
+
+void addNumbers(const SweepTable& table, std::size_t i, CsvTable& csv) {
+  for (const double value : table.points[i]) csv.add(value);
+  for (const double value : table.results[i].values) csv.add(value);
+}
+
+// What gnuplot reads: numbers alone.
+std::string plottedTable(const SweepTable& table) {
+  PlotTable csv;
+  addHeadings(table, csv);
+  csv.endRow();
+  for (std::size_t i = 0; i < table.points.size(); ++i) {
+    if (!table.results[i].done) continue;
+    addNumbers(table, i, csv);
+    csv.endRow();
+  }
+  return csv.take();
 }
 
 constexpr std::array kLineColours = {palette::kBlue,   palette::kVermillion, palette::kGreen,
@@ -49,10 +73,10 @@ std::string sweepText(const SweepTable& table) {
   std::vector<std::vector<std::string>> rows{table.parameters};
   rows[0].insert(rows[0].end(), table.measures.begin(), table.measures.end());
   for (std::size_t i = 0; i < table.points.size(); ++i) {
-    if (table.results[i].empty()) continue;
+    if (!table.results[i].done) continue;
     rows.emplace_back();
     for (const double value : table.points[i]) rows.back().push_back(fmt::format("{:.6g}", value));
-    for (const double value : table.results[i]) rows.back().push_back(fmt::format("{:.6g}", value));
+    for (const double value : table.results[i].values) rows.back().push_back(fmt::format("{:.6g}", value));
   }
   std::string text;
   for (const auto& row : rows) {
@@ -67,17 +91,37 @@ std::string sweepText(const SweepTable& table) {
 }
 
 std::string sweepCsv(const SweepTable& table) {
-  PlotTable csv;
-  for (const std::string& name : table.parameters) csv.add(name);
-  for (const std::string& name : table.measures) csv.add(name);
+  CsvTable csv;
+  addHeadings(table, csv);
+  csv.add("state_hash");
+  csv.add("error");
   csv.endRow();
   for (std::size_t i = 0; i < table.points.size(); ++i) {
-    if (table.results[i].empty()) continue;
-    for (const double value : table.points[i]) csv.add(value);
-    for (const double value : table.results[i]) csv.add(value);
+    if (!table.results[i].done) continue;
+    addNumbers(table, i, csv);
+    csv.add(table.results[i].state_hash);
+    csv.add(table.results[i].error);
     csv.endRow();
   }
   return csv.take();
+}
+
+std::string sweepJson(const SweepTable& table) {
+  JsonWriter json;
+  json.beginObject().key("what").value(table.what).key("parameters").beginArray();
+  for (const std::string& name : table.parameters) json.value(name);
+  json.endArray().key("measures").beginArray();
+  for (const std::string& name : table.measures) json.value(name);
+  json.endArray().key("cases").beginArray();
+  for (std::size_t i = 0; i < table.points.size(); ++i) {
+    if (!table.results[i].done) continue;
+    json.beginObject().key("case").value(static_cast<std::int64_t>(i)).key("parameters").beginArray();
+    for (const double value : table.points[i]) json.value(value);
+    json.endArray().key("measures").beginArray();
+    for (const double value : table.results[i].values) json.value(value);
+    json.endArray().key("state_hash").value(table.results[i].state_hash).key("error").value(table.results[i].error).endObject();
+  }
+  return json.endArray().endObject().text() + "\n";
 }
 
 Figure sweepFigure(const SweepTable& table) {
@@ -86,7 +130,7 @@ Figure sweepFigure(const SweepTable& table) {
   figure.name = "sweep";
   figure.title = table.what;
   figure.height = 120 + 480 * panels;
-  figure.data = {{"sweep.csv", sweepCsv(table)}};
+  figure.data = {{"sweep.csv", plottedTable(table)}};
   figure.script = figurePrelude("sweep") + fmt::format("set multiplot layout {},1 title {}\nset grid\nset lmargin 14\nset xlabel {}\n",
                                                        panels, gnuplotString(table.what), gnuplotString(table.parameters[0]));
   bool first = true;
@@ -99,12 +143,19 @@ Figure sweepFigure(const SweepTable& table) {
   return figure;
 }
 
-std::vector<std::string> writeSweep(const SweepTable& table, const std::string& directory) {
+std::vector<std::string> writeSweep(const SweepTable& table, const std::string& directory, SweepFormat format) {
   makeDirectory(directory);
-  const std::vector<std::string> paths{directory + "/sweep.csv", directory + "/sweep.png", directory + "/sweep.svg"};
-  writeAtomically(paths[0], sweepCsv(table));
+  constexpr std::array kEndings = {"csv", "json", "h5"};
+  std::vector<std::string> paths{fmt::format("{}/sweep.{}", directory, kEndings[static_cast<std::size_t>(format)])};
+  if (format == SweepFormat::kHdf5)
+    writeSweepHdf5(table, paths[0]);
+  else
+    writeAtomically(paths[0], format == SweepFormat::kJson ? sweepJson(table) : sweepCsv(table));
+  const bool is_plotted = std::find(table.plotted.begin(), table.plotted.end(), true) != table.plotted.end();
+  if (table.parameters.size() > 2 || !is_plotted) return paths;
   Gnuplot gnuplot;
   const Figure figure = sweepFigure(table);
+  for (const char* ending : {"png", "svg"}) paths.push_back(fmt::format("{}/sweep.{}", directory, ending));
   writeAtomically(paths[1], gnuplot.plot(figure));
   writeAtomically(paths[2], gnuplot.svg(figure));
   return paths;

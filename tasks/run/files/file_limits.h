@@ -15,6 +15,9 @@ inline constexpr InputKind kCalibrationFile = {"a calibration (a JSON file, docs
 // Half an hour at 1 kHz, with 35 bytes per row.
 inline constexpr InputKind kTrajectoryFile = {"a trajectory (a CSV file, docs/scenes.md)", 64 * kMegabyte, true,
                                               "Cut it, or keep fewer samples per second."};
+// 100,000 cases of ten numbers.
+inline constexpr InputKind kCasesFile = {"a table of cases (a CSV file, docs/sweeps.md)", 32 * kMegabyte, true,
+                                         "Cut it into several sweeps."};
 // The samples of a study of 12 participants as `pincer export` writes them; read line by line, as far as the first trial goes.
 inline constexpr InputKind kRecordingFile = {"a recording (a session.db, or a CSV file of samples)", 4096 * kMegabyte, false,
                                              "Cut it to the trial that shall be replayed."};

@@ -25,11 +25,15 @@ std::string suggestedScene(std::string_view name) {
   return suggestion(name, names);
 }
 
-NamedJson parseBuiltin(std::string_view name) {
+const BuiltinScene& builtinNamed(std::string_view name) {
   const BuiltinScene* scene = findBuiltin(name);
   if (!scene) throw InputError(fmt::format("there is no built-in scene \"{}\".{}", name, suggestedScene(name)));
+  return *scene;
+}
+
+NamedJson parseBuiltin(std::string_view name) {
   const std::string file = fmt::format("{}.json", name);
-  return {file, parseJson(scene->json, file)};
+  return {file, parseJson(builtinNamed(name).json, file)};
 }
 
 }  // namespace
@@ -39,10 +43,23 @@ Scene readBuiltinScene(std::string_view name) {
   return sceneOf(scene.json, scene.name);
 }
 
-NamedJson parseSceneOrBuiltin(const std::string& path_or_name) {
+namespace {
+
+bool isFile(const std::string& path_or_name) {
   const bool is_word = path_or_name.find_first_of("/.") == std::string::npos;
-  if (!is_word || std::filesystem::exists(path_or_name)) return {path_or_name, readJson(path_or_name, kSceneFile)};
+  return !is_word || std::filesystem::exists(path_or_name);
+}
+
+}  // namespace
+
+NamedJson parseSceneOrBuiltin(const std::string& path_or_name) {
+  if (isFile(path_or_name)) return {path_or_name, readJson(path_or_name, kSceneFile)};
   return parseBuiltin(path_or_name);
+}
+
+std::string sceneText(const std::string& path_or_name) {
+  if (isFile(path_or_name)) return readInputFile(path_or_name, kSceneFile);
+  return std::string(builtinNamed(path_or_name).json);
 }
 
 Scene readSceneOrBuiltin(const std::string& path_or_name) {

@@ -33,5 +33,7 @@ struct NamedJson {
   JsonValue json;
 };
 NamedJson parseSceneOrBuiltin(const std::string& path_or_name);
+// And its text.
+std::string sceneText(const std::string& path_or_name);
 
 }  // namespace pincer::tasks

@@ -25,9 +25,14 @@ void ExpectationLog::observe(std::int64_t tick, double time, const Moment& momen
   for (std::size_t i = 0; i < expectations_.size(); ++i) {
     const Expectation& expected = expectations_[i];
     if (expected.tick != Expectation::kAlways && expected.tick != tick) continue;
+    if (expected.hash) {
+      const std::string hash = hashText(moment.state.world);
+      outcomes_[i] = {true, 0, hash == *expected.hash ? 0 : kInfinity, time, hash};
+      continue;
+    }
     const double measured = expected.quantity.measure(moment);
     const double excess = expected.excess(measured);
-    if (!outcomes_[i].reached || excess > outcomes_[i].worst_excess) outcomes_[i] = {true, measured, excess, time};
+    if (!outcomes_[i].reached || excess > outcomes_[i].worst_excess) outcomes_[i] = {true, measured, excess, time, {}};
   }
 }
 

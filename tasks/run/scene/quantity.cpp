@@ -1,9 +1,14 @@
 #include "pincer/tasks/run/quantity.h"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cmath>
 
 namespace pincer::tasks {
+
+std::string hashText(const engine::WorldState& state) { return fmt::format("{:016x}", engine::hashOf(state)); }
+
 namespace {
 
 using M = const Moment&;

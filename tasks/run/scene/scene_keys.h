@@ -40,7 +40,8 @@ inline constexpr std::array<Word, 6> kPadTip = {"type", "points", "file", "units
 inline constexpr std::array<Word, 2> kTrajectory = {"keyframes", "csv"};
 inline constexpr std::array<Word, 3> kKeyframe = {"time", "position", "rotation"};
 inline constexpr std::array<Word, 2> kRecord = {"interval", "quantities"};
-inline constexpr std::array<Word, 6> kExpectation = {"quantity", "time", "relation", "value", "tolerance", "because"};
+inline constexpr std::array<Word, 7> kExpectation = {"quantity", "time", "relation", "value", "tolerance", "because", "hash"};
+inline constexpr std::array<Word, 3> kHashExpectation = {"hash", "time", "because"};
 
 inline constexpr std::array<Word, 9> kShapeTypes = {"sphere",     "box",  "capsule", "cylinder", "cylinder_with_flat",
                                                     "half_space", "dish", "mesh",    "convex"};

@@ -144,7 +144,38 @@ Recording readRecording(const JsonValue& json, const Scene& scene) {
   return record;
 }
 
+namespace {
+
+constexpr QuantityKind kHashKind{"hash", "", nullptr};
+
+// "" stands for one that hasn't been taken yet.
+void readHash(const JsonValue& json, Expectation& expectation) {
+  const std::string& hash = json.text();
+  const bool is_hash = hash.size() == 16 && hash.find_first_not_of("0123456789abcdef") == std::string::npos;
+  if (!hash.empty() && !is_hash) {
+    json.reject(
+        "is no hash: 16 of the digits 0-9 and a-f, as `pincer sim` prints it; or \"\", which `pincer test --update-hashes` fills in.");
+  }
+  expectation.hash = hash;
+  expectation.hash_line = json.line();
+  expectation.quantity = {"hash", &kHashKind, 0};
+}
+
+Expectation readHashExpectation(const JsonValue& json, const Scene& scene) {
+  json.allowOnly(keys::kHashExpectation);
+  Expectation expectation;
+  readHash(json.at("hash"), expectation);
+  readWhen(json, scene, expectation);
+  if (expectation.tick == Expectation::kAlways)
+    json.at("time").reject("isn't a moment: a hash is that of one. Write a time [s] or \"end\".");
+  if (const JsonValue* because = json.find("because")) expectation.because = because->text();
+  return expectation;
+}
+
+}  // namespace
+
 Expectation readExpectation(const JsonValue& json, const Scene& scene) {
+  if (json.kind() == JsonValue::Kind::kObject && json.find("hash")) return readHashExpectation(json, scene);
   json.allowOnly(keys::kExpectation);
   Expectation expectation;
   expectation.quantity = readQuantity(json.at("quantity", "What is measured: \"object.p_z\"."), scene);

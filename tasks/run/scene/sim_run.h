@@ -17,6 +17,7 @@ struct SimOptions {
   std::string csv;                 // file for the recorded quantities; empty: none
   bool grasp = false;              // say how well the fingers hold at the end
   bool awake = false;              // no sleep
+  bool timing = false;             // also in JSON, which is the same bytes at each run without
 };
 
 struct SimResult {

@@ -1,7 +1,10 @@
 // Sweeps: what a path names, which values are taken, and that the table tells the physics whoever worked on it.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 
 #include "pincer/tasks/app/app.h"
 #include "pincer/tasks/lab/experiments/localisation.h"
@@ -34,12 +37,54 @@ TEST(Variation, IsReadAsItIsWritten) {
   }
 }
 
-TEST(Variation, OfTwoMakesEveryPair) {
-  const auto points = gridOf({{"a", {1, 2}}, {"b", {5, 6, 7}}}, 6);
-  ASSERT_EQ(points.size(), 6u);
-  EXPECT_EQ(points[1], (std::vector<double>{1, 6}));
-  EXPECT_EQ(points[3], (std::vector<double>{2, 5}));
-  EXPECT_NE(errorOf([] { gridOf({{"a", {1, 2}}, {"b", {5, 6, 7}}}, 5); }), "");
+// 0.1 + 0.5 (0.5 - 0.1) is 0.30000000000000004: a shard's row differed from the whole sweep's in the last digit of how it was written.
+TEST(Variation, HasTheValuesThatAPersonWouldWrite) {
+  EXPECT_EQ(parseVariation("a=0.1:0.5:9").values, (std::vector<double>{0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5}));
+  EXPECT_EQ(parseVariation("a=-0.3:0.3:7").values, (std::vector<double>{-0.3, -0.2, -0.1, 0, 0.1, 0.2, 0.3}));
+  EXPECT_EQ(parseVariation("a=0:1:4").values[1], 0.33333333333333);  // 14 places: of numbers up to 1
+  EXPECT_EQ(parseVariation("a=1e-9:3e-9:3").values[1], 2e-9);
+  EXPECT_EQ(parseVariation("a=1e9:3e9:3").values[1], 2e9);
+  EXPECT_EQ(parseVariation("a=0.001:10:5:log").values, (std::vector<double>{0.001, 0.01, 0.1, 1, 10}));
+}
+
+// Any range of decimals of up to six digits: each value, written plainly, has no more digits than the step needs.
+RC_GTEST_PROP(Variation, WritesDecimalStepsPlainly, ()) {
+  const int from = *rc::gen::inRange(-1000, 1000), step = *rc::gen::inRange(1, 100), count = *rc::gen::inRange(2, 50);
+  const int scale = *rc::gen::inRange(0, 4);
+  const auto written = [&](int k) { return fmt::format("{}e-{}", from + k * step, scale); };
+  const std::vector<double> values = parseVariation(fmt::format("a={}:{}:{}", written(0), written(count - 1), count)).values;
+  for (int k = 0; k < count; ++k) RC_ASSERT(values[static_cast<std::size_t>(k)] == std::strtod(written(k).c_str(), nullptr));
+}
+
+TEST(Variation, OfSeveralMakesEveryCombination) {
+  const SweepGrid grid = crossed({{"a", {1, 2}}, {"b", {5, 6, 7}}, {"c", {0, 9}}}, 12);
+  ASSERT_EQ(grid.points.size(), 12u);
+  EXPECT_EQ(grid.points[1], (std::vector<double>{1, 5, 9}));
+  EXPECT_EQ(grid.points[7], (std::vector<double>{2, 5, 9}));
+  EXPECT_NE(errorOf([] { crossed({{"a", {1, 2}}, {"b", {5, 6, 7}}}, 5); }), "");
+  EXPECT_TRUE(contains(errorOf([] { crossed({{"a", {1, 2}}, {"a", {5}}}, 5); }), "given twice"));
+}
+
+TEST(Variation, ZippedGoesInStep) {
+  const SweepGrid grid = zipped({{"a", {1, 2}}, {"b", {5, 6}}, {"c", {9}}}, 2);
+  EXPECT_EQ(grid.points, (std::vector<std::vector<double>>{{1, 5, 9}, {2, 6, 9}}));
+  EXPECT_TRUE(contains(errorOf([] { zipped({{"a", {1, 2}}, {"b", {5, 6, 7}}}, 9); }), "a has 2 values beside 3"));
+}
+
+TEST(Variation, CasesComeFromATable) {
+  const tests::TemporaryDirectory dir;
+  const auto cases = [&](const char* text) {
+    std::ofstream(dir / "c.csv") << text;
+    return readCases(dir / "c.csv", 3);
+  };
+  const SweepGrid grid = cases("sphere.mass, \"duration\"\n0.1,0.2\n\n0.3, 0.4\n");
+  EXPECT_EQ(grid.paths, (std::vector<std::string>{"sphere.mass", "duration"}));
+  EXPECT_EQ(grid.points, (std::vector<std::vector<double>>{{0.1, 0.2}, {0.3, 0.4}}));
+  EXPECT_TRUE(contains(errorOf([&] { cases("a,b\n1\n"); }), "c.csv:2: 1 values under 2 headings"));
+  EXPECT_TRUE(contains(errorOf([&] { cases("a\n1\nx\n"); }), "c.csv:3: \"x\" isn't a number"));
+  EXPECT_TRUE(contains(errorOf([&] { cases("a\n"); }), "no case"));
+  EXPECT_TRUE(contains(errorOf([&] { cases("a,a\n1,2\n"); }), "given twice"));
+  EXPECT_TRUE(contains(errorOf([&] { cases("a\n1\n2\n3\n4\n"); }), "more than 3 runs"));
 }
 
 constexpr const char* kBall = R"({"version": 1, "duration": 1,
@@ -73,13 +118,21 @@ TEST(JsonChange, SaysWhatIsWrongWithAPathOrValue) {
   }
 }
 
+SweepJob pinchJob(const std::vector<std::string>& vary, std::vector<std::string> measures) {
+  std::vector<Variation> variations;
+  for (const std::string& text : vary) variations.push_back(parseVariation(text));
+  return sceneSweep(parseSceneOrBuiltin("s4_pinch"), sceneText("s4_pinch"), {crossed(variations, kMostSceneCases), std::move(measures)});
+}
+
+SweepTable ran(SweepJob job, const SweepOptions& options = {}) {
+  runSweep(job, options, kNever);
+  return job.table;
+}
+
 SweepTable pinchSweep(int threads) {
-  SceneSweep sweep;
-  sweep.variations = {parseVariation("sphere.material.mu_s=0.20:0.28:9"), parseVariation("duration=0.02")};
-  sweep.measures = {"sphere.p_z", "left.normal_force:max"};
   SweepOptions options;
   options.threads = threads;
-  return sweepScene(parseSceneOrBuiltin("s4_pinch"), sweep, options, kNever);
+  return ran(pinchJob({"sphere.material.mu_s=0.20:0.28:9", "duration=0.02"}, {"sphere.p_z", "left.normal_force:max"}), options);
 }
 
 // At which friction does the grasp begin to slip? mu* = m g / 2 F = 0.24525. Below it the sphere falls, and the fingers, L from its middle, push it
@@ -92,28 +145,43 @@ TEST(SceneSweep, TellsAtWhichFrictionThePinchBeginsToSlip) {
     const double mu = table.points[i][0], fall = std::max(0.0, 9.81 - 2 * mu * kForce / kMass);
     const double rate = std::sqrt(2 * kForce * (1 + mu * mu) / (kMass * kArm));
     const double drop = fall / (rate * rate) * (std::cosh(rate * kTime) - 1);
-    EXPECT_NEAR(table.results[i][0], 0.1 - drop, 0.01 * drop + 1e-12) << mu;  // what is left out: z^2, and the fingers' own mass
-    EXPECT_NEAR(table.results[i][1], 2, 0.01) << mu;
-    EXPECT_EQ(table.results[i][2] > 0, fall > 0) << "the scene expects it to be held";
+    EXPECT_NEAR(table.results[i].values[0], 0.1 - drop, 0.01 * drop + 1e-12) << mu;  // what is left out: z^2, and the fingers' own mass
+    EXPECT_NEAR(table.results[i].values[1], 2, 0.01) << mu;
+    EXPECT_EQ(table.results[i].values[2] > 0, fall > 0) << "the scene expects it to be held";
   }
 }
 
 TEST(SceneSweep, IsTheSameToTheBitWhateverTheThreads) {
   const SweepTable one = pinchSweep(1), four = pinchSweep(4);
-  EXPECT_EQ(one.results, four.results);
+  EXPECT_EQ(sweepJson(one), sweepJson(four));
   EXPECT_EQ(sweepCsv(one), sweepCsv(four));
 }
 
 TEST(SceneSweep, RefusesBeforeItRunsAnything) {
-  const auto said = [](const char* vary, const char* measure) {
-    SceneSweep sweep;
-    sweep.variations = {parseVariation(vary)};
-    sweep.measures = {measure};
-    return errorOf([&] { sweepScene(parseSceneOrBuiltin("s4_pinch"), sweep, {}, kNever); });
-  };
-  EXPECT_TRUE(contains(said("sphere.mass=0.1,-1", "sphere.p_z"), "mass = -1 is out of range"));
+  const auto said = [](const char* vary, const char* measure) { return errorOf([&] { pinchJob({vary}, {measure}); }); };
+  EXPECT_TRUE(contains(said("sphere.mass=-1,-2", "sphere.p_z"), "mass = -1 is out of range"));
+  EXPECT_TRUE(contains(said("sphere.maas=1,2", "sphere.p_z"), "Did you mean"));
   EXPECT_TRUE(contains(said("sphere.mass=0.1", "sphere.pz"), "quantity \"sphere.pz\" isn't known"));
   EXPECT_TRUE(contains(said("sphere.mass=0.1", "sphere.p_z:mean"), ":min or :max"));
+}
+
+TEST(SceneSweep, ACaseThatCantBeRunIsARowWithItsError) {
+  const SweepTable table = ran(pinchJob({"sphere.mass=0.1,-1,0.2", "duration=0.01"}, {"sphere.p_z"}));
+  EXPECT_EQ(table.done(), 3u);
+  EXPECT_EQ(table.failed(), 1u);
+  EXPECT_TRUE(contains(table.results[1].error, "mass = -1 is out of range")) << table.results[1].error;
+  EXPECT_TRUE(std::isnan(table.results[1].values[0]));
+  EXPECT_TRUE(table.results[2].error.empty());
+}
+
+TEST(SceneSweep, HasTheHashOfEachState) {
+  const SweepTable table = ran(pinchJob({"duration=0.01,0.02"}, {"sphere.p_z"}));
+  Scene scene = readBuiltinScene("s4_pinch");
+  scene.duration = 0.02;
+  Simulation simulation(std::move(scene));
+  while (simulation.ticks() < 20) simulation.tick();
+  EXPECT_EQ(table.results[1].state_hash, hashText(simulation.state().world));
+  EXPECT_NE(table.results[0].state_hash, table.results[1].state_hash);
 }
 
 TEST(SceneSweep, StopsWhereItIsInterrupted) {
@@ -121,25 +189,25 @@ TEST(SceneSweep, StopsWhereItIsInterrupted) {
   SweepOptions options;
   options.threads = 1;
   options.progress = [&](std::int64_t done, std::int64_t) { interrupted = done == 1; };
-  const SweepTable table =
-      sweepScene(parseSceneOrBuiltin("s4_pinch"), {{parseVariation("duration=0.01,0.02,0.03")}, {"energy"}}, options, interrupted);
-  EXPECT_TRUE(table.interrupted);
-  EXPECT_EQ(sweepText(table).find("0.02"), std::string::npos) << sweepText(table);
+  SweepJob job = pinchJob({"duration=0.01,0.02,0.03"}, {"energy"});
+  runSweep(job, options, interrupted);
+  EXPECT_TRUE(job.table.interrupted);
+  EXPECT_EQ(sweepText(job.table).find("0.02"), std::string::npos) << sweepText(job.table);
 }
 
 // A success is held for a second; some of eight spheres are up within half a minute.
 TEST(StudySweep, TellsThatNobodyPicksUpASphereWithinASecond) {
   StudySweep sweep;
-  sweep.variations = {parseVariation("sphere_pickup.timeout=1,30"), parseVariation("sphere_pickup.repetitions=1")};
+  sweep.grid = crossed({parseVariation("sphere_pickup.timeout=1,30"), parseVariation("sphere_pickup.repetitions=1")}, kMostStudyCases);
   sweep.participants = 1;
-  const SweepTable table = sweepStudy("sphere-pickup", sweep, {}, kNever);
+  const SweepTable table = ran(studySweep("sphere-pickup", sweep));
   const auto column = std::find(table.measures.begin(), table.measures.end(), "spheres picked up within the time, CLD + force [%]") -
                       table.measures.begin();
   ASSERT_LT(column, static_cast<std::ptrdiff_t>(table.measures.size()));
-  EXPECT_EQ(table.results[0][static_cast<std::size_t>(column)], 0);
-  EXPECT_GT(table.results[1][static_cast<std::size_t>(column)], 0);
-  sweep.variations = {parseVariation("people.tactor_sdd=1,2")};
-  EXPECT_TRUE(contains(errorOf([&] { sweepStudy("sphere-pickup", sweep, {}, kNever); }), "Did you mean"));
+  EXPECT_EQ(table.results[0].values[static_cast<std::size_t>(column)], 0);
+  EXPECT_GT(table.results[1].values[static_cast<std::size_t>(column)], 0);
+  sweep.grid = crossed({parseVariation("people.tactor_sdd=1,2")}, kMostStudyCases);
+  EXPECT_TRUE(contains(errorOf([&] { studySweep("sphere-pickup", sweep); }), "Did you mean"));
 }
 
 struct Answers final : StudySink {
@@ -153,8 +221,8 @@ struct Answers final : StudySink {
 TEST(OneFingerSweep, EachPointIsTheStudyWithItsNumber) {
   StudySweep sweep;
   sweep.participants = 1;
-  sweep.variations = {parseVariation("repetitions=1,2")};
-  const SweepTable table = sweepOneFinger("repeated-localisation", sweep, {}, kNever);
+  sweep.grid = crossed({parseVariation("repetitions=1,2")}, kMostStudyCases);
+  const SweepTable table = ran(oneFingerSweep("repeated-localisation", sweep));
   ASSERT_EQ(table.measures.size(), 1u);
   ASSERT_EQ(table.results.size(), 2u);
   for (const int repetitions : {1, 2}) {
@@ -165,10 +233,10 @@ TEST(OneFingerSweep, EachPointIsTheStudyWithItsNumber) {
     Answers answers;
     runStudy(experiment, study.seed, {}, answers, kNever);
     EXPECT_EQ(answers.count, 5 * repetitions);
-    EXPECT_NEAR(table.results[static_cast<std::size_t>(repetitions - 1)][0], 1e3 * answers.sum / answers.count, 1e-9);  // [mm]
+    EXPECT_NEAR(table.results[static_cast<std::size_t>(repetitions - 1)].values[0], 1e3 * answers.sum / answers.count, 1e-9);  // [mm]
   }
-  sweep.variations = {parseVariation("repetition=1")};
-  EXPECT_TRUE(contains(errorOf([&] { sweepOneFinger("repeated-localisation", sweep, {}, kNever); }), "Did you mean"));
+  sweep.grid = crossed({parseVariation("repetition=1")}, kMostStudyCases);
+  EXPECT_TRUE(contains(errorOf([&] { oneFingerSweep("repeated-localisation", sweep); }), "Did you mean"));
 }
 
 TEST(SweepCommand, WritesTableAndPicture) {
@@ -181,9 +249,12 @@ TEST(SweepCommand, WritesTableAndPicture) {
   EXPECT_TRUE(contains(done.out, "sphere.p_z [m]")) << done.out;
   EXPECT_EQ(tests::runPincer({"sweep", "s4_pinch"}).exit_code, kExitUsage);
   EXPECT_EQ(tests::runPincer({"sweep", "s4_pinch", "--vary", "sphere.mass=much"}).exit_code, kExitUsage);
-  const auto three = tests::runPincer({"sweep", "s4_pinch", "--vary", "duration=1", "--vary", "tick=0.001", "--vary", "sphere.mass=1"});
-  EXPECT_EQ(three.exit_code, kExitUsage);
-  EXPECT_TRUE(contains(three.error, "one or two")) << three.error;
+  const auto three =
+      tests::runPincer({"sweep", "s4_pinch", "--vary", "duration=0.01", "--vary", "tick=0.001", "--vary", "sphere.mass=1,2"});
+  EXPECT_EQ(three.exit_code, kExitOk) << three.error;
+  const auto again = tests::runPincer({"sweep", "s4_pinch", "--vary", "duration=1", "--out", dir / "out"});
+  EXPECT_EQ(again.exit_code, kExitBadInput);
+  EXPECT_TRUE(contains(again.error, "--resume")) << again.error;
 }
 
 }  // namespace

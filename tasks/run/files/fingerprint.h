@@ -1,0 +1,32 @@
+// fingerprint: 64 bits over texts, to tell whether two are the same; no protection against who wants them to look the same.
+// Source: G. Fowler, L. C. Noll, P. Vo, FNV-1a (RFC draft draft-eastlake-fnv), 64 bits.
+#pragma once
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace pincer::tasks {
+
+class Fingerprint {
+ public:
+  // Texts one after the other; their borders count.
+  void add(std::string_view text) {
+    for (const char c : text) addByte(static_cast<unsigned char>(c));
+    addByte(0);
+  }
+  std::string text() const { return fmt::format("{:016x}", hash_); }  // 16 hexadecimal digits
+
+ private:
+  void addByte(unsigned char byte) { hash_ = (hash_ ^ byte) * 1099511628211u; }  // FNV's prime
+  std::uint64_t hash_ = 14695981039346656037u;                                   // its offset basis
+};
+
+inline std::string fingerprint(std::string_view text) {
+  Fingerprint hash;
+  hash.add(text);
+  return hash.text();
+}
+
+}  // namespace pincer::tasks
