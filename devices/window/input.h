@@ -26,6 +26,7 @@ enum Key : int {
   kKeyF4 = 293,
   kKeyF5 = 294,
   kKeyShift = 340,
+  kKeyControl = 341,
 };
 
 enum Button : int { kButtonLeft = 0, kButtonRight = 1, kButtonMiddle = 2 };

@@ -31,6 +31,7 @@ class MouseArm final : public Arm {
   void commandForce(const Vec3& f_D) override;
 
   void setHand(const Vec3& p_hand_D) { p_hand_D_ = p_hand_D; }
+  void setOrientation(const Quat& q_DF) { settings_.q_DF = q_DF; }
   // Time moves only here. `dt` > 0 [s].
   void advance(double dt);
 

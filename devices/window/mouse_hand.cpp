@@ -17,7 +17,7 @@ MouseHand::MouseHand(const std::vector<MouseMount>& mounts, const MouseHandSetti
   }
   home_H_ = middle_H_ = 0.5 * (mounts.front().start_H + mounts.back().start_H);
   gap_ = open_gap_ = mounts.back().start_H.x() - mounts.front().start_H.x();
-  wanted_ = {middle_H_, false, settings.grip};
+  wanted_ = {middle_H_, false, settings.grip, 0};
   publish();
 }
 
@@ -27,6 +27,10 @@ void MouseHand::publish() {
 }
 void MouseHand::move(const Vec3& by_H) {
   wanted_.middle_H += by_H;
+  publish();
+}
+void MouseHand::turn(double by) {
+  wanted_.turn = std::clamp(wanted_.turn + by, -settings_.most_turn, settings_.most_turn);
   publish();
 }
 void MouseHand::squeeze(bool on) {
@@ -56,7 +60,7 @@ double MouseHand::wantedGap(double dt, bool squeezes, double grip) const {
   const double side = open_gap_ < 0 ? -1 : 1, step = settings_.close_speed * dt;
   const double gap = side * gap_, open = side * open_gap_;
   if (!squeezes) return side * std::min(gap + step, open);
-  const double apart = side * (place_H(1).x() - place_H(0).x());
+  const double apart = side * across_H().dot(place_H(1) - place_H(0));
   return side * std::max({gap - step, apart - 2 * grip / arms_[0].stiffness(), 0.0});
 }
 
@@ -65,10 +69,16 @@ void MouseHand::advance(double dt) {
   const Wish& wish = wishes_.current();
   const Vec3 way = (going_home_ ? home_H_ : wish.middle_H) - middle_H_;
   middle_H_ += way * std::min(1.0, settings_.top_speed * dt / std::max(way.norm(), 1e-12));
+  const double turn = (going_home_ ? 0 : wish.turn) - turn_, most_turn = settings_.turn_speed * dt;
+  turn_ += std::clamp(turn, -most_turn, most_turn);
   if (arms_.size() == 2) gap_ = wantedGap(dt, squeezing(), wish.grip);
   for (std::size_t i = 0; i < arms_.size(); ++i) {
     const double side = arms_.size() == 1 ? 0 : (i == 0 ? -0.5 : 0.5);
-    const Vec3 hand_H = middle_H_ + Vec3(side * gap_, 0, 0);
+    const Vec3 hand_H = middle_H_ + side * gap_ * across_H();
+    if (mounts_[i].q_DF && turn_ != 0) {
+      const Quat q_turn(math::cos(0.5 * turn_), 0, 0, math::sin(0.5 * turn_));
+      arms_[i].setOrientation(mounts_[i].q_HD.conjugate() * q_turn * mounts_[i].q_HD * *mounts_[i].q_DF);
+    }
     arms_[i].setHand(mounts_[i].q_HD.conjugate() * (hand_H - mounts_[i].p_HD));
     arms_[i].advance(dt);
   }

@@ -1,8 +1,8 @@
 // mouse_hand: index finger and thumb (or one finger) that follow mouse, wheel and keys.
 //
-//   p_1,2 = c -+ (g/2) x,   g -> g - v dt while squeezing, but not under d - 2 f/k
+//   p_1,2 = c -+ (g/2) e,   e = (cos a, sin a, 0),   g -> g - v dt while squeezing, but not under d - 2 f/k
 //
-//   c  middle of the two [m], the mouse's; g  how far apart the hand wants them [m]; d  how far they are; v  how fast they close [m/s];
+//   a  turn of the hand about z [rad], which the fingers' orientations follow;  c  middle of the two [m], the mouse's; g  how far apart the hand wants them [m]; d  how far they are; v  how fast they close [m/s];
 //   f  the grip [N], the wheel's; k  stiffness of the arms' springs [N/m]. Frame H: x right, y away, z up.
 //
 // So the fingers never press harder than the grip, and the hand that holds something is as stiff sideways as one that doesn't.
@@ -26,6 +26,8 @@ struct MouseMount {
 struct MouseHandSettings {
   double close_speed = 0.10;                // v [m/s]
   double top_speed = 0.4;                   // of the middle [m/s]; the mouse may be faster
+  double turn_speed = 1.5;                  // [rad/s]
+  double most_turn = 1.2;                   // of a, either way: a wrist's [rad]
   double grip = 2.0;                        // f at first [N]
   double least_grip = 0.25, most_grip = 6;  // [N]
 };
@@ -37,6 +39,7 @@ class MouseHand {
 
   // The window's side.
   void move(const Vec3& by_H);  // the middle [m]
+  void turn(double by);         // [rad]
   void squeeze(bool on);
   void toggleSqueeze() { squeeze(!wanted_.squeezes); }
   void changeGrip(double factor);
@@ -58,9 +61,11 @@ class MouseHand {
     Vec3 middle_H = Vec3::Zero();
     bool squeezes = false;
     double grip = 0;
+    double turn = 0;
   };
   void publish();
   double wantedGap(double dt, bool squeezes, double grip) const;
+  Vec3 across_H() const { return {math::cos(turn_), math::sin(turn_), 0}; }
 
   MouseHandSettings settings_;
   std::vector<MouseMount> mounts_;
@@ -70,6 +75,7 @@ class MouseHand {
   bool going_home_ = false;
   Vec3 home_H_ = Vec3::Zero();
   Vec3 middle_H_ = Vec3::Zero();  // the servo's, on its way to the wish
+  double turn_ = 0;               // likewise
   double gap_ = 0, open_gap_ = 0;
 };
 

@@ -10,7 +10,8 @@ namespace pincer::devices {
 namespace {
 
 static_assert(kKeyEscape == GLFW_KEY_ESCAPE && kKeyTab == GLFW_KEY_TAB && kKeyRight == GLFW_KEY_RIGHT && kKeyPageUp == GLFW_KEY_PAGE_UP &&
-              kKeyEnd == GLFW_KEY_END && kKeyF1 == GLFW_KEY_F1 && kKeyF5 == GLFW_KEY_F5 && kKeyShift == GLFW_KEY_LEFT_SHIFT);
+              kKeyEnd == GLFW_KEY_END && kKeyF1 == GLFW_KEY_F1 && kKeyF5 == GLFW_KEY_F5 && kKeyShift == GLFW_KEY_LEFT_SHIFT &&
+              kKeyControl == GLFW_KEY_LEFT_CONTROL);
 static_assert(kButtonLeft == GLFW_MOUSE_BUTTON_LEFT && kButtonRight == GLFW_MOUSE_BUTTON_RIGHT);
 
 [[noreturn]] void throwNoWindow(const std::string& what) {
@@ -99,6 +100,7 @@ class WindowSurface final : public Surface {
 void WindowSurface::listen() {
   glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int mods) {
     if (key == GLFW_KEY_RIGHT_SHIFT) key = GLFW_KEY_LEFT_SHIFT;
+    if (key == GLFW_KEY_RIGHT_CONTROL) key = GLFW_KEY_LEFT_CONTROL;
     of(window).note({InputKind::kKey, key, action != GLFW_RELEASE, 0, 0, modifiers(mods)});
   });
   glfwSetMouseButtonCallback(window_, [](GLFWwindow* window, int button, int action, int mods) {

@@ -20,19 +20,23 @@ namespace {
 
 extern "C" void pincerOnReportRequest(int) { requestServoReport(); }
 
-// Waits for a line on standard input. False where the input ends, or the user interrupts.
-bool lineComes() {
+}  // namespace
+
+std::optional<std::string> typedLine() {
   constexpr int kLook = 100;  // for an interrupt [ms]
-  for (char c = 0; c != '\n';) {
+  std::string line;
+  for (char c = 0;;) {
     pollfd input{STDIN_FILENO, POLLIN, 0};
     const int ready = ::poll(&input, 1, kLook);
-    if (interruptFlag()) return false;
-    if (ready > 0 && ::read(STDIN_FILENO, &c, 1) != 1) return false;
+    if (interruptFlag()) return {};
+    if (ready <= 0) continue;
+    if (::read(STDIN_FILENO, &c, 1) != 1) return {};
+    if (c == '\n') return line;
+    line += c;
   }
-  return true;
 }
 
-}  // namespace
+bool lineComes() { return typedLine().has_value(); }
 
 void addDeviceOptions(CLI::App& command, DeviceRunOptions& options) {
   command.add_option("--devices", options.devices, "What the fingers wear: simulated devices and participant, or real ones and a person")

@@ -27,6 +27,10 @@ void addDeviceOptions(CLI::App& command, DeviceRunOptions& options);
 // are motors. Throws DeviceError, and CLI::ValidationError for a watchdog that would guard no motor.
 std::unique_ptr<HandDevices> openDevices(const DeviceRunOptions& options, ServoOptions& servo);
 
+// Waits for a line on standard input. False where the input ends, or the user interrupts.
+bool lineComes();
+std::optional<std::string> typedLine();  // likewise, and what it says
+
 // Asks on the terminal whether forces may come on, because `why`; yes if the user said --yes. False when there is nobody to ask.
 bool operatorArms(const DeviceRunOptions& options, const std::string& why);
 

@@ -92,6 +92,8 @@ struct FingerInputRecord {
 // A tick of a person's trial: everything that came in, and where it led, so that the trial can be done again and compared tick by tick.
 struct InputRecord {
   enum Flag : std::uint32_t { kWantsLift = 1, kAnswers = 2 };
+  static constexpr std::uint32_t kKeyShift =
+      8;  // from this bit of `flags` on: the key that a person pressed, its character or devices::Key
   std::int64_t trial = 0;
   std::int64_t tick = 0;
   double time = 0;          // that the tick was given [s]
@@ -171,6 +173,17 @@ struct ResponseRecord {
   double contact_share = 0;   // share of the duration in which the finger touched [-]
   double finger_speed = 0;    // mean over the time in which the finger touched and moved [m/s]; NaN if it didn't
   double tactor_speed = 0;    // mean over the time in which the tactor moved [m/s]; NaN if it didn't
+};
+
+// What a person answered to a question beside the trials (tasks/lab/study/survey.h).
+struct SurveyRecord {
+  std::int64_t participant = 0;
+  std::string moment;                                              // "before", "after" the trials
+  std::string item;                                                // its name: "did_well"
+  std::string task, condition;                                     // that it was asked of; empty: of the whole session
+  std::string question;                                            // in words
+  std::string answer;                                              // in words; empty: none was given
+  double answer_value = std::numeric_limits<double>::quiet_NaN();  // as a number; NaN if it has none
 };
 
 struct SessionInfo {

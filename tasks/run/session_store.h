@@ -53,6 +53,7 @@ class SessionWriter {
   void addHands(const HandsRecord& hands);              // before the first input of its trial
   void finishTrial(const TrialRecord& trial);           // returns once the trial and all that was pushed before are durable
   void finishResponse(const ResponseRecord& response);  // likewise
+  void addSurvey(const SurveyRecord& answer);           // likewise
   void close();                                         // final flush, state "complete", one plain file without a log beside it
   void abort(std::string_view why) noexcept;            // final flush, state "aborted: <why>"; needs no memory
 
@@ -94,6 +95,7 @@ class SessionReader {
   std::vector<ResponseRecord> responses() const;  // in order of time
   std::vector<EventRecord> events(std::optional<std::int64_t> trial = {}) const;
   std::vector<ReadingRecord> readings(std::optional<std::int64_t> trial = {}) const;
+  std::vector<SurveyRecord> survey() const;  // in order of time
   void forEachSample(const SampleFilter& filter, const std::function<void(const SampleRecord&)>& take) const;
 
   bool keepsInputs() const { return format_ >= 3; }  // of people; older sessions don't

@@ -14,6 +14,7 @@ constexpr float kPadSide = 148;                        // of a fingerpad inset [
 constexpr float kChartWidth = 250, kChartHeight = 78;  // [pixels]
 constexpr ImU32 kSkinInk = IM_COL32(222, 170, 148, 255), kPadInk = IM_COL32(205, 130, 112, 255), kGridInk = IM_COL32(255, 255, 255, 60);
 constexpr ImU32 kWantedInk = IM_COL32(25, 60, 160, 255), kTactorInk = IM_COL32(20, 24, 30, 255), kParkedInk = IM_COL32(110, 110, 110, 255);
+constexpr ImU32 kTargetInk = IM_COL32(20, 140, 60, 255);
 constexpr std::array<ImU32, 3> kLineInks = {IM_COL32(95, 175, 255, 255), IM_COL32(255, 165, 70, 255), IM_COL32(120, 215, 130, 255)};
 
 // The pad seen from outside, as one looks at one's own finger: distal up; L's first axis is distal, its second radial.
@@ -34,7 +35,11 @@ void drawTactor(ImDrawList* list, const ImVec2& middle, const PadLook& pad, cons
   list->AddCircle(wanted, 10, ink, 24, 2);
 }
 
-void drawPad(const PadLook& pad, const FingerSnapshot& finger) {
+void drawTarget(ImDrawList* list, const ImVec2& middle, const PadLook& pad, double target) {
+  list->AddCircle(onPad(middle, pad.reach, {target, 0}), 13, kTargetInk, 32, 3);
+}
+
+void drawPad(const PadLook& pad, const FingerSnapshot& finger, const std::optional<double>& target) {
   ImGui::TextUnformatted(pad.finger.c_str());
   const std::string force = fmt::format("{:.2f} N", finger.normal_force);
   ImGui::SameLine(kPadSide - ImGui::CalcTextSize(force.c_str()).x + ImGui::GetStyle().WindowPadding.x);
@@ -50,6 +55,7 @@ void drawPad(const PadLook& pad, const FingerSnapshot& finger) {
   list->AddCircleFilled(middle, 0.36f * kPadSide, kPadInk, 48);
   list->AddLine({middle.x - r, middle.y}, {middle.x + r, middle.y}, kGridInk);
   list->AddLine({middle.x, middle.y - r}, {middle.x, middle.y + r}, kGridInk);
+  if (target) drawTarget(list, middle, pad, *target);
   if (finger.has_display) drawTactor(list, middle, pad, finger);
   if (finger.place_L) {
     const ImVec2 at = onPad(middle, pad.reach, *finger.place_L);
@@ -93,10 +99,10 @@ void drawChart(const StripChart& chart) {
 }  // namespace
 
 void drawPads(const OverlayText& text, int width) {
-  if (text.pads.empty() || text.snapshot->trial.blind) return;
+  if (text.pads.empty() || !text.snapshot->trial.shows_pads) return;
   const OverlayPanel panel("pads", width, 0, 1, 0);
   for (std::size_t i = 0; i < std::min(text.pads.size(), text.snapshot->fingers.size()); ++i) {
-    drawPad(text.pads[i], text.snapshot->fingers[i]);
+    drawPad(text.pads[i], text.snapshot->fingers[i], text.snapshot->trial.target);
   }
 }
 

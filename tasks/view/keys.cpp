@@ -49,6 +49,8 @@ constexpr std::array kHandKeys = {
     KeyBinding{Key::kKeyDown, "Down", ViewAction::kHandDown, "fingers down"},
     KeyBinding{Key::kKeyPageUp, "Page up", ViewAction::kHandAway, "fingers away from you"},
     KeyBinding{Key::kKeyPageDown, "Page down", ViewAction::kHandNear, "fingers towards you"},
+    KeyBinding{'Q', "Q", ViewAction::kTurnLeft, "turn the hand to the left"},
+    KeyBinding{'E', "E", ViewAction::kTurnRight, "turn it to the right"},
     KeyBinding{',', ",", ViewAction::kGripLess, "weaker grip"},
     KeyBinding{'.', ".", ViewAction::kGripMore, "stronger grip"},
 };
@@ -65,9 +67,10 @@ constexpr std::array kCameraGestures = {
     MouseGesture{"bar below, drag", "to another time"},
 };
 constexpr std::array kHandGestures = {
-    MouseGesture{"move", "fingers left, right, up, down"},        MouseGesture{"Shift, move", "fingers left, right, away, near"},
-    MouseGesture{"left button", "squeeze as long as it is held"}, MouseGesture{"wheel", "stronger or weaker grip"},
-    MouseGesture{"right button, drag", "turn the camera"},        MouseGesture{"Control, wheel", "nearer, further"},
+    MouseGesture{"move", "fingers left, right, up, down"}, MouseGesture{"Shift, move", "fingers left, right, away, near"},
+    MouseGesture{"Control, move", "turn the hand"},        MouseGesture{"left button", "squeeze as long as it is held"},
+    MouseGesture{"wheel", "stronger or weaker grip"},      MouseGesture{"right button, drag", "turn the camera"},
+    MouseGesture{"Control, wheel", "nearer, further"},
 };
 
 std::optional<ViewAction> actionIn(std::span<const KeyBinding> keys, int code) {

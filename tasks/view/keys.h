@@ -42,6 +42,8 @@ enum class ViewAction : std::uint8_t {
   kHandDown,
   kHandAway,
   kHandNear,
+  kTurnLeft,
+  kTurnRight,
   kGripLess,
   kGripMore,
   kQuit,

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "pincer/tasks/lab/finger/finger_host.h"
 #include "pincer/tasks/run/servo/histogram.h"
 #include "pincer/tasks/run/tick/snapshot.h"
 #include "pincer/tasks/view/keys.h"
@@ -32,9 +33,10 @@ struct OverlayText {
   std::vector<OverlayLabel> labels;
   std::vector<PadLook> pads;  // one per finger
   std::span<const StripChart> charts;
-  std::string title;   // of scene or task
-  std::string pace;    // "real time", "1/4 speed", "paused"
-  std::string notice;  // of what has just happened: a screenshot's name
+  std::string title;                // of scene or task
+  const StudyPage* page = nullptr;  // that covers everything else; null: none
+  std::string pace;                 // "real time", "1/4 speed", "paused"
+  std::string notice;               // of what has just happened: a screenshot's name
   double pictures_per_second = 0;
   const Histogram* lateness = nullptr;  // of the ticks that were seen; null: not known
   double scrub = -1;                    // where in the history, 0 .. 1; negative: at the present
@@ -53,6 +55,7 @@ class Overlay {
   void draw(const OverlayText& text, int width, int height);
 
  private:
+  void drawPanels(const OverlayText& text, int width, int height);
   struct Gui;
   std::unique_ptr<Gui> gui_;
 };

@@ -58,6 +58,16 @@ void Overlay::draw(const OverlayText& text, int width, int height) {
   io.DeltaTime = 1 / 60.0f;
   ImGui_ImplOpenGL3_NewFrame();
   ImGui::NewFrame();
+  if (text.page) {
+    drawPage(text, width, height);
+  } else {
+    drawPanels(text, width, height);
+  }
+  ImGui::Render();
+  ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+void Overlay::drawPanels(const OverlayText& text, int width, int height) {
   drawLabels(text);
   if (text.choice.overlay) {
     drawStatus(text);
@@ -68,8 +78,6 @@ void Overlay::draw(const OverlayText& text, int width, int height) {
   if (text.choice.timing) drawHealth(text, height);
   if (text.choice.help) drawHelp(text, width, height);
   drawNotice(text, width, height);
-  ImGui::Render();
-  ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
 }
 
 OverlayPanel::OverlayPanel(const char* name, double x, double y, double pivot_x, double pivot_y) {

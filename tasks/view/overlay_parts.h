@@ -21,6 +21,7 @@ void drawPads(const OverlayText& text, int width);     // upper right
 void drawCharts(const OverlayText& text, int height);  // lower left
 void drawHealth(const OverlayText& text, int height);  // left
 void drawHelp(const OverlayText& text, int width, int height);
+void drawPage(const OverlayText& text, int width, int height);    // over all of it
 void drawNotice(const OverlayText& text, int width, int height);  // lower middle, and where in the history
 
 }  // namespace pincer::tasks

@@ -72,7 +72,9 @@ void drawTrial(const OverlayText& text, int width) {
   std::string line = fmt::format("trial {} of {}", trial.trial, trial.trials);
   if (*trial.condition) line += fmt::format(" · {}", trial.condition);
   if (*trial.stage) line += fmt::format(" · {}", trial.stage);
+  if (trial.time_left >= 0) line += fmt::format(" · {:.0f} s left", std::ceil(trial.time_left));
   dimLine(line);
+  if (*trial.hint) colourLine(true, trial.hint);
 }
 
 void drawHealth(const OverlayText& text, int height) {
@@ -105,6 +107,21 @@ void drawHelp(const OverlayText& text, int width, int height) {
   for (std::size_t i = 2; i < groups.size() - (text.hands ? 0 : 1); ++i) helpList(groups[i].title, groups[i].keys);
   helpList("Mouse", text.hands ? handGestures() : cameraGestures());
   ImGui::EndGroup();
+}
+
+void drawPage(const OverlayText& text, int width, int height) {
+  constexpr float kWidest = 760;  // of a line [pixels]
+  const OverlayPanel panel("page", 0.5 * width, 0.42 * height, 0.5, 0.5);
+  ImGui::SetWindowFontScale(1.5f);
+  textLine(text.page->title);
+  ImGui::SetWindowFontScale(1.15f);
+  ImGui::PushTextWrapPos(std::min(kWidest, static_cast<float>(width) - 60));
+  for (const std::string& line : text.page->lines) {
+    ImGui::Dummy({1, 4});
+    textLine(line);
+  }
+  ImGui::PopTextWrapPos();
+  ImGui::SetWindowFontScale(1);
 }
 
 void drawNotice(const OverlayText& text, int width, int height) {

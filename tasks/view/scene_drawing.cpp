@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "pincer/tasks/view/shape_meshes.h"
 
@@ -14,6 +15,7 @@ namespace {
 const Vec3f kSkin(0.83f, 0.50f, 0.37f), kPad(0.88f, 0.40f, 0.34f), kNail(0.93f, 0.72f, 0.64f);
 const Vec3f kTip(0.20f, 0.22f, 0.25f);
 const Vec3f kStick(0.02f, 0.50f, 0.20f), kSlip(0.95f, 0.10f, 0.03f), kNormal(0.02f, 0.07f, 0.30f), kPorcelain(0.50f, 0.52f, 0.54f);
+const Vec3f kGoal(0.05f, 0.45f, 0.85f);
 const Vec3f kFloor(0.50f, 0.52f, 0.55f), kDevice(0.10f, 0.30f, 0.85f);
 const std::array<Vec3f, 6> kBodyColours = {Vec3f(0.90f, 0.42f, 0.06f), Vec3f(0.06f, 0.36f, 0.62f), Vec3f(0.30f, 0.55f, 0.16f),
                                            Vec3f(0.55f, 0.16f, 0.42f), Vec3f(0.80f, 0.62f, 0.10f), Vec3f(0.10f, 0.50f, 0.52f)};
@@ -36,6 +38,10 @@ Paint paintOf(const contact::Shape& shape, bool dynamic, const Vec3f& colour) {
   Paint paint{.colour = colour, .gloss = 0.6f};
   if (std::holds_alternative<contact::Sphere>(shape)) paint.octants = 0.13f;
   return paint;
+}
+
+bool isHidden(const Snapshot& snapshot, std::size_t body) {
+  return snapshot.hidden_body == Snapshot::kAllBodies || snapshot.hidden_body == static_cast<int>(body);
 }
 
 // A rotation that takes z to `along_W`.
@@ -124,7 +130,9 @@ DrawList SceneDrawing::compose(const Snapshot& snapshot, const ViewChoice& choic
   for (std::size_t i = 0; i < snapshot.fingers.size(); ++i) {
     addFinger(snapshot, i, list);
     if (choice.devices) addDevice(snapshot.fingers[i], i, list);
+    if (*snapshot.trial.hint) addDropShadow(snapshot.fingers[i].p_WP, fingers_[i].radius, list);
   }
+  addGoal(snapshot, list);
   const double scale = metresPerNewton(snapshot);
   if (choice.joints) joints_.add(snapshot, marks(), scale, list);
   for (int i = 0; i < snapshot.contact_count; ++i) addContact(snapshot.contacts[static_cast<std::size_t>(i)], choice, scale, list);
@@ -134,7 +142,7 @@ DrawList SceneDrawing::compose(const Snapshot& snapshot, const ViewChoice& choic
 void SceneDrawing::addBodies(const Snapshot& snapshot, const ViewChoice& choice, DrawList& list) const {
   for (const ShapeLook& look : shapes_) {
     const bool moves = bodies_[look.body].moves;
-    if (snapshot.trial.blind && moves) continue;
+    if ((snapshot.trial.blind && moves) || isHidden(snapshot, look.body)) continue;
     DrawItem item{choice.facets ? look.facets : look.smooth, placed(snapshot.X_WB[look.body] * look.X_BS), look.paint, look.layer};
     if (look.is_mesh && choice.edges) item.paint.edges = choice.facets ? 0.7f : 0.3f;
     if (moves && choice.transparent) item.paint.alpha = 0.4f;
@@ -175,6 +183,42 @@ void SceneDrawing::addDevice(const FingerSnapshot& seen, std::size_t finger, Dra
   const Paint paint{.colour = kDevice, .glow = 0.6f};
   list.push_back({ball_, placed({Quat::Identity(), seen.p_WF}, Vec3::Constant(2.5 * thin)), paint, Layer::kMark});
   list.push_back({rod_, placed(pointing(seen.p_WP, spring), Vec3(thin, thin, spring.norm())), paint, Layer::kMark});
+}
+
+// Where over the ground a finger is: a disc at z = 0, and a line up to it.
+void SceneDrawing::addDropShadow(const Vec3& p_W, double radius, DrawList& list) const {
+  const Vec3 below_W(p_W.x(), p_W.y(), 1e-3);
+  const Paint paint{.colour = Vec3f(0.05f, 0.05f, 0.08f), .alpha = 0.35f};
+  list.push_back({ball_, placed({Quat::Identity(), below_W}, Vec3(radius, radius, 2e-4)), paint, Layer::kMark});
+  const double thin = 0.008 * size_;
+  if (p_W.z() > below_W.z())
+    list.push_back({rod_, placed({Quat::Identity(), below_W}, Vec3(thin, thin, p_W.z() - below_W.z())), paint, Layer::kMark});
+}
+
+// A ring at the height that the object's middle is to reach; a line along the heading that its mark is to take.
+void SceneDrawing::addGoal(const Snapshot& snapshot, DrawList& list) const {
+  const auto object = std::find_if(bodies_.begin(), bodies_.end(), [](const BodyLook& body) { return body.dynamic; });
+  if (object == bodies_.end()) return;
+  const Vec3 middle_W = snapshot.X_WB[static_cast<std::size_t>(object - bodies_.begin())] * object->p_BC;
+  const Paint paint{.colour = kGoal, .glow = 0.8f};
+  const double thin = 0.02 * size_;
+  const auto line = [&](const Vec3& from_W, const Vec3& to_W) {
+    list.push_back({rod_, placed(pointing(from_W, to_W - from_W), Vec3(thin, thin, (to_W - from_W).norm())), paint, Layer::kMark});
+  };
+  if (snapshot.trial.goal_height) {
+    constexpr int kSides = 32;
+    const auto corner = [&](int k) {
+      const double a = 2 * std::numbers::pi * k / kSides;
+      return Vec3(middle_W.x() + 1.6 * object->radius * math::cos(a), middle_W.y() + 1.6 * object->radius * math::sin(a),
+                  *snapshot.trial.goal_height);
+    };
+    for (int k = 0; k < kSides; ++k) line(corner(k), corner(k + 1));
+  }
+  if (snapshot.trial.goal_heading) {
+    const Vec3 along(math::cos(*snapshot.trial.goal_heading), math::sin(*snapshot.trial.goal_heading), 0);
+    const Vec3 top_W = middle_W + object->radius * Vec3::UnitZ();
+    addArrow(top_W, 1.5 * object->radius * along, thin, paint, list);
+  }
 }
 
 double SceneDrawing::metresPerNewton(const Snapshot& snapshot) const {

@@ -75,6 +75,8 @@ class SceneDrawing {
   void addBodies(const Snapshot& snapshot, const ViewChoice& choice, DrawList& list) const;
   void addFinger(const Snapshot& snapshot, std::size_t finger, DrawList& list) const;
   void addDevice(const FingerSnapshot& seen, std::size_t finger, DrawList& list) const;
+  void addDropShadow(const Vec3& p_W, double radius, DrawList& list) const;
+  void addGoal(const Snapshot& snapshot, DrawList& list) const;
   void addContact(const ContactSnapshot& contact, const ViewChoice& choice, double metres_per_newton, DrawList& list) const;
   MarkMeshes marks() const { return {ball_, rod_, head_, size_}; }
 

@@ -5,6 +5,7 @@
 #include "pincer/devices/window/surface.h"
 #include "pincer/tasks/lab/sessions/trial_capture.h"
 #include "pincer/tasks/run/measure/timing.h"
+#include "pincer/tasks/view/finger_view.h"
 #include "pincer/tasks/view/viewer.h"
 
 namespace pincer::tasks {
@@ -33,7 +34,40 @@ class RecordedTrial final : public ServoCycle {
   Snapshot snapshot_;
 };
 
+class RecordedFingerTrial final : public ServoCycle {
+ public:
+  RecordedFingerTrial(FingerTrial& trial, History& history)
+      : trial_(trial), history_(history), snapshot_(Snapshot::sizedFor(trial.pictured())) {}
+
+  bool tick(double now) override {
+    const double start = steadySeconds();
+    const bool more = trial_.tick(now);
+    snapshot_.tick_seconds = steadySeconds() - start;
+    captureFinger(trial_, {}, false, snapshot_);
+    snapshot_.trial.blind = false;
+    snapshot_.trial.shows_pads = true;
+    snapshot_.tick = ++ticks_;
+    snapshot_.time = now;
+    history_.add(snapshot_);
+    return more;
+  }
+  void cutForces() noexcept override { trial_.cutForces(); }
+
+ private:
+  FingerTrial& trial_;
+  History& history_;
+  Snapshot snapshot_;
+  std::int64_t ticks_ = 0;
+};
+
 }  // namespace
+
+TrialRecording recordFinger(FingerTrial& trial, const std::atomic<bool>& interrupted) {
+  TrialRecording recording{History(std::numeric_limits<std::size_t>::max()), {}};
+  RecordedFingerTrial recorded(trial, recording.history);
+  recording.report = runServo({}, recorded, interrupted);
+  return recording;
+}
 
 TrialRecording recordTrial(HandsCycle& cycle, std::size_t trial, std::size_t trials, const std::atomic<bool>& interrupted) {
   TrialRecording recording{History(std::numeric_limits<std::size_t>::max()), {}};

@@ -7,6 +7,7 @@
 #include "pincer/tasks/lab/experiments/mouse_hands.h"
 #include "pincer/tasks/lab/sessions/trial_capture.h"
 #include "pincer/tasks/run/measure/timing.h"
+#include "pincer/tasks/view/page_view.h"
 
 namespace pincer::tasks {
 namespace {
@@ -43,25 +44,30 @@ class WindowStage final : public TrialStage {
     TrialHost host;
     if (mouse_) {
       host.hands = [this](HandTrial& trial) {
-        auto hands = std::make_unique<MouseHands>(trial.scene());
+        auto hands = std::make_unique<MouseHands>(trial.scene(), &keys_);
         hand_ = &hands->hand();
         return hands;
       };
     }
     host.serve = [this](HandsCycle& cycle, std::size_t trial, std::size_t trials) { return serve(cycle, trial, trials); };
+    host.show = [this](const StudyPage& page) { return showPage(*surface_, view_.title, page, interrupted_); };
+    host.ask = [this](const AskedQuestion& question) { return askOnPage(*surface_, view_.title, question, interrupted_); };
     return host;
   }
+  AnswerBox& keys() override { return keys_; }
 
  private:
   ServoReport serve(HandsCycle& cycle, std::size_t trial, std::size_t trials) {
     const grasp::GraspModel& model = cycle.trial().scene().model.grasp;
-    TrialCapture capture(cycle, trial, trials, view_.blind);
+    TrialCapture capture(cycle, trial, trials, view_.blind, mouse_);
     Snapshot start = Snapshot::sizedFor(model);
     capture.fill(start);
     SnapshotChannel channel(start);
     PublishedTrial published(cycle, channel, capture);
     channel.publish();
-    return runWatched({published, model, start, channel, mouse_ ? hand_ : nullptr}, servo_, view_, interrupted_, *surface_);
+    WatchedCycle watched{published, model, start, channel, mouse_ ? hand_ : nullptr};
+    watched.answer = [this](int key) { keys_.press(key); };
+    return runWatched(watched, servo_, view_, interrupted_, *surface_);
   }
 
   bool mouse_;
@@ -69,6 +75,7 @@ class WindowStage final : public TrialStage {
   ServoOptions servo_;
   const std::atomic<bool>& interrupted_;
   std::unique_ptr<devices::Surface> surface_;
+  AnswerBox keys_;
   devices::MouseHand* hand_ = nullptr;  // of the trial that runs
 };
 

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "pincer/tasks/lab/experiments/hands_cycle.h"
+#include "pincer/tasks/lab/finger/answer_box.h"
 #include "pincer/tasks/view/view_run.h"
 
 namespace pincer::tasks {
@@ -14,7 +15,8 @@ void addTrialViewOptions(CLI::App& command, ViewOptions& options);
 class TrialStage {
  public:
   virtual ~TrialStage() = default;
-  virtual TrialHost host() = 0;  // valid as long as this lives
+  virtual TrialHost host() = 0;   // valid as long as this lives
+  virtual AnswerBox& keys() = 0;  // that the window's keyboard fills
 };
 
 // Null when nobody watches. Throws InputError for devices that need a window and have none, devices::DisplayError where there is no display.

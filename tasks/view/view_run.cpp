@@ -58,7 +58,8 @@ void addViewOptions(CLI::App& command, ViewOptions& options) {
 ServoReport runWatched(const WatchedCycle& watched, const ServoOptions& servo, const ViewOptions& options,
                        const std::atomic<bool>& interrupted, devices::Surface& surface) {
   PaceControl pace;
-  Viewer viewer(surface, watched.model, watched.start, watched.channel, pace, watched.hand, {options.title, options.keys});
+  Viewer viewer(surface, watched.model, watched.start, watched.channel, pace, watched.hand,
+                {.title = options.title, .keys = options.keys, .from_the_side = watched.from_the_side, .answer = watched.answer});
   ServoOptions by_the_clock = servo;
   if (servo.clock == ServoClock::kVirtual) by_the_clock.clock = ServoClock::kPaced;
   pace.linger = watched.linger;

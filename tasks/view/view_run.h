@@ -1,5 +1,6 @@
 // view_run: a servo on a thread of its own, a viewer on this one.
 #pragma once
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -34,7 +35,9 @@ struct WatchedCycle {
   const Snapshot& start;
   SnapshotChannel& channel;  // that the cycle publishes to
   devices::MouseHand* hand = nullptr;
-  bool linger = false;  // over, it is still to be looked at
+  bool linger = false;                       // over, it is still to be looked at
+  bool from_the_side = false;                // what goes on is in the plane x = 0
+  std::function<void(int key)> answer = {};  // gets the digits and Enter; empty: nobody does
 };
 
 // Runs the cycle in real time until it is over or the person closes the window (then the report says that it was interrupted), or

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <numbers>
 
 namespace pincer::tasks {
 namespace {
@@ -36,6 +37,7 @@ Viewer::Viewer(devices::Surface& surface, const grasp::GraspModel& model, const 
     charts_.emplace_back("height", "mm", 1);
   }
   charts_.emplace_back("tick", "us", 1);
+  if (options_.from_the_side) painter_.camera().yaw = 0.5 * std::numbers::pi;
 }
 
 bool Viewer::update() {
@@ -124,10 +126,11 @@ OverlayText Viewer::overlayText() const {
   }
   for (std::size_t i = 0; i < pads_.size(); ++i) {
     if (shown().fingers[i].q_WF) text.pads.push_back(pads_[i]);
-    if (hand_ && !text.pads.empty()) text.pads.back().grip = hand_->grip();
+    if (hand_ && pads_.size() > 1 && !text.pads.empty()) text.pads.back().grip = hand_->grip();
   }
   text.charts = charts_;
   text.title = options_.title;
+  text.page = page_ ? &*page_ : nullptr;
   text.pace = paceText();
   if (viewerSeconds() < notice_until_) text.notice = notice_;
   text.pictures_per_second = pictures_per_second_;

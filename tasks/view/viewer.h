@@ -3,10 +3,12 @@
 // It reads snapshots from a channel and writes to the servo nothing but the pace and, with mouse fingers, where the hand wants to be. So
 // nothing it does can delay a tick.
 #pragma once
+#include <functional>
 #include <optional>
 #include <string>
 
 #include "pincer/devices/window/mouse_hand.h"
+#include "pincer/tasks/lab/finger/finger_host.h"
 #include "pincer/tasks/run/servo/paced_cycle.h"
 #include "pincer/tasks/view/history.h"
 #include "pincer/tasks/view/overlay.h"
@@ -16,8 +18,11 @@ namespace pincer::tasks {
 
 struct ViewerOptions {
   std::string title;
-  bool keys = true;          // false: only Esc
-  std::string folder = ".";  // for screenshots and sequences
+  bool keys = true;                                               // false: only Esc
+  std::string folder = ".";                                       // for screenshots and sequences
+  bool from_the_side = false;                                     // looks along -x at the plane x = 0, in which the mouse moves fingers
+  std::function<void(int key)> answer = {};                       // gets the digits and Enter; empty: nobody does
+  std::function<void(const devices::InputEvent& key)> type = {};  // gets every key that goes down, but Esc; empty: nobody does
 };
 
 class Viewer {
@@ -28,6 +33,9 @@ class Viewer {
 
   // From now on what is shown is this, not empty, from `time` [s] on; the channel isn't looked at any more.
   void showRecording(History recording, double time = 0);
+
+  // A page of text over all, until the viewer's end.
+  void showPage(const StudyPage& page) { page_ = page; }
 
   // What the person did, one picture, and shown. Returns false when the person has closed it.
   bool update();
@@ -47,6 +55,7 @@ class Viewer {
   void act(ViewAction action);
   void actOnTime(ViewAction action);
   void actOnHand(ViewAction action);
+  bool isAnswer(int key) const;
   void drag(double right, double down);  // [shares of the picture's height]
   void wheel(const devices::InputEvent& event);
   void play();
@@ -71,6 +80,7 @@ class Viewer {
   Painter painter_;
   Overlay overlay_;
   ViewChoice choice_;
+  std::optional<StudyPage> page_;
   History history_;
   std::vector<StripChart> charts_;
   std::vector<PadLook> pads_;
@@ -83,7 +93,7 @@ class Viewer {
   bool bar_held_ = false;             // by the left button
   Vec2 mouse_ = Vec2::Zero();         // [pixels]
   bool mouse_known_ = false;
-  bool left_ = false, right_ = false, shift_ = false;
+  bool left_ = false, right_ = false, shift_ = false, control_ = false;
   bool quit_ = false;
   std::string notice_, sequence_;  // sequence_: folder, empty: none is being written
   int sequence_count_ = 0;

@@ -8,6 +8,8 @@ namespace {
 
 constexpr double kTurn = 3.0;           // of the camera by a drag over the picture's height [rad]
 constexpr double kKeyStep = 4e-3;       // of the fingers by a key [m]
+constexpr double kTurnStep = 0.06;      // of the hand by a key [rad]
+constexpr double kHandTurn = 2.0;       // by a way of the mouse over the picture's height [rad]
 constexpr double kGripStep = 1.15;      // per notch or key
 constexpr double kSlowest = 1.0 / 256;  // of slow motion
 constexpr double kZoomStep = 0.9;       // per notch
@@ -37,7 +39,10 @@ void Viewer::handle(const devices::InputEvent& event) {
   using devices::InputKind;
   if (event.kind == InputKind::kKey) {
     if (event.code == devices::kKeyShift) shift_ = event.down;
+    if (event.code == devices::kKeyControl) control_ = event.down;
     if (!event.down) return;
+    if (options_.type && event.code != devices::kKeyEscape) return options_.type(event);
+    if (isAnswer(event.code)) return options_.answer(event.code);
     if (!options_.keys && event.code != devices::kKeyEscape) return;
     if (const auto action = actionOf(event.code, hand_ && !pace_.paused)) act(*action);
   } else if (event.kind == InputKind::kButton) {
@@ -57,11 +62,16 @@ void Viewer::handle(const devices::InputEvent& event) {
   }
 }
 
+bool Viewer::isAnswer(int key) const { return options_.answer && ((key >= '0' && key <= '9') || key == devices::kKeyEnter); }
+
+// From the side, right is away from the operator, and depth to the left.
 void Viewer::drag(double right, double down) {
   Camera& camera = painter_.camera();
   if (hand_ && !right_) {
-    const Vec3 way = shift_ ? Vec3(right, -down, 0) : Vec3(right, 0, -down);
-    if (!pace_.paused) hand_->move(metresPerHeight() * way);
+    const Vec3 across = options_.from_the_side ? Vec3::UnitY() : Vec3::UnitX(), ahead = Vec3::UnitZ().cross(across);
+    const Vec3 way = right * across + (shift_ ? Vec3(-down * ahead) : Vec3(-down * Vec3::UnitZ()));
+    if (pace_.paused) return;
+    control_ ? hand_->turn(kHandTurn * right) : hand_->move(metresPerHeight() * way);
   } else if (right_ && !hand_) {
     camera.pan(-right, down);
   } else if (left_ || right_) {
@@ -172,7 +182,10 @@ void Viewer::scrubToMouse() {
 }
 
 void Viewer::actOnHand(ViewAction action) {
-  hand_->move(kKeyStep * wayOf(action));
+  const Vec3 way = wayOf(action);
+  hand_->move(kKeyStep * (options_.from_the_side ? Vec3(-way.y(), way.x(), way.z()) : way));
+  if (action == ViewAction::kTurnLeft) hand_->turn(kTurnStep);
+  if (action == ViewAction::kTurnRight) hand_->turn(-kTurnStep);
   if (action == ViewAction::kSqueeze) hand_->toggleSqueeze();
   if (action == ViewAction::kGripLess) hand_->changeGrip(1 / kGripStep);
   if (action == ViewAction::kGripMore) hand_->changeGrip(kGripStep);

@@ -145,7 +145,7 @@ void makeKilledSession(const Ground& ground) {
 
 void makeSessions(Ground& ground) {
   ground.session_time = make(ground, pickupArguments("pickup")).seconds;
-  make(ground, {"export", "pickup/session.db", "--trial", "0", "--out", "recording"});
+  make(ground, {"export", "pickup/session.db", "--trial", "1", "--out", "recording"});
   make(ground, studyArguments("study"));
   makePeoplesSession(ground);
   makeKilledSession(ground);

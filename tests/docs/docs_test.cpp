@@ -129,7 +129,7 @@ TEST(KeyReference, IsWhatTheProgramPrints) {
     EXPECT_EQ(readFile(page.path()), readFile(folder / "page.md")) << page.path();
     ++found;
   }
-  EXPECT_EQ(found, 7);
+  EXPECT_EQ(found, 8);
 }
 
 TEST(ApiReference, IsBuiltWithoutAWarning) {

@@ -51,7 +51,7 @@ const std::map<std::string, std::vector<std::string>> kRooms = {
     {"devices", {"arm", "cld", "usb", "falcon", "haply", "gate", "window", "emulate"}},
     {"tasks", {"run", "lab", "judge", "view", "python", "app"}},
     {"tasks/run", {"process", "measure", "files", "robot", "session", "scene", "rollout", "tick", "servo"}},
-    {"tasks/lab", {"participants", "study", "report", "experiments", "findings", "sessions", "sweep"}},
+    {"tasks/lab", {"participants", "study", "report", "finger", "experiments", "findings", "sessions", "sweep"}},
     {"tasks/app", {"commands"}},
     {"tasks/python", {"bindings"}},
     {"tasks/judge", {"exact", "solve", "verify", "stress", "bench", "peers"}},

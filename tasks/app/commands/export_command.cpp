@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "pincer/contact/io/printable.h"
 #include "pincer/tasks/app/app.h"
@@ -17,7 +18,8 @@ namespace pincer::tasks {
 namespace {
 
 constexpr const char* kExportExample = R"(
-Writes session.csv, trial.csv, sample.csv, event.csv, response.csv and reading.csv, with units in the column names; of people also hands.csv and
+Writes session.csv, trial.csv, sample.csv, event.csv, response.csv and reading.csv, with units in the column names, and columns.csv, which
+says what each column means; of people also hands.csv and
 input.csv, every tick of their hands.
 
 Example:
@@ -25,6 +27,7 @@ Example:
 
 struct ExportArguments {
   std::string session, directory, bids;
+  std::optional<std::int64_t> trial;  // from 1
   SampleFilter filter;
 };
 
@@ -51,12 +54,15 @@ void addExportCommand(CLI::App& app, int& exit_code) {
   command->add_option("session", arguments->session, "Session file")->required();
   command->add_option("--out", arguments->directory, "Directory for the tables (default: csv beside the session)");
   command->add_option("--bids", arguments->bids, "The trials as a BIDS data set in this directory, in place of CSV tables");
-  command->add_option("--trial", arguments->filter.trial, "Samples of this trial only")->check(wholeWithin(0, 1'000'000'000));
+  command->add_option("--trial", arguments->trial, "Samples of this trial only, from 1")->check(wholeWithin(1, 1'000'000'000));
   command->add_option("--every", arguments->filter.stride, "Every n-th sample only")
       ->check(wholeWithin(1, 1'000'000'000))
       ->capture_default_str();
   command->footer(kExportExample);
-  command->callback([arguments, &exit_code] { exit_code = exportSession(*arguments); });
+  command->callback([arguments, &exit_code] {
+    if (arguments->trial) arguments->filter.trial = *arguments->trial - 1;
+    exit_code = exportSession(*arguments);
+  });
 }
 
 }  // namespace pincer::tasks

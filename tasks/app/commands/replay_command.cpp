@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <optional>
 
 #include "pincer/contact/io/counted.h"
 #include "pincer/tasks/app/app.h"
@@ -34,6 +35,7 @@ constexpr std::int64_t kLastTrial = 1'000'000'000;
 
 struct ReplayArguments {
   std::string session;
+  std::optional<std::int64_t> trial;  // from 1
   ReplayOptions options;
   double at = 0;  // [s]
   ViewOptions view;
@@ -44,14 +46,21 @@ struct ReplayArguments {
 ReplayResult replayAndLook(const ReplayArguments& arguments, const SessionReader& session) {
   const std::vector<TrialRecord> trials = session.trials();
   ReplayOptions wanted = arguments.options;
-  if (!wanted.trial && !trials.empty()) wanted.trial = trials.front().trial;
+  if (!wanted.trial) wanted.trial = trials.empty() ? 0 : trials.front().trial;
   ViewOptions options = arguments.view;
-  return replaySession(session, wanted, interruptFlag(), {}, [&](HandsCycle& cycle, const TrialRecord& row) {
-    options.title = fmt::format("{}, trial {}", row.task, row.trial);
+  const auto hands = [&](HandsCycle& cycle, const TrialRecord& row) {
+    options.title = fmt::format("{}, trial {}", row.task, row.trial + 1);
     TrialRecording recording = recordTrial(cycle, static_cast<std::size_t>(row.trial), trials.size(), interruptFlag());
     showRecording(cycle.trial().scene().model.grasp, std::move(recording.history), arguments.at, options, interruptFlag());
     return recording.report;
-  });
+  };
+  const auto finger = [&](FingerTrial& trial) {
+    options.title = fmt::format("{}, trial {}", session.info().task, *wanted.trial + 1);
+    TrialRecording recording = recordFinger(trial, interruptFlag());
+    showRecording(trial.pictured(), std::move(recording.history), arguments.at, options, interruptFlag());
+    return recording.report;
+  };
+  return replaySession(session, wanted, interruptFlag(), {}, hands, finger);
 }
 
 ReplayResult replayAll(const ReplayArguments& arguments, const SessionReader& session) {
@@ -69,7 +78,7 @@ int replay(const ReplayArguments& arguments) {
   for (const std::string& note : result.notes) print(stderr, "pincer: {}\n", note);
   if (result.first) {
     const ReplayDifference& d = *result.first;
-    print("Differs first in trial {}, {}: {}\n", d.trial,
+    print("Differs first in trial {}, {}: {}\n", d.trial + 1,
           d.tick < 0 ? fmt::format("after {:.3f} s", d.time) : fmt::format("tick {} ({:.3f} s)", d.tick, d.time), d.what);
     for (const std::string& line : result.surroundings) print(stderr, "pincer: Not the same: {}.\n", line);
     if (result.notes.empty() && result.surroundings.empty()) {
@@ -92,12 +101,15 @@ void addReplayCommand(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<ReplayArguments>();
   CLI::App* command = app.add_subcommand("replay", "A session again, compared to the bit");
   command->add_option("session", arguments->session, "Session file")->required();
-  command->add_option("--trial", arguments->options.trial, "Only this trial")->check(wholeWithin(0, kLastTrial));
+  command->add_option("--trial", arguments->trial, "Only this trial, from 1")->check(wholeWithin(1, kLastTrial));
   command->add_flag("--other-version", arguments->options.other_version, "Also a session that another version made: bits may differ");
   addViewOptions(*command, arguments->view);
   command->add_option("--at", arguments->at, "Begin there [s]")->check(within(ranges::kTime));
   command->footer(kReplayExample);
-  command->callback([arguments, &exit_code] { exit_code = replay(*arguments); });
+  command->callback([arguments, &exit_code] {
+    if (arguments->trial) arguments->options.trial = *arguments->trial - 1;
+    exit_code = replay(*arguments);
+  });
 }
 
 }  // namespace pincer::tasks

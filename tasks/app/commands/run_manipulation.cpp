@@ -15,10 +15,12 @@
 #include "pincer/tasks/app/print.h"
 #include "pincer/tasks/app/progress.h"
 #include "pincer/tasks/app/run_options.h"
+#include "pincer/tasks/app/terminal_person.h"
 #include "pincer/tasks/app/usage.h"
 #include "pincer/tasks/lab/experiments/live_hands.h"
 #include "pincer/tasks/lab/experiments/manipulation_file.h"
 #include "pincer/tasks/lab/experiments/pickup_object.h"
+#include "pincer/tasks/lab/report/finding_words.h"
 #include "pincer/tasks/lab/report/report.h"
 #include "pincer/tasks/lab/sessions/manipulation_session.h"
 #include "pincer/tasks/lab/sessions/session_hash.h"
@@ -61,6 +63,7 @@ struct ManipulationArguments {
   std::string condition = "both", strategy, object, units, shading, study_file, write_study;
   std::optional<double> size;
   bool resume = false, free_body = false;
+  std::optional<std::int64_t> person;  // from 1
   ManipulationStudy study;
 };
 
@@ -121,6 +124,7 @@ int showStudy(const ManipulationArguments& arguments, const std::string& directo
   }
   if (arguments.run.report)
     say(fmt::format("Report: {}", printablePath(writeReport(session, directory + "/report.html", {.interrupted = &interruptFlag()}).html)));
+  for (const std::string& words : findingWords(summary)) say("\n" + words);
   const std::int64_t faults = faultsOfStudy(summary);
   if (faults > 0)
     say(fmt::format("Trials that ended in a fault: {}; their events say why: pincer export {}", faults, printablePath(session.path())));
@@ -131,7 +135,22 @@ int showStudy(const ManipulationArguments& arguments, const std::string& directo
 struct Stage {
   std::unique_ptr<HandDevices> devices;
   std::unique_ptr<TrialStage> window;
+  std::unique_ptr<TerminalPerson> terminal;
 };
+
+// Somebody who takes part in a study reads its pages and answers its questions; who only tries, or goes on in a session without answers, doesn't.
+bool isParticipant(const ManipulationArguments& arguments) {
+  if (arguments.devices.devices == "sim") return false;
+  return arguments.person || (arguments.resume && !SessionReader(arguments.run.out + "/session.db").survey().empty());
+}
+
+// Which participant the person is, from 0.
+std::int64_t personOf(const ManipulationArguments& arguments, const ManipulationStudy& study) {
+  const std::int64_t person = arguments.person.value_or(1);
+  if (person >= 1 && person <= study.participants) return person - 1;
+  refuseUsage(fmt::format("run: --person {} isn't one of the study's {}. Give 1 to {}, or more --participants.", person,
+                          counted(study.participants, "participant"), study.participants));
+}
 
 Stage setStage(const ManipulationArguments& arguments, ManipulationSessionOptions& options, const std::atomic<bool>& interrupted) {
   Stage stage;
@@ -142,10 +161,23 @@ Stage setStage(const ManipulationArguments& arguments, ManipulationSessionOption
   view.title = taskName(options.study);
   stage.window = asUsage([&] { return hostOf(choice, view, options.servo, interrupted); });
   if (stage.window) options.host = stage.window->host();
+  if (!isParticipant(arguments)) options.host.show = {}, options.host.ask = {};
   if (choice != "sim") options.devices = choice;
+  if (choice != "sim") options.host.person = personOf(arguments, options.study);
   if (stage.devices) {
-    options.host.hands = [devices = stage.devices.get(), oldest = kOldestSample * options.servo.watchdog](HandTrial& trial) {
-      return std::make_unique<LiveHands>(trial, *devices, oldest);
+    if (!stage.window) {
+      stage.terminal = std::make_unique<TerminalPerson>(options.servo, interrupted);
+      options.host.serve = [person = stage.terminal.get()](HandsCycle& cycle, std::size_t trial, std::size_t trials) {
+        return person->serve(cycle, trial, trials);
+      };
+      if (isParticipant(arguments)) {
+        options.host.show = [person = stage.terminal.get()](const StudyPage& page) { return person->show(page); };
+        options.host.ask = [person = stage.terminal.get()](const AskedQuestion& question) { return person->ask(question); };
+      }
+    }
+    AnswerBox* keys = stage.window ? &stage.window->keys() : &stage.terminal->keys();
+    options.host.hands = [devices = stage.devices.get(), keys, oldest = kOldestSample * options.servo.watchdog](HandTrial& trial) {
+      return std::make_unique<LiveHands>(trial, *devices, oldest, keys);
     };
     options.host.arm = [asked = arguments.devices, devices = stage.devices.get()](const std::string& why) {
       const std::string complaint = devices->complaint();
@@ -229,6 +261,10 @@ CLI::App* addManipulationCommand(CLI::App& run, const char* name, const char* wh
       ->check(CLI::IsMember({"force", "cld+force", "both"}))
       ->capture_default_str();
   command->add_option("--participants", arguments->study.participants, "How many simulated participants")->capture_default_str();
+  command->add_option(
+      "--person", arguments->person,
+      "Which of the participants a person is, from 1: decides the order of conditions, and asks the study's questions (default: 1, and "
+      "none is asked)");
   command->add_option("--strategy", arguments->strategy, "Of simulated participants (default: rational)")
       ->check(CLI::IsMember({"rational", "simple"}));
   addSeedOption(*command, arguments->study.seed, "Of all that varies; the same seed gives the same session");

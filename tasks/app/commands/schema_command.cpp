@@ -9,6 +9,7 @@
 #include "pincer/tasks/app/schema_reference.h"
 #include "pincer/tasks/lab/experiments/study_schema.h"
 #include "pincer/tasks/run/scene/builtin_scenes.h"
+#include "pincer/tasks/run/session/column_meanings.h"
 
 namespace pincer::tasks {
 namespace {
@@ -33,13 +34,17 @@ constexpr FileKind kFileKinds[] = {
     {"shape-identification", [] { return studySchema("shape-identification", ShapeStudy{}); }},
 };
 
+constexpr std::string_view kSessionTables = "session";  // no file that anybody writes, but one that many read
+
 std::vector<std::string> kindNames() {
   std::vector<std::string> names;
   for (const FileKind& kind : kFileKinds) names.emplace_back(kind.name);
+  names.emplace_back(kSessionTables);
   return names;
 }
 
 void printSchema(const std::string& name, bool markdown) {
+  if (name == kSessionTables) return markdown ? print("{}\nMade by `pincer schema {} --markdown`.\n", columnsMarkdown(), name) : print("{}", columnsCsv());
   for (const FileKind& kind : kFileKinds) {
     if (kind.name != name) continue;
     const std::string schema = kind.schema();
@@ -56,8 +61,8 @@ void addSchemaCommand(CLI::App& app, int& exit_code) {
     bool markdown = false;
   };
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand("schema", "Every key of a scene or study file: a JSON Schema for editors, or tables to read");
-  command->add_option("file", arguments->name, "scene, or the study: manipulation, delay-discrimination, ...")
+  CLI::App* command = app.add_subcommand("schema", "Every key of a scene or study file: a JSON Schema for editors, or tables to read; every column of a session");
+  command->add_option("file", arguments->name, "scene, the study: manipulation, delay-discrimination, ...; session: its tables and their columns")
       ->required()
       ->check(CLI::IsMember(kindNames()));
   command->add_flag("--markdown", arguments->markdown, "Tables, as in docs/reference");

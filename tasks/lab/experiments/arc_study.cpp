@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
 #include "pincer/contact/error.h"
 #include "pincer/contact/io/printable.h"
+#include "pincer/contact/polytope.h"
 #include "pincer/tasks/lab/experiments/study_parameters.h"
 #include "pincer/tasks/lab/participants/random.h"
 #include "pincer/tasks/lab/study/arc_segments.h"
@@ -67,6 +69,13 @@ StrokeQuestion questionOf(ArcQuantity quantity, const ArcCondition& condition) {
   if (quantity == ArcQuantity::kTurn) return StrokeQuestion::kRougher;
   if (quantity == ArcQuantity::kBacklash) return StrokeQuestion::kLooser;
   return condition.travel_share < 1 ? StrokeQuestion::kOnset : StrokeQuestion::kLater;
+}
+
+TrialTexts textsOf(ArcQuantity quantity) {
+  constexpr const char* kFeel = "Stroke to and fro as long as you like; then raise the finger and press Enter";
+  if (quantity == ArcQuantity::kTurn) return {kFeel, "Which was the smooth one? 1 or 2, then Enter"};
+  return {kFeel,
+          quantity == ArcQuantity::kBacklash ? "Which had more backlash? 1 or 2, then Enter" : "Which had more delay? 1 or 2, then Enter"};
 }
 
 // What a condition's levels may be.
@@ -139,9 +148,12 @@ void validate(const ArcStudy& study) {
         "strokes", fmt::format("{}: strokes = {} is odd, but every stroke has its way back. {}", study.task, study.strokes, kAsPublished));
   if (study.conditions.empty()) throw ParameterError("conditions", study.task + ": conditions is empty. Give at least one.");
   for (std::size_t i = 0; i < study.conditions.size(); ++i) validate(study, i);
+  visitParameters(study.session, RangeCheck(study.task + ": session", "session"));
+  validate(study.session, study.task);
 }
 
-ArcExperiment::ArcExperiment(const ArcStudy& study, const ServoOptions& servo, int stride) : study_(study), servo_(servo), stride_(stride) {
+ArcExperiment::ArcExperiment(const ArcStudy& study, const ServoOptions& servo, int stride)
+    : Experiment(servo), study_(study), stride_(stride) {
   validate(study);
   arc_ = sharedCurve(contact::arcPolygon(study.arc_radius, study.reference_turn, sweep()), SurfaceVariant::smooth);
   blade_ = sharedCurve(blade(), SurfaceVariant::smooth);
@@ -151,13 +163,15 @@ std::vector<StudyRun> ArcExperiment::runs() const {
   std::vector<StudyRun> runs;
   std::vector<const ArcCondition*> ordered, pilots;
   for (const ArcCondition& c : study_.conditions) (c.pilot ? pilots : ordered).push_back(&c);
-  const auto rows = reducedLatinSquare(std::max(1, static_cast<int>(ordered.size())));
   for (int p = 0; p < study_.participants; ++p) {
     std::int64_t place = 0;
-    const auto add = [&](const ArcCondition& c) { runs.push_back({p, place++, c.name, c.staircase, {}}); };
-    if (!ordered.empty())
-      for (const int c : rows[static_cast<std::size_t>(p) % rows.size()]) add(*ordered[static_cast<std::size_t>(c)]);
-    for (const ArcCondition* c : pilots) add(*c);
+    for (int block = 0; block < study_.session.blocks; ++block) {
+      for (const int c : conditionOrder(study_.session.order, ordered.size(), p, block, study_.seed)) {
+        const ArcCondition& condition = *ordered[static_cast<std::size_t>(c)];
+        runs.push_back({p, place++, condition.name, condition.staircase, {}});
+      }
+      for (const ArcCondition* c : pilots) runs.push_back({p, place++, c->name, c->staircase, {}});
+    }
   }
   return runs;
 }
@@ -167,15 +181,16 @@ std::optional<ResponseRecord> ArcExperiment::present(const StudyTrial& trial, St
   const int comparison = 1 + static_cast<int>(Random(seedFor(trial.seed, kWhichInterval)).below(2));
   StrokeObserver observer(trial.person_seed);
   observer.begin(cuesOf(trial));
-  ArcTrial cycle(setupOf(trial, comparison, observer.roll()), observer, sink);
-  const ServoReport report = runServo(servo_, cycle, interrupted);
-  served.add(report);
-  if (report.interrupted) return std::nullopt;
+  const ArcTrialSetup setup = setupOf(trial, comparison, host().isPersons() ? 0 : observer.roll());
+  const auto finger = wornBy(arcPlace(setup), observer);
+  ArcTrial cycle(setup, *finger, sink);
+  if (!serve(cycle, trial, interrupted, served)) return std::nullopt;
   ResponseRecord response;
   response.level = trial.stimulus.level;
   const bool asks_smooth = study_.quantity == ArcQuantity::kTurn;
   const int asked = asks_smooth ? 3 - comparison : comparison;
-  const int answer = cycle.answered() ? (asks_smooth ? 3 - observer.answer() : observer.answer()) : 0;
+  const int felt = asks_smooth ? 3 - observer.answer() : observer.answer();  // by a simulated participant
+  const int answer = !cycle.answered() ? 0 : cycle.isPersons() ? cycle.chosen() : felt;
   response.interval = asked;
   response.answer = std::to_string(answer);
   response.answer_value = answer;
@@ -184,9 +199,8 @@ std::optional<ResponseRecord> ArcExperiment::present(const StudyTrial& trial, St
   return response;
 }
 
-const ArcCondition& ArcExperiment::conditionOf(const StudyTrial& trial) const {
-  return *std::find_if(study_.conditions.begin(), study_.conditions.end(),
-                       [&](const ArcCondition& c) { return c.name == trial.run->condition; });
+const ArcCondition& ArcExperiment::conditionNamed(const std::string& name) const {
+  return *std::find_if(study_.conditions.begin(), study_.conditions.end(), [&](const ArcCondition& c) { return c.name == name; });
 }
 
 double ArcExperiment::pathRadius(const ArcCondition& condition) const {
@@ -217,8 +231,10 @@ ArcTrialSetup ArcExperiment::setupOf(const StudyTrial& trial, int comparison, do
   setup.freeze_share = condition.travel_share;
   setup.stiffness = study_.stiffness;
   for (int i = 1; i <= 2; ++i) setup.intervals.push_back(intervalOf(condition, i == comparison ? trial.stimulus.level : 0));
-  setup.trial = trial.trial;
-  setup.stride = stride_;
+  setup.asked.trial = trial.trial;
+  setup.asked.stride = stride_;
+  setup.asked.training = trial.training;
+  setup.asked.texts = textsOf(study_.quantity);
   return setup;
 }
 
@@ -234,9 +250,55 @@ ArcInterval ArcExperiment::intervalOf(const ArcCondition& condition, double leve
   if (condition.tactile && !study_.frozen_tactor)
     interval.shown.tactile = *condition.tactile == condition.force ? interval.shown.force : shown(*condition.tactile);
   interval.shown.largest_place = study_.tactor_reach;
+  interval.picture = pictureOf(condition);
   if (study_.quantity == ArcQuantity::kBacklash) interval.transmission.backlash = level;
   if (study_.quantity == ArcQuantity::kDelay) interval.transmission.delay = static_cast<int>(std::lround(1000 * level));
   return interval;
+}
+
+StudyPage ArcExperiment::introduction(const StudyRun& run) const {
+  const ArcCondition& condition = conditionNamed(run.condition);
+  StudyPage page;
+  page.lines = {"Two things are felt, one after the other; a tone begins each. Stroke them fore and aft, along the finger.",
+                "When you have felt enough, raise the finger and press Enter. There is no way back."};
+  if (study_.quantity == ArcQuantity::kTurn) {
+    page.title = "Which is the smooth one?";
+    page.lines.push_back("One is a smooth arc, the other has flat facets. In the end press 1 or 2 for the smooth one, then Enter.");
+  } else if (study_.quantity == ArcQuantity::kBacklash) {
+    page.title = "Which has more backlash?";
+    page.lines.push_back("On one, the place on your fingerpad lags when you turn back: that is backlash.");
+    page.lines.push_back("In the end press 1 or 2 for the one with more of it, then Enter.");
+    if (condition.edge) page.lines.push_back("What you feel is an edge that runs from left to right.");
+  } else {
+    page.title = "Which has more delay?";
+    page.lines.push_back("On one, the place on your fingerpad comes later than your finger moves: that is delay.");
+    page.lines.push_back("In the end press 1 or 2 for the one with more of it, then Enter.");
+    if (condition.travel_share < 1) page.lines.push_back("Touch one side, sweep to the other, raise the finger; again and again.");
+  }
+  return page;
+}
+
+std::vector<ListedStimulus> ArcExperiment::training(const StudyRun& run) const {
+  return {{"", conditionNamed(run.condition).staircase.start}};
+}
+
+std::string ArcExperiment::feedback(const ResponseRecord& response) const {
+  constexpr std::array<const char*, 3> kHad = {"was the smooth one", "had more backlash", "had more delay"};
+  return fmt::format("The {} {}; you said {}. {}", response.interval == 1 ? "first" : "second",
+                     kHad[static_cast<std::size_t>(study_.quantity)], response.answer, response.correct ? "Right." : "Not this time.");
+}
+
+// The arc as a whole cylinder, the blade as it is.
+ArcPicture ArcExperiment::pictureOf(const ArcCondition& condition) const {
+  constexpr double kHalfWidth = 0.03;  // of what is drawn [m]
+  if (!condition.edge)
+    return {contact::Cylinder{study_.arc_radius, kHalfWidth},
+            {quatFromRotationVector(0.5 * std::numbers::pi * Vec3::UnitY()), Vec3::Zero()}};
+  std::vector<Vec3> corners;
+  for (const Vec2& p : blade().vertices) {
+    for (const double x : {-kHalfWidth, kHalfWidth}) corners.emplace_back(x, p.x(), p.y());
+  }
+  return {contact::Convex{contact::Polytope::hullOf(corners, "the edge")}, {}};
 }
 
 // Up one side and down the other, the body on the left: from the right flank over the edge, a sharp corner, to the left one.

@@ -25,7 +25,9 @@
 #include <memory>
 
 #include "pincer/tasks/lab/experiments/arc_trial.h"
+#include "pincer/tasks/lab/experiments/study.h"
 #include "pincer/tasks/lab/participants/stroke_observer.h"
+#include "pincer/tasks/lab/study/survey.h"
 
 namespace pincer::tasks {
 
@@ -56,6 +58,7 @@ struct ArcStudy {
   int strokes = 4;                     // per interval
   bool frozen_tactor = false;          // a control: the tactor is parked in every condition
   std::vector<ArcCondition> conditions;
+  SurveyPlan session = oneFingerSurvey();  // what people read, train and are asked
 };
 
 ArcStudy smoothnessStudy();
@@ -72,11 +75,18 @@ class ArcExperiment final : public Experiment {
   std::vector<StudyRun> runs() const override;
   std::optional<ResponseRecord> present(const StudyTrial& trial, StudySink& sink, const std::atomic<bool>& interrupted,
                                         ServoReport& served) override;
+  StudyPage introduction(const StudyRun& run) const override;
+  std::vector<ListedStimulus> training(const StudyRun& run) const override;
+  std::string feedback(const ResponseRecord& response) const override;
+  const SurveyPlan& plan() const override { return study_.session; }
+  std::vector<NamedCondition> conditions() const override { return namedOf(study_.conditions); }
 
  private:
   static constexpr double kBeyond = 0.15;  // of the arc's ends over the strokes' [rad]
 
-  const ArcCondition& conditionOf(const StudyTrial& trial) const;
+  const ArcCondition& conditionNamed(const std::string& name) const;
+  const ArcCondition& conditionOf(const StudyTrial& trial) const { return conditionNamed(trial.run->condition); }
+  ArcPicture pictureOf(const ArcCondition& condition) const;
   double pathRadius(const ArcCondition& condition) const;
   StrokeCues cuesOf(const StudyTrial& trial) const;
   ArcTrialSetup setupOf(const StudyTrial& trial, int comparison, double roll) const;
@@ -85,7 +95,6 @@ class ArcExperiment final : public Experiment {
   double sweep() const { return 2 * (study_.tactor_reach / study_.finger_radius + kBeyond); }
 
   ArcStudy study_;
-  ServoOptions servo_;
   int stride_;
   std::shared_ptr<const contact::Curve> arc_, blade_;  // the references
 };

@@ -2,30 +2,24 @@
 
 #include <cmath>
 
-#include "pincer/tasks/run/measure/timing.h"
+#include "pincer/contact/math.h"
 
 namespace pincer::tasks {
 namespace {
 
-constexpr double kArcPause = 0.5;          // between the intervals [s]
-constexpr double kFingerMoves = 5e-3;      // slower, it rests [m/s]
-constexpr double kTactorMoves = 1e-3;      // likewise [m/s]
-constexpr double kFreesTactor = 0.010;     // so far up the finger frees a frozen tactor [m]
-constexpr std::int64_t kTactorTicks = 20;  // over which its speed is taken: one count of the encoder is then 0.04 mm/s
+constexpr double kFreesTactor = 0.010;  // so far up the finger frees a frozen tactor [m]
 
-devices::SimArmSettings arcArm(const ArcTrialSetup& setup) {
-  devices::SimArmSettings settings;
-  settings.serial = "index";
-  const Vec3 start_W = (setup.path_radius + 0.01) * Vec3(0, math::sin(setup.start_angle), math::cos(setup.start_angle));
-  settings.start_D = arcArmBase(setup.path_radius).inverse() * start_W;
-  return settings;
+FingerTrialSetup askedIn(const ArcTrialSetup& setup) {
+  FingerTrialSetup asked = setup.asked;
+  asked.intervals = static_cast<int>(setup.intervals.size());
+  return asked;
 }
 
-devices::SimOneDofCldSettings arcDisplay(const ArcTrialSetup& setup) {
-  devices::SimOneDofCldSettings settings;
-  settings.serial = "index";
-  settings.map.finger_diameter = 2 * setup.finger_radius;
-  return settings;
+// The finger points away from the operator, its pad down, and its tip is up by `pitch`.
+Quat pointingAway(double pitch) {
+  Mat3 R_WF;
+  R_WF << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+  return quatFromRotationVector(pitch * Vec3::UnitX()) * Quat(R_WF);
 }
 
 }  // namespace
@@ -37,74 +31,48 @@ Pose arcArmBase(double path_radius) {
   return {Quat(R), Vec3(0, 0, path_radius)};
 }
 
-ArcTrial::ArcTrial(const ArcTrialSetup& setup, OneFingerObserver& observer, StudySink& sink)
-    : setup_(setup), observer_(observer), sink_(sink), arm_(arcArm(setup)), display_(arcDisplay(setup)) {
-  entered_places_.reserve(setup.intervals.size());
-  model_.X_WD = arcArmBase(setup.path_radius);
+FingerPlace arcPlace(const ArcTrialSetup& setup) {
+  FingerPlace place;
+  place.X_WD = arcArmBase(setup.path_radius);
+  place.start_W = (setup.path_radius + 0.01) * Vec3(0, math::sin(setup.start_angle), math::cos(setup.start_angle));
+  place.finger_radius = setup.finger_radius;
+  return place;
+}
+
+ArcTrial::ArcTrial(const ArcTrialSetup& setup, WornFinger& finger, StudySink& sink)
+    : FingerTrial(askedIn(setup), finger, sink), setup_(setup) {
+  const FingerWear& wear = finger.wear();
+  model_.X_WD = movedBase(arcArmBase(setup.path_radius), wear.base);
   model_.finger_radius = setup.finger_radius;
   model_.stiffness = setup.stiffness;
-  model_.gate = devices::within(model_.gate, arm_.capabilities());
+  model_.gate = devices::within(model_.gate, wear.arm);
+  if (wear.oldest_sample) model_.gate.watchdog_time = *wear.oldest_sample;
+  if (wear.has_motors) {
+    model_.passivity.on = true;
+    model_.passivity.arms = {{wear.arm.tip_mass.value_or(grasp::ArmPort{}.mass), wear.arm.tip_damping}};
+    state_.passivity = grasp::PassivityState(1);
+  }
   devices::arm(state_.gate);
-  display_.setTransmission(interval().transmission);
-  // The hand is on the arm before the first tick.
-  arm_.setHand(observer_.act({arm_.sample(), Vec3::Zero(), display_.sample()}, 0, Cue::kNone).pull);
+  finger.setTransmission(shown().transmission);
 }
 
-bool ArcTrial::tick(double now) {
-  const double dt = now > now_ ? now - now_ : 1e-3;
-  if (now > now_) {
-    arm_.advance(dt);
-    display_.advance(dt);
-  }
-  now_ = now;
-  const bool kept = ticks_ % setup_.stride == 0;  // reading the clock takes as long as the display's tick
-  const double start = kept ? steadySeconds() : 0;
-  if (cut_) devices::trip(state_.gate, devices::Trip::kMissedDeadline);
-  const devices::ArmSample arm = arm_.sample();
-  const devices::TactileSample tactile = display_.sample();
-  out_ = planarTick(model_, interval().shown, state_, arm, now, dt);
+FingerOutputs ArcTrial::step(const FingerInputs& inputs, double now, double dt) {
+  out_ = planarTick(model_, shown().shown, state_, inputs.arm, now, dt);
   freezeFrontEnd();
-  arm_.commandForce(out_.f_D);
-  display_.command(out_.tactile);
-  const double took = kept ? steadySeconds() - start : 0;
-  if (stage_ == Stage::kInterval) count(tactile, dt);
-  const OneFingerAction action = observer_.act({arm, out_.f_D, tactile}, now, cue_);
-  arm_.setHand(action.pull);
-  if (action.enters && entered_places_.size() < setup_.intervals.size()) entered_places_.push_back(display_.trueRoller());
-  if (action.pitch != 0) arm_.setGimbal(model_.X_WD.q.conjugate() * quatFromRotationVector(action.pitch * Vec3::UnitX()));
-  advance(action, now);
-  ++ticks_;
-  if (kept) record(tactile, now, took);
-  return stage_ != Stage::kOver;
+  return {out_.f_D, out_.tactile};
 }
 
-void ArcTrial::advance(const OneFingerAction& action, double now) {
-  cue_ = Cue::kNone;
-  if (state_.gate.trip != devices::Trip::kNone) return end("fault");
-  if (now > setup_.timeout) return end("timeout");
-  if (stage_ == Stage::kPrepare ? now >= model_.gate.ramp_time : stage_ == Stage::kPause && now >= entered_ + kArcPause) {
-    stage_ = Stage::kInterval;
-    entered_ = now;
-    cue_ = Cue::kStart;
-  } else if (stage_ == Stage::kInterval && action.interval_over) {
-    const bool last = shown_ + 1 == static_cast<int>(setup_.intervals.size());
-    stage_ = last ? Stage::kAnswer : Stage::kPause;
-    entered_ = now;
-    if (last) return;
-    ++shown_;
-    display_.setTransmission(interval().transmission);
-    state_.force_tracker = state_.tactile_tracker = {};
-  } else if (stage_ == Stage::kAnswer && action.answered) {
-    answered_ = true;
-    answered_after_ = now - entered_;
-    end("answered");
-  }
+FingerTrial::Felt ArcTrial::felt() const { return {out_.contact.phi <= 0, out_.contact.phi, state_.v_WF.norm()}; }
+
+void ArcTrial::startInterval(int) {
+  finger().setTransmission(shown().transmission);
+  state_.force_tracker = state_.tactile_tracker = {};
 }
 
 // Holds the place wanted, which the display's FIFO delays: so the place displayed freezes at the same place, that much later.
 void ArcTrial::freezeFrontEnd() {
   if (setup_.freeze_share >= 1) return;
-  const double reach = interval().shown.largest_place, place = out_.tactile.place_L.x();
+  const double reach = shown().shown.largest_place, place = out_.tactile.place_L.x();
   if (out_.contact.phi > kFreesTactor) side_ = 0;
   if (side_ == 0) frozen_ = false;
   if (side_ == 0 && out_.contact.phi <= 0) side_ = place < 0 ? -1 : 1;
@@ -113,62 +81,51 @@ void ArcTrial::freezeFrontEnd() {
   if (frozen_) out_.tactile.place_L.x() = held;
 }
 
-void ArcTrial::end(const char* outcome) {
-  outcome_ = outcome;
-  stage_ = Stage::kOver;
+Vec3 ArcTrial::proxy_W() const {
+  if (out_.contact.phi > 0) return state_.p_WF;
+  const Vec3 n_W(0, out_.contact.n_B.x(), out_.contact.n_B.y());
+  return Vec3(state_.p_WF.x(), out_.contact.p_BS.x(), out_.contact.p_BS.y()) + setup_.finger_radius * n_W;
 }
 
-void ArcTrial::count(const devices::TactileSample& tactile, double dt) {
-  shown_time_ += dt;
-  const double speed = state_.v_WF.norm();
-  if (out_.contact.phi <= 0) {
-    contact_time_ += dt;
-    if (speed > kFingerMoves) {
-      finger_way_ += speed * dt;
-      finger_time_ += dt;
-    }
-  }
-  if (ticks_ % kTactorTicks != 0 || !tactile.valid || !tactile.place_L) return;
-  const double place = tactile.place_L->x(), time = static_cast<double>(kTactorTicks) * dt;
-  const double way = std::abs(place - tactor_mark_.value_or(place));
-  if (out_.contact.phi <= 0 && way > kTactorMoves * time) {
-    tactor_way_ += way;
-    tactor_time_ += time;
-  }
-  tactor_mark_ = place;
-}
-
-void ArcTrial::record(const devices::TactileSample& tactile, double now, double took) {
-  SampleRecord sample;
-  sample.trial = setup_.trial;
-  sample.tick = ticks_ - 1;
-  sample.time = now;
-  sample.tick_us = 1e6 * took;
-  sample.q_WB = {1, 0, 0, 0};
+void ArcTrial::fill(SampleRecord& sample) const {
   FingerRecord& finger = sample.fingers[0];
   const Vec3 n_W(0, out_.contact.n_B.x(), out_.contact.n_B.y());
   const Vec3 p_WP(0, out_.contact.p_BS.x(), out_.contact.p_BS.y());
   finger.p_WF = {state_.p_WF.x(), state_.p_WF.y(), state_.p_WF.z()};
-  const Vec3 proxy_W = p_WP + setup_.finger_radius * n_W;
-  finger.p_WP = {proxy_W.x(), proxy_W.y(), proxy_W.z()};
+  const Vec3 on_surface_W = p_WP + setup_.finger_radius * n_W;
+  finger.p_WP = {on_surface_W.x(), on_surface_W.y(), on_surface_W.z()};
   finger.f_contact_W = {out_.f_W.x(), out_.f_W.y(), out_.f_W.z()};
-  finger.f_arm_D = {out_.f_D.x(), out_.f_D.y(), out_.f_D.z()};
   finger.normal_force = out_.normal_force;
   finger.gap = out_.contact.phi;
-  finger.place_wanted_L = {out_.tactile.place_L.x(), out_.tactile.place_L.y()};
-  finger.place_shown_L = {std::nan(""), std::nan("")};
-  if (tactile.valid && tactile.place_L) finger.place_shown_L = {tactile.place_L->x(), tactile.place_L->y()};
-  finger.flags = (out_.contact.phi <= 0 ? 1 : 0) | (state_.gate.trip != devices::Trip::kNone ? 4 : 0) | (out_.tactile.parked ? 8 : 0);
-  sink_.sample(sample);
+  fillFinger(finger);
 }
 
-void ArcTrial::measure(ResponseRecord& r) const {
-  r.outcome = outcome_;
-  r.duration = shown_time_;
-  r.response_time = answered_after_;
-  r.contact_share = shown_time_ > 0 ? contact_time_ / shown_time_ : 0;
-  r.finger_speed = finger_way_ / finger_time_;  // NaN of nothing
-  r.tactor_speed = tactor_way_ / tactor_time_;
+const grasp::GraspModel& ArcTrial::pictured() {
+  if (picture_) return *picture_;
+  engine::WorldBuilder world{engine::WorldOptions{}};
+  for (std::size_t i = 0; i < setup_.intervals.size(); ++i)
+    world.addBody({i == 0 ? "first" : "second", setup_.intervals[i].picture.shape, false, 0, {}});
+  grasp::FingerModel finger;
+  finger.name = "index";
+  finger.radius = setup_.finger_radius;
+  return picture_.emplace(grasp::buildGrasp(std::move(world), {finger}));
+}
+
+void ArcTrial::fill(Snapshot& snapshot) const {
+  for (std::size_t i = 0; i < snapshot.X_WB.size(); ++i) snapshot.X_WB[i] = setup_.intervals[i].picture.X_WB;
+  snapshot.hidden_body = snapshot.X_WB.size() > 1 ? 1 - interval() : -1;
+  FingerSnapshot& finger = snapshot.fingers[0];
+  finger.p_WF = state_.p_WF;
+  finger.p_WP = proxy_W();
+  finger.q_WF = pointingAway(state_.pitch);
+  finger.f_user_W = out_.f_W;
+  finger.normal_force = out_.normal_force;
+  finger.touching = out_.contact.phi <= 0;
+  fillMount(finger);
+  snapshot.contact_count = finger.touching ? 1 : 0;
+  if (!finger.touching) return;
+  const Vec3 n_W(0, out_.contact.n_B.x(), out_.contact.n_B.y());
+  snapshot.contacts[0] = {0, interval(), proxy_W() - setup_.finger_radius * n_W, n_W, out_.f_W, 0, false};
 }
 
 }  // namespace pincer::tasks

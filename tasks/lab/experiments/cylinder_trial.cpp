@@ -25,7 +25,7 @@ HandScene checkedScene(const CylinderAlignmentOptions& options, const CylinderTr
 }  // namespace
 
 CylinderTrial::CylinderTrial(const CylinderAlignmentOptions& options, const CylinderTrialSpec& spec, RecordSink& sink)
-    : HandTrial(checkedScene(options, spec), headOf(spec), sink), spec_(spec), judge_(rulesOf(options)) {}
+    : HandTrial(checkedScene(options, spec), headOf(spec), sink), spec_(spec), rules_(rulesOf(options)), judge_(rules_) {}
 
 double CylinderTrial::angle() const { return flatAngle(engine::bodyPose(scene().model.grasp.world, state().grasp.world, scene().object)); }
 
@@ -55,6 +55,22 @@ void CylinderTrial::fill(TrialRecord& row) const {
   row.error = counts.error;
   row.regrasps = counts.regrasps();
   row.flat_time = counts.flat_time;
+}
+
+HandGuide CylinderTrial::taskGuide() const {
+  constexpr double kNear = 0.09;  // 5 degrees, at which nobody needs a hint [rad]
+  HandGuide guide;
+  guide.goal_heading = kTargetAngle;
+  const bool pinches = touchesObject(0) && touchesObject(1);
+  if (std::abs(wrapAngle(angle() - kTargetAngle)) < kNear) {
+    guide.hint = "The flat faces the monitor: Enter answers";
+  } else if (touchesGround()) {
+    guide.hint = "Too low: a finger touches the table";
+  } else {
+    guide.hint = pinches ? "Turn: Control and move the mouse, or the keys Q and E"
+                         : "Lower the fingers beside it, and squeeze: hold the left button";
+  }
+  return guide;
 }
 
 Vec3 CylinderTrial::truthOf(const HandReading& reading) const {

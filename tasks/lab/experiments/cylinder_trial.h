@@ -11,15 +11,18 @@ class CylinderTrial final : public HandTrial {
   // Throws InputError for options out of range.
   CylinderTrial(const CylinderAlignmentOptions& options, const CylinderTrialSpec& spec, RecordSink& sink);
 
-  const char* instruction() const override { return "Find the flat of the cylinder by touch, and turn it to the front"; }
+  const char* instruction() const override { return "Turn the cylinder until its flat faces the monitor; then press Enter"; }
 
  private:
   TrialVerdict judge(const HandIntent& intent, double time) override;
   void fill(TrialRecord& row) const override;
   Vec3 truthOf(const HandReading& reading) const override;
+  HandGuide taskGuide() const override;
+  double timeout() const override { return rules_.timeout; }
   double angle() const;  // of the flat [rad]
 
   CylinderTrialSpec spec_;
+  CylinderRules rules_;
   CylinderJudge judge_;
 };
 

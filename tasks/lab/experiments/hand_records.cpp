@@ -9,8 +9,6 @@
 namespace pincer::tasks {
 namespace {
 
-enum FingerFlag : std::int32_t { kTouching = 1, kSliding = 2, kGateTripped = 4, kTactorParked = 8 };
-
 std::array<double, 3> toArray(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 std::array<double, 2> toArray(const Vec2& v) { return {v.x(), v.y()}; }
 
@@ -34,40 +32,7 @@ FingerRecord fingerRecord(const TickState& state, const TickScratch& scratch, co
   return record;
 }
 
-Vec3 toVector(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
 std::array<double, 4> toArray(const Quat& q) { return {q.w(), q.x(), q.y(), q.z()}; }
-
-// What is there is kept, and a flag that it was.
-template <class Value, class Kept>
-void keep(const std::optional<Value>& value, FingerInputRecord::Flag flag, Kept& kept, FingerInputRecord& record) {
-  if (!value) return;
-  record.flags |= flag;
-  if constexpr (std::is_same_v<Value, Mat3>) {
-    std::copy(value->data(), value->data() + value->size(), kept.begin());
-  } else if constexpr (std::is_arithmetic_v<Value>) {
-    kept = *value;
-  } else {
-    kept = toArray(*value);
-  }
-}
-
-FingerInputRecord fingerInputRecord(const FingerInputs& inputs, const FingerOutputs& output) {
-  using Record = FingerInputRecord;
-  Record record;
-  record.flags = (inputs.arm.valid ? Record::kValid : 0u) | (inputs.arm.gave_up ? Record::kGaveUp : 0u) |
-                 (inputs.tactile.valid ? Record::kTactileValid : 0u);
-  record.arm_time = inputs.arm.time;
-  record.p_DF = toArray(inputs.arm.p_DF);
-  keep(inputs.arm.v_DF, Record::kVelocity, record.v_DF, record);
-  keep(inputs.arm.q_DF, Record::kOrientation, record.q_DF, record);
-  keep(inputs.arm.switches, Record::kSwitches, record.switches, record);
-  keep(inputs.arm.J, Record::kJacobian, record.J, record);
-  record.tactile_time = inputs.tactile.time;
-  keep(inputs.tactile.place_L, Record::kTactilePlace, record.place_shown_L, record);
-  record.f_arm_D = toArray(output.f_D);
-  record.place_wanted_L = toArray(output.tactile.place_L);
-  return record;
-}
 
 }  // namespace
 
@@ -82,24 +47,6 @@ InputRecord inputRecord(const HandScene& scene, const TickState& state, const Ti
   record.q_WB = toArray(X_WB.q);
   record.v_WB = toArray(state.grasp.world.bodies[static_cast<std::size_t>(scene.object)].v_W);
   return record;
-}
-
-FingerInputs samplesOf(const FingerInputRecord& record) {
-  using Record = FingerInputRecord;
-  const auto has = [&](Record::Flag flag) { return (record.flags & flag) != 0; };
-  FingerInputs inputs;
-  inputs.arm.time = record.arm_time;
-  inputs.arm.valid = has(Record::kValid);
-  inputs.arm.gave_up = has(Record::kGaveUp);
-  inputs.arm.p_DF = toVector(record.p_DF);
-  if (has(Record::kVelocity)) inputs.arm.v_DF = toVector(record.v_DF);
-  if (has(Record::kOrientation)) inputs.arm.q_DF = Quat(record.q_DF[0], record.q_DF[1], record.q_DF[2], record.q_DF[3]);
-  if (has(Record::kSwitches)) inputs.arm.switches = record.switches;
-  if (has(Record::kJacobian)) inputs.arm.J = Eigen::Map<const Mat3>(record.J.data());
-  inputs.tactile.time = record.tactile_time;
-  inputs.tactile.valid = has(Record::kTactileValid);
-  if (has(Record::kTactilePlace)) inputs.tactile.place_L = Vec2(record.place_shown_L[0], record.place_shown_L[1]);
-  return inputs;
 }
 
 HandIntent intentOf(const InputRecord& record) {

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "pincer/tasks/lab/experiments/hand_scene.h"
+#include "pincer/tasks/lab/finger/finger_records.h"
 #include "pincer/tasks/run/records.h"
 
 namespace pincer::tasks {
@@ -15,7 +16,6 @@ SampleRecord sampleRecord(const HandScene& scene, const TickState& state, const 
 InputRecord inputRecord(const HandScene& scene, const TickState& state, const TickScratch& scratch,
                         const std::vector<FingerInputs>& samples, const HandIntent& intent);
 // To the bit what inputRecord() was given.
-FingerInputs samplesOf(const FingerInputRecord& record);
 HandIntent intentOf(const InputRecord& record);
 
 }  // namespace pincer::tasks

@@ -83,6 +83,23 @@ void HandTrial::run(const HandIntent& intent, double now) {
   if (verdict == TrialVerdict::kTimeout) end("timeout", Cue::kEnd);
 }
 
+HandGuide HandTrial::guide() const {
+  if (stage_ != Stage::kRun) return {};
+  HandGuide guide = taskGuide();
+  guide.time_left = std::max(0.0, timeout() - (last_ - start_));
+  return guide;
+}
+
+bool HandTrial::touchesObject(std::size_t finger) const {
+  const grasp::FingerReport& felt = scratch_.fingers[finger];
+  return felt.touching && felt.body == scene_.object;
+}
+
+bool HandTrial::touchesGround() const {
+  return std::any_of(scratch_.fingers.begin(), scratch_.fingers.end(),
+                     [&](const grasp::FingerReport& f) { return f.touching && f.body != scene_.object; });
+}
+
 bool HandTrial::handIsHome() const {
   for (std::size_t i = 0; i < state_.mounts.size(); ++i) {
     if ((state_.mounts[i].p_WF - scene_.homes_W[i]).norm() > kHomeRadius) return false;

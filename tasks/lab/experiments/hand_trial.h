@@ -26,6 +26,14 @@ struct TrialHead {
   bool training = false;
 };
 
+// What helps somebody who can't feel, at this moment.
+struct HandGuide {
+  const char* hint = "";                    // "Too low: a finger touches the dish"
+  std::optional<double> goal_height = {};   // of the object's middle [m]
+  std::optional<double> goal_heading = {};  // of a mark on the object about W's z axis [rad]
+  double time_left = -1;                    // of the trial [s]; negative: it doesn't run
+};
+
 class HandTrial {
  public:
   virtual ~HandTrial() = default;
@@ -38,6 +46,8 @@ class HandTrial {
   Cue cue() const { return cue_; }  // the tone of this tick
   const HandScene& scene() const { return scene_; }
   virtual const char* instruction() const = 0;  // what the person is asked to do, a sentence
+  // While the trial runs, the task's; else nothing.
+  HandGuide guide() const;
   const TickState& state() const { return state_; }
   const TickScratch& scratch() const { return scratch_; }
   // Why the forces were cut, with the remedy; empty: they weren't. Once the trial is over.
@@ -67,12 +77,17 @@ class HandTrial {
   virtual TrialVerdict judge(const HandIntent& intent, double time) = 0;
   // What the task measured, into the trial's row.
   virtual void fill(TrialRecord& row) const = 0;
+  // Its hint, its goal, and how long a trial may last [s].
+  virtual HandGuide taskGuide() const = 0;
+  virtual double timeout() const = 0;
   // What a reading of this kind should have said.
   virtual Vec3 truthOf(const HandReading& reading) const = 0;
 
   void note(const char* kind, const char* detail = "");  // an event, now
   Vec3 placeTruth() const;                               // of a reading "place"
   Vec3 gripTruth() const;                                // of a reading "grip"
+  bool touchesObject(std::size_t finger) const;
+  bool touchesGround() const;  // a finger does
   TickScratch& scratch() { return scratch_; }
 
  private:

@@ -8,6 +8,7 @@
 
 #include "pincer/tasks/lab/experiments/hand_trial.h"
 #include "pincer/tasks/lab/experiments/hands.h"
+#include "pincer/tasks/lab/finger/finger_host.h"
 #include "pincer/tasks/run/servo/servo.h"
 
 namespace pincer::tasks {
@@ -42,6 +43,11 @@ struct TrialHost {
   std::function<ServoReport(HandsCycle& cycle, std::size_t trial, std::size_t trials)> serve;
   // Asks the operator whether forces may come on: before the first trial, and before the one after a fault. False ends the session.
   std::function<bool(const std::string& why)> arm;
+  // Of people: a page to read, a question to answer; false or absent: the person has left.
+  std::function<bool(const StudyPage& page)> show;
+  AskPerson ask;
+  // Only this one of the study's participants, from 0; absent: all of them.
+  std::optional<std::int64_t> person;
 };
 
 }  // namespace pincer::tasks

@@ -3,11 +3,12 @@
 #include <algorithm>
 
 #include "pincer/devices/usb/usb_bus.h"
+#include "pincer/devices/window/input.h"
 
 namespace pincer::tasks {
 
-LiveHands::LiveHands(HandTrial& trial, HandDevices& devices, double oldest_sample)
-    : trial_(trial), devices_(devices), samples_(kHandFingers) {
+LiveHands::LiveHands(HandTrial& trial, HandDevices& devices, double oldest_sample, AnswerBox* keys)
+    : trial_(trial), devices_(devices), keys_(keys), samples_(kHandFingers) {
   trial.keepPassive();
   trial.standArms({devices.base(0), devices.base(1)});
   trial.trustSamples(oldest_sample);
@@ -57,6 +58,7 @@ void LiveHands::readIntent() {
   const int object = trial_.scene().object;
   intent_.wants_lift =
       std::all_of(fingers.begin(), fingers.end(), [&](const grasp::FingerReport& f) { return f.touching && f.body == object; });
+  intent_.answers = keys_ && keys_->take() == devices::kKeyEnter;
   intent_.phase = intent_.wants_lift ? HandPhase::kSqueeze : HandPhase::kReach;
 }
 

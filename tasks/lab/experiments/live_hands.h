@@ -6,6 +6,7 @@
 
 #include "pincer/tasks/lab/experiments/hand_trial.h"
 #include "pincer/tasks/lab/experiments/hands.h"
+#include "pincer/tasks/lab/finger/answer_box.h"
 #include "pincer/tasks/run/servo/hand_devices.h"
 
 namespace pincer::tasks {
@@ -14,7 +15,8 @@ class LiveHands final : public Hands {
  public:
   // Both must outlive it. Arms the devices, only after the operator said so, puts their bases where the calibration says, and has the trial keep
   // to what the arms can do and their user's fingers passive (grasp/passivity). `oldest_sample` is still trusted [s].
-  LiveHands(HandTrial& trial, HandDevices& devices, double oldest_sample = devices::GateLimits{}.watchdog_time);
+  // `keys`: Enter answers; null: nobody answers.
+  LiveHands(HandTrial& trial, HandDevices& devices, double oldest_sample = devices::GateLimits{}.watchdog_time, AnswerBox* keys = nullptr);
   ~LiveHands() override;  // zero force
   LiveHands(const LiveHands&) = delete;
   LiveHands& operator=(const LiveHands&) = delete;
@@ -30,6 +32,7 @@ class LiveHands final : public Hands {
 
   const HandTrial& trial_;
   HandDevices& devices_;
+  AnswerBox* keys_;
   std::vector<Quat> q_DF_;  // of fingers whose arm doesn't measure it
   std::vector<FingerInputs> samples_;
   HandIntent intent_;

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "pincer/contact/error.h"
-#include "pincer/tasks/lab/experiments/arc_trial.h"
 #include "pincer/tasks/lab/experiments/study_parameters.h"
 #include "pincer/tasks/lab/study/counterbalance.h"
 
@@ -47,12 +47,15 @@ contact::Polyline movedArc(double radius, double sweep, const Vec3& centre_W) {
 void validate(const LocalisationStudy& s) {
   const RangeCheck check("repeated-localisation");
   visitParameters(s, check);
+  visitParameters(s.session, RangeCheck("repeated-localisation: session", "session"));
+  validate(s.session, "repeated-localisation");
+  requireOneBlock(s.session, "repeated-localisation", false);
   check("spacing", s.spacing, Parameter{"", {0, 2 * kTactorReach / (s.places - 1), true, "All places lie within 0.016 m."}});
   check("radius_min", s.radius_min, Parameter{"", {0.02, s.radius_max, false, kAsPublished}});
 }
 
 LocalisationExperiment::LocalisationExperiment(const LocalisationStudy& study, const ServoOptions& servo, int stride)
-    : study_(study), servo_(servo), stride_(stride) {
+    : Experiment(servo), study_(study), stride_(stride) {
   validate(study);
 }
 
@@ -75,25 +78,12 @@ std::optional<ResponseRecord> LocalisationExperiment::present(const StudyTrial& 
                                                               const std::atomic<bool>& interrupted, ServoReport& served) {
   const double target = trial.stimulus.level;
   const PlaceCues cues = cuesOf(trial);
-  ArcTrialSetup setup;
-  setup.finger_radius = study_.finger_radius;
-  setup.path_radius = cues.paths[0].radius;
-  setup.start_angle = cues.paths[0].from;
-  setup.stiffness = study_.stiffness;
-  setup.trial = trial.trial;
-  setup.stride = stride_;
-  const double sweep = 2 * kTactorReach / study_.finger_radius + kArcBeyond;
-  for (const PlacePath& path : cues.paths) {
-    const auto curve = std::make_shared<const contact::Curve>(movedArc(path.radius - study_.finger_radius, sweep, path.centre_W),
-                                                              contact::SurfaceVariant::smooth);
-    setup.intervals.push_back({{curve, curve, kTactorReach}, {}});
-  }
+  const ArcTrialSetup setup = setupOf(trial, cues);
   PlaceObserver observer(trial.person_seed);
   observer.begin(cues);
-  ArcTrial cycle(setup, observer, sink);
-  const ServoReport report = runServo(servo_, cycle, interrupted);
-  served.add(report);
-  if (report.interrupted) return std::nullopt;
+  const auto finger = wornBy(arcPlace(setup), observer);
+  ArcTrial cycle(setup, *finger, sink);
+  if (!serve(cycle, trial, interrupted, served)) return std::nullopt;
   ResponseRecord response;
   response.stimulus = trial.stimulus.name;
   response.level = target;
@@ -103,6 +93,44 @@ std::optional<ResponseRecord> LocalisationExperiment::present(const StudyTrial& 
   response.correct = std::abs(response.answer_value - target) < 0.5 * study_.spacing;
   cycle.measure(response);
   return response;
+}
+
+ArcTrialSetup LocalisationExperiment::setupOf(const StudyTrial& trial, const PlaceCues& cues) const {
+  constexpr double kHalfWidth = 0.03;  // of the cylinders that are drawn [m]
+  ArcTrialSetup setup;
+  setup.finger_radius = study_.finger_radius;
+  setup.path_radius = cues.paths[0].radius;
+  setup.start_angle = cues.paths[0].from;
+  setup.stiffness = study_.stiffness;
+  setup.asked.trial = trial.trial;
+  setup.asked.stride = stride_;
+  setup.asked.question = TrialQuestion::kMatch;
+  setup.asked.target = cues.target;
+  setup.asked.tolerance = cues.tolerance;
+  setup.asked.training = trial.training;
+  setup.asked.texts.feel = "Move along the finger until it is the place to keep; hold still and press Enter";
+  const double sweep = 2 * kTactorReach / study_.finger_radius + kArcBeyond;
+  const Quat across = quatFromRotationVector(0.5 * std::numbers::pi * Vec3::UnitY());
+  for (const PlacePath& path : cues.paths) {
+    const double radius = path.radius - study_.finger_radius;
+    const auto curve = std::make_shared<const contact::Curve>(movedArc(radius, sweep, path.centre_W), contact::SurfaceVariant::smooth);
+    setup.intervals.push_back({{curve, curve, kTactorReach}, {}, {contact::Cylinder{radius, kHalfWidth}, {across, path.centre_W}}});
+  }
+  return setup;
+}
+
+StudyPage LocalisationExperiment::introduction(const StudyRun&) const {
+  return {"Where does it feel the same?",
+          {"The screen shows where the tactor touches your fingerpad, and a ring. Touch the surface and move fore and aft until the tactor "
+           "is in",
+           "the ring. Hold still, keep the place in mind and press Enter. Then raise the finger: the surface changes.",
+           "After the tone touch again and move until it feels the same on your fingerpad. Then press Enter."}};
+}
+
+std::vector<ListedStimulus> LocalisationExperiment::training(const StudyRun& run) const { return {run.list.front()}; }
+
+std::string LocalisationExperiment::feedback(const ResponseRecord& response) const {
+  return fmt::format("You were {:.1f} mm off the place.", 1e3 * std::abs(response.answer_value - response.level));
 }
 
 PlaceCues LocalisationExperiment::cuesOf(const StudyTrial& trial) const {

@@ -9,8 +9,10 @@
 // one of 95, a finger of 13 mm; mean absolute error 1.3 mm. `answer` counts from the nominal place: nominal + error. The distributions of radius and
 // place are ours, and that the finger, which lands on the new cylinder, is led along it.
 #pragma once
+#include "pincer/tasks/lab/experiments/arc_trial.h"
 #include "pincer/tasks/lab/experiments/study.h"
 #include "pincer/tasks/lab/participants/place_observer.h"
+#include "pincer/tasks/lab/study/survey.h"
 
 namespace pincer::tasks {
 
@@ -26,6 +28,7 @@ struct LocalisationStudy {
   double finger_radius = 0.013;                 // [m]
   double stiffness = 1000;                      // [N/m]
   double published_error = 1.3e-3;              // mean absolute [m]
+  SurveyPlan session = oneFingerSurvey();       // what people read, train and are asked
 };
 
 void validate(const LocalisationStudy& study);
@@ -36,12 +39,17 @@ class LocalisationExperiment final : public Experiment {
   std::vector<StudyRun> runs() const override;
   std::optional<ResponseRecord> present(const StudyTrial& trial, StudySink& sink, const std::atomic<bool>& interrupted,
                                         ServoReport& served) override;
+  StudyPage introduction(const StudyRun& run) const override;
+  std::vector<ListedStimulus> training(const StudyRun& run) const override;
+  std::string feedback(const ResponseRecord& response) const override;
+  const SurveyPlan& plan() const override { return study_.session; }
+  std::vector<NamedCondition> conditions() const override { return {{"tactor", ""}}; }
 
  private:
+  ArcTrialSetup setupOf(const StudyTrial& trial, const PlaceCues& cues) const;
   PlaceCues cuesOf(const StudyTrial& trial) const;
 
   LocalisationStudy study_;
-  ServoOptions servo_;
   int stride_;
 };
 

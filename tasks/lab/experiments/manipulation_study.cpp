@@ -7,6 +7,7 @@
 #include "pincer/tasks/lab/experiments/cylinder_trial.h"
 #include "pincer/tasks/lab/experiments/pickup_trial.h"
 #include "pincer/tasks/lab/experiments/simulated_hands.h"
+#include "pincer/tasks/lab/experiments/study.h"
 #include "pincer/tasks/lab/experiments/study_parameters.h"
 
 namespace pincer::tasks {
@@ -30,15 +31,14 @@ class TrialList {
   std::vector<ManipulationTrial> take() {
     for (std::int64_t person = 0; person < study_.participants; ++person) {
       index_ = 0;
-      for (std::size_t half = 0; half < study_.conditions.size(); ++half) addHalf(person, half);
+      for (const int place : conditionOrder(study_.session.order, study_.conditions.size(), person, 0, study_.seed))
+        addPart(person, study_.conditions[static_cast<std::size_t>(place)]);
     }
     return std::move(trials_);
   }
 
  private:
-  void addHalf(std::int64_t person, std::size_t half) {
-    const std::size_t place = person % 2 == 1 ? study_.conditions.size() - 1 - half : half;
-    const PickupCondition condition = study_.conditions[place];
+  void addPart(std::int64_t person, PickupCondition condition) {
     if (has(study_, HandTask::kPickup)) {
       addPickups(trained_, person, condition, study_.training.pickups, true);
       addPickups(counted_, person, condition, std::numeric_limits<int>::max(), false);
@@ -89,6 +89,9 @@ void validate(const ManipulationStudy& study) {
   visitParameters(study, RangeCheck("study"));
   visitParameters(study.training, RangeCheck("study: training", "training"));
   visitParameters(study.people, RangeCheck("study: people", "people"));
+  visitParameters(study.session, RangeCheck("study: session", "session"));
+  validate(study.session, "study");
+  requireOneBlock(study.session, "study", true);
   if (study.tasks.empty()) throw ParameterError("tasks", "study: tasks is empty. Give sphere-pickup, cylinder-alignment, or both.");
   validate(pickupOf(study, false));
   CylinderAlignmentOptions alignment = study.alignment;
@@ -129,6 +132,27 @@ std::unique_ptr<Participant> makeParticipant(const ManipulationStudy& study, con
 
 namespace {
 
+std::string partName(const ManipulationTrial& spec) {
+  const bool training = spec.task == HandTask::kPickup ? spec.pickup.training : spec.alignment.training;
+  return fmt::format("{}, {}{}", spec.task == HandTask::kPickup ? "sphere pickup" : "cylinder alignment",
+                     spec.condition() == PickupCondition::kForce ? "force only" : "display and force", training ? ", training" : "");
+}
+
+// What a person reads before a part.
+StudyPage partPage(const ManipulationStudy& study, const ManipulationTrial& spec, bool rests) {
+  StudyPage page{partName(spec), study.session.instructions};
+  if (page.lines.empty()) {
+    page.lines =
+        spec.task == HandTask::kPickup
+            ? std::vector<std::string>{"Pinch the sphere between index finger and thumb, lift it by 50 mm and hold it there for a second."}
+            : std::vector<std::string>{"Find the flat of the cylinder, then turn the cylinder so that the flat faces the monitor.",
+                                       "Enter says that it does."};
+    page.lines.push_back("A tone begins each trial, another one ends it.");
+  }
+  if (rests) page.lines.push_back("Rest as long as you like before you go on.");
+  return page;
+}
+
 // One trial by whoever does it. `fault`: why a gate tripped; empty: none did.
 struct DoneTrial {
   ServoReport servo;
@@ -152,7 +176,8 @@ DoneTrial runTrial(const ManipulationStudy& study, HandTrial& trial, const Manip
 
 std::size_t runManipulationStudy(const ManipulationStudy& study, const ServoOptions& servo, RecordSink& sink,
                                  const std::atomic<bool>& interrupted, const StudyHooks& hooks) {
-  const auto trials = manipulationTrials(study);
+  auto trials = manipulationTrials(study);
+  if (hooks.host.person) std::erase_if(trials, [&](const ManipulationTrial& t) { return t.participant() != *hooks.host.person; });
   const PickupObject object = makePickupObject(study.pickup);
   const auto report = [&](std::size_t done) {
     if (hooks.progress) hooks.progress({done, trials.size()});
@@ -160,8 +185,12 @@ std::size_t runManipulationStudy(const ManipulationStudy& study, const ServoOpti
   std::size_t done = hooks.finished.size();
   if (hooks.host.arm && !hooks.host.arm("The session begins.")) return done;
   report(done);
+  std::string begun;  // the part that goes on: one task in one condition, training or not
   for (const ManipulationTrial& spec : trials) {
     if (hooks.finished.contains(spec.trial())) continue;
+    const std::string part = fmt::format("{}, {}", spec.participant(), partName(spec));
+    if (part != begun && hooks.host.show && !hooks.host.show(partPage(study, spec, !begun.empty()))) break;
+    begun = part;
     const std::unique_ptr<HandTrial> trial = makeTrial(study, object, spec, sink);
     const DoneTrial ended = runTrial(study, *trial, spec, servo, interrupted, hooks, {done, trials.size()});
     if (hooks.served) hooks.served(ended.servo);

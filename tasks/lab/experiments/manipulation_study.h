@@ -16,6 +16,7 @@
 #include "pincer/tasks/lab/experiments/pickup_object.h"
 #include "pincer/tasks/lab/experiments/sphere_pickup.h"
 #include "pincer/tasks/lab/participants/participant_model.h"
+#include "pincer/tasks/lab/study/survey.h"
 
 namespace pincer::tasks {
 
@@ -32,7 +33,8 @@ struct ManipulationStudy {
   SpherePickupOptions pickup;          // its participants, conditions and seed don't count here
   CylinderAlignmentOptions alignment;  // likewise
   ParticipantModel people;
-  bool frozen_tactor = false;  // the tactors stay parked in every condition (a control)
+  SurveyPlan session = manipulationSurvey();  // what people read and are asked
+  bool frozen_tactor = false;                 // the tactors stay parked in every condition (a control)
 };
 
 // Throws InputError naming the first value out of range, its range and the remedy.

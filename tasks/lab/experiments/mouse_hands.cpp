@@ -1,5 +1,7 @@
 #include "pincer/tasks/lab/experiments/mouse_hands.h"
 
+#include "pincer/devices/window/input.h"
+
 namespace pincer::tasks {
 namespace {
 
@@ -14,7 +16,8 @@ std::vector<devices::MouseMount> mountsIn(const HandScene& scene) {
 
 }  // namespace
 
-MouseHands::MouseHands(const HandScene& scene) : hand_(mountsIn(scene)), displays_(kHandFingers), samples_(kHandFingers) {
+MouseHands::MouseHands(const HandScene& scene, AnswerBox* keys)
+    : hand_(mountsIn(scene)), displays_(kHandFingers), samples_(kHandFingers), keys_(keys) {
   intent_.phase = HandPhase::kReach;
 }
 
@@ -29,6 +32,7 @@ void MouseHands::advanceTo(double now) {
 const std::vector<FingerInputs>& MouseHands::sample() {
   for (std::size_t i = 0; i < samples_.size(); ++i) samples_[i] = {hand_.arm(static_cast<int>(i)).sample(), displays_[i].sample()};
   intent_.wants_lift = hand_.squeezing();
+  intent_.answers = keys_ && keys_->take() == devices::kKeyEnter;
   intent_.phase = intent_.wants_lift ? HandPhase::kSqueeze : HandPhase::kReach;
   return samples_;
 }

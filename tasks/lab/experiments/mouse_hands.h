@@ -6,12 +6,14 @@
 #include "pincer/devices/window/mouse_hand.h"
 #include "pincer/tasks/lab/experiments/hand_scene.h"
 #include "pincer/tasks/lab/experiments/hands.h"
+#include "pincer/tasks/lab/finger/answer_box.h"
 
 namespace pincer::tasks {
 
 class MouseHands final : public Hands {
  public:
-  explicit MouseHands(const HandScene& scene);
+  // `keys`: Enter answers; null: nobody answers. It outlives the hands.
+  explicit MouseHands(const HandScene& scene, AnswerBox* keys = nullptr);
 
   void advanceTo(double now) override;
   const std::vector<FingerInputs>& sample() override;
@@ -26,6 +28,7 @@ class MouseHands final : public Hands {
   std::vector<devices::SimCld> displays_;
   std::vector<FingerInputs> samples_;
   HandIntent intent_;
+  AnswerBox* keys_;
   double time_ = 0;
 };
 

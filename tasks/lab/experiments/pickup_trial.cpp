@@ -23,7 +23,8 @@ PickupTrial::PickupTrial(const SpherePickupOptions& options, const PickupObject&
     : HandTrial(makePickupScene(options, object, spec), headOf(spec), sink),
       spec_(spec),
       smallest_grip_(options.mass * 9.81 / (2 * spec.mu_s)),
-      judge_(rulesOf(options)) {}
+      rules_(rulesOf(options)),
+      judge_(rules_) {}
 
 TrialVerdict PickupTrial::judge(const HandIntent& intent, double time) {
   if (intent.reading && std::string_view(intent.reading->kind) == "grip") {
@@ -31,7 +32,9 @@ TrialVerdict PickupTrial::judge(const HandIntent& intent, double time) {
     true_grip_ = gripTruth().x();
   }
   const PickupCounts before = judge_.counts();
-  const TrialVerdict verdict = judge_.observe(view(intent.wants_lift, time));
+  const PickupView seen = view(intent.wants_lift, time);
+  clearance_ = seen.clearance;
+  const TrialVerdict verdict = judge_.observe(seen);
   noteCounts(before);
   return verdict;
 }
@@ -64,6 +67,26 @@ PickupView PickupTrial::view(bool wants_lift, double time) {
   view.p_WBcm = object.X_WI.p;
   view.clearance = clearanceOverDish(scene(), engine::bodyPose(model, world, kObjectBody), *patches_);
   return view;
+}
+
+HandGuide PickupTrial::taskGuide() const {
+  HandGuide guide;
+  const Vec3& middle_W = state().grasp.world.bodies[kObjectBody].X_WI.p;
+  guide.goal_height = middle_W.z() - clearance_ + rules_.success_height;
+  const bool pinches = touchesObject(0) && touchesObject(1);
+  const double above = 0.5 * (state().mounts[0].p_WF.z() + state().mounts[1].p_WF.z()) - middle_W.z();
+  if (touchesGround()) {
+    guide.hint = "Too low: a finger touches the dish";
+  } else if (clearance_ >= rules_.success_height) {
+    guide.hint = "Hold it there for a second";
+  } else if (pinches) {
+    guide.hint = "Lift it to the line";
+  } else if (above > 0.25 * scene().cues.half_width) {
+    guide.hint = "Lower the fingers beside the object";
+  } else {
+    guide.hint = touchesObject(0) || touchesObject(1) ? "One finger touches: go the other way a little" : "Squeeze: hold the left button";
+  }
+  return guide;
 }
 
 Vec3 PickupTrial::truthOf(const HandReading& reading) const {

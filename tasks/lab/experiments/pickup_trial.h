@@ -16,13 +16,17 @@ class PickupTrial final : public HandTrial {
   TrialVerdict judge(const HandIntent& intent, double time) override;
   void fill(TrialRecord& row) const override;
   Vec3 truthOf(const HandReading& reading) const override;
+  HandGuide taskGuide() const override;
+  double timeout() const override { return rules_.timeout; }
 
   void noteCounts(const PickupCounts& before);
   PickupView view(bool wants_lift, double time);
 
   PickupTrialSpec spec_;
   double smallest_grip_;  // m g / (2 mu_s) [N]
+  PickupRules rules_;
   PickupJudge judge_;
+  double clearance_ = 0;  // of the object over the dish, this tick [m]
   contact::PatchCacheHandle patches_ = contact::makePatchCache(64);
   double felt_grip_ = 0, true_grip_ = 0;  // at the last reading of the grip [N]
 };

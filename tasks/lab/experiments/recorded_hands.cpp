@@ -10,16 +10,6 @@ namespace {
 
 Vec3 vectorOf(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
 
-devices::ArmCapabilities capabilitiesOf(const HandsRecord::Finger& finger) {
-  devices::ArmCapabilities arm;
-  arm.peak_force = finger.peak_force;
-  arm.continuous_force = finger.continuous_force;
-  if (!std::isnan(finger.peak_torque[0])) arm.peak_torque = vectorOf(finger.peak_torque);
-  if (!std::isnan(finger.tip_mass)) arm.tip_mass = finger.tip_mass;
-  if (!std::isnan(finger.tip_damping)) arm.tip_damping = finger.tip_damping;
-  return arm;
-}
-
 }  // namespace
 
 RecordedHands::RecordedHands(HandTrial& trial, const HandsRecord& hands, std::vector<InputRecord> inputs)

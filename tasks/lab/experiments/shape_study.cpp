@@ -21,6 +21,13 @@ int solidOf(const std::string& name) {
   return static_cast<int>(std::find(kSolidNames.begin(), kSolidNames.end(), name) - kSolidNames.begin());
 }
 
+// "1 cone  2 cylinder ...": the keys that answer.
+std::string namesAndKeys() {
+  std::string text;
+  for (std::size_t k = 0; k < kSolids; ++k) text += fmt::format("{}{} {}", k > 0 ? "   " : "", k + 1, kSolidNames[k]);
+  return text;
+}
+
 void requireEven(const char* name, int value) {
   if (value % 2 == 0) return;
   throw ParameterError(fmt::format("sizes.{}", name),
@@ -45,11 +52,14 @@ void validate(const ShapeStudy& s) {
   if (s.tactor_reach > s.finger_radius)
     throw ParameterError("tactor_reach", fmt::format("shape-identification: tactor_reach = {} is out of range (0, finger_radius]. {}",
                                                      s.tactor_reach, kAsPublished));
+  visitParameters(s.session, RangeCheck("shape-identification: session", "session"));
+  validate(s.session, "shape-identification");
+  requireOneBlock(s.session, "shape-identification", false);
   if (s.conditions.empty()) throw ParameterError("conditions", "shape-identification: conditions is empty. Give at least one.");
 }
 
 ShapeExperiment::ShapeExperiment(const ShapeStudy& study, const ServoOptions& servo, int stride)
-    : study_(study), servo_(servo), stride_(stride) {
+    : Experiment(servo), study_(study), stride_(stride) {
   validate(study);
   for (std::size_t k = 0; k < kSolids; ++k) {
     for (const bool shaded : {false, true}) {
@@ -101,9 +111,10 @@ ShapeTrialSetup ShapeExperiment::setupOf(const StudyTrial& trial, const ShapeCon
   setup.finger_radius = study_.finger_radius;
   setup.stiffness = study_.stiffness;
   setup.tactor_reach = study_.tactor_reach;
-  setup.trial = trial.trial;
-  setup.seed = seedFor(trial.seed, kExplorer);
-  setup.stride = stride_;
+  setup.asked.trial = trial.trial;
+  setup.asked.stride = stride_;
+  setup.asked.training = trial.training;
+  setup.asked.texts.feel = namesAndKeys();
   return setup;
 }
 
@@ -111,19 +122,34 @@ std::optional<ResponseRecord> ShapeExperiment::present(const StudyTrial& trial, 
                                                        ServoReport& served) {
   const auto condition = std::find_if(study_.conditions.begin(), study_.conditions.end(),
                                       [&](const ShapeCondition& c) { return c.name == trial.stimulus.condition; });
+  const ShapeTrialSetup setup = setupOf(trial, *condition);
   ShapeExplorer explorer(trial.person_seed);
-  ShapeTrial cycle(setupOf(trial, *condition), explorer, sink);
-  const ServoReport report = runServo(servo_, cycle, interrupted);
-  served.add(report);
-  if (report.interrupted) return std::nullopt;
+  explorer.begin(shapeCues(setup, seedFor(trial.seed, kExplorer)));
+  const auto finger = wornBy(shapePlace(setup), explorer);
+  ShapeTrial cycle(setup, *finger, sink);
+  if (!serve(cycle, trial, interrupted, served)) return std::nullopt;
+  const int named = cycle.isPersons() ? cycle.chosen() - 1 : explorer.answer();
   ResponseRecord response;
   response.stimulus = trial.stimulus.name;
   response.level = trial.stimulus.level;
-  response.answer_value = explorer.sureness();
-  response.answer = cycle.answered() ? kSolidNames[static_cast<std::size_t>(explorer.answer())] : "";
+  response.answer_value = cycle.isPersons() ? std::nan("") : explorer.sureness();
+  response.answer = cycle.answered() ? kSolidNames[static_cast<std::size_t>(named)] : "";
   response.correct = response.answer == response.stimulus;
   cycle.measure(response);
   return response;
+}
+
+StudyPage ShapeExperiment::introduction(const StudyRun&) const {
+  return {
+      "Which solid is it?",
+      {"One of seven solids stands before you. Explore it with the finger as long as you like, but answer as quickly as is comfortable.",
+       "The key of its name ends the trial; you can't change your mind:", namesAndKeys()}};
+}
+
+std::vector<ListedStimulus> ShapeExperiment::training(const StudyRun& run) const { return {run.list.front()}; }
+
+std::string ShapeExperiment::feedback(const ResponseRecord& response) const {
+  return fmt::format("It was the {}; you said {}.", response.stimulus, response.answer);
 }
 
 }  // namespace pincer::tasks

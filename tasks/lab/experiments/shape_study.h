@@ -9,6 +9,8 @@
 
 #include "pincer/tasks/lab/experiments/shape_trial.h"
 #include "pincer/tasks/lab/experiments/solids.h"
+#include "pincer/tasks/lab/experiments/study.h"
+#include "pincer/tasks/lab/study/survey.h"
 
 namespace pincer::tasks {
 
@@ -29,6 +31,7 @@ struct ShapeStudy {
   double tactor_reach = 8e-3;   // either way [m] (ours)
   bool frozen_tactor = false;   // a control: the tactor is parked in every condition
   std::vector<ShapeCondition> conditions = published();
+  SurveyPlan session = oneFingerSurvey();  // what people read, train and are asked
 
   static std::vector<ShapeCondition> published();
 };
@@ -41,6 +44,11 @@ class ShapeExperiment final : public Experiment {
   std::vector<StudyRun> runs() const override;
   std::optional<ResponseRecord> present(const StudyTrial& trial, StudySink& sink, const std::atomic<bool>& interrupted,
                                         ServoReport& served) override;
+  StudyPage introduction(const StudyRun& run) const override;
+  std::vector<ListedStimulus> training(const StudyRun& run) const override;
+  std::string feedback(const ResponseRecord& response) const override;
+  const SurveyPlan& plan() const override { return study_.session; }
+  std::vector<NamedCondition> conditions() const override { return namedOf(study_.conditions); }
 
  private:
   using Solids = std::array<std::shared_ptr<const contact::SmoothMesh>, kSolids>;
@@ -49,7 +57,6 @@ class ShapeExperiment final : public Experiment {
   ShapeTrialSetup setupOf(const StudyTrial& trial, const ShapeCondition& condition) const;
 
   ShapeStudy study_;
-  ServoOptions servo_;
   int stride_;
   std::array<std::array<Solids, 2>, 2> solids_;  // not shaded, shaded; pointing right, left
 };

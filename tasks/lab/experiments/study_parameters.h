@@ -11,6 +11,7 @@
 #include "pincer/tasks/lab/experiments/manipulation_study.h"
 #include "pincer/tasks/lab/experiments/shape_study.h"
 #include "pincer/tasks/lab/study/parameter.h"
+#include "pincer/tasks/lab/study/survey.h"
 
 namespace pincer::tasks {
 
@@ -29,6 +30,36 @@ inline constexpr NumberRule kStep = {1e-9, 1, false, kAsPublished};
 
 template <class T, class Of>
 concept FieldsOf = std::same_as<std::remove_const_t<T>, Of>;
+
+inline constexpr std::array<std::string_view, 4> kAnswerKindNames = {"scale", "number", "choice", "text"};
+inline constexpr std::array<std::string_view, 3> kConditionOrderNames = {"balanced", "listed", "shuffled"};
+inline constexpr std::array<std::string_view, 3> kAskedForNames = {"session", "condition", "task and condition"};
+
+template <FieldsOf<SurveyItem> Item, class Visit>
+void visitParameters(Item& i, Visit&& visit) {
+  constexpr NumberRule kBound = {-1e9, 1e9, false, "Leave it out for 1 to 7."};
+  visit("name", i.name, Parameter{"in tables"});
+  visit("text", i.text, Parameter{"that the person reads"});
+  visit("kind", i.kind, Parameter{"of answer", {}, kAnswerKindNames});
+  visit("low", i.low, Parameter{"of a scale or a number", kBound});
+  visit("high", i.high, Parameter{"likewise", kBound});
+  visit("low_label", i.low_label, Parameter{"of a scale's lower end"});
+  visit("high_label", i.high_label, Parameter{"of its upper end"});
+  visit("choices", i.choices, Parameter{"of a choice; none: the study's conditions"});
+  visit("per", i.per, Parameter{"asked once, of each condition, or of each task in each condition", {}, kAskedForNames});
+  visit("required", i.required, Parameter{"false: an empty answer will do"});
+}
+
+template <FieldsOf<SurveyPlan> Plan, class Visit>
+void visitParameters(Plan& p, Visit&& visit) {
+  visit("order", p.order,
+        Parameter{"of the conditions: balanced over participants, as listed, or shuffled by the seed", {}, kConditionOrderNames});
+  visit("blocks", p.blocks, Parameter{"how often a participant goes through all conditions", {1, 100, false, "1 is usual."}});
+  visit("instructions", p.instructions, Parameter{"lines read before each condition, in place of the program's own"});
+  visit("training", p.training, Parameter{"trials before each condition of an experiment with one finger", {0, 100, false, "1 is usual."}});
+  visit("demographics", p.demographics, Parameter{"asked before the first trial"});
+  visit("survey", p.survey, Parameter{"asked after the last"});
+}
 
 template <FieldsOf<StaircaseRule> Rule, class Visit>
 void visitParameters(Rule& r, Visit&& visit) {
@@ -74,6 +105,7 @@ void visitParameters(Study& s, Visit&& visit) {
   visit("strokes", s.strokes, Parameter{"per interval, an even number", {2, 100, false, kAsPublished}});
   visit("frozen_tactor", s.frozen_tactor, Parameter{"true: the tactor is parked in every condition (a control)"});
   visit("conditions", s.conditions, Parameter{"a list replaces all of them"});
+  visit("session", s.session, Parameter{"what people read, train and are asked; simulated participants none of it"});
 }
 
 template <FieldsOf<LocalisationStudy> Study, class Visit>
@@ -91,6 +123,7 @@ void visitParameters(Study& s, Visit&& visit) {
   visit("stiffness", s.stiffness, Parameter{"of the surface [N/m]", {0, 3500, true, kAsPublished}});
   visit("published_error", s.published_error,
         Parameter{"mean absolute error, beside which the measured one is shown [m]", {0, 0.1, false, kAsPublished}});
+  visit("session", s.session, Parameter{"what people read, train and are asked; simulated participants none of it"});
 }
 
 template <FieldsOf<SolidSizes> Sizes, class Visit>
@@ -124,6 +157,7 @@ void visitParameters(Study& s, Visit&& visit) {
   visit("tactor_reach", s.tactor_reach, Parameter{"either way [m]", {0, 8e-3, true, kAsPublished}});
   visit("frozen_tactor", s.frozen_tactor, Parameter{"true: the tactor is parked in every condition (a control)"});
   visit("conditions", s.conditions, Parameter{"a list replaces all of them"});
+  visit("session", s.session, Parameter{"what people read, train and are asked; simulated participants none of it"});
 }
 
 template <FieldsOf<HandSetup> Hand, class Visit>
@@ -229,6 +263,7 @@ void visitParameters(Study& s, Visit&& visit) {
   visit("sphere_pickup", s.pickup, Parameter{"the one task"});
   visit("cylinder_alignment", s.alignment, Parameter{"the other"});
   visit("people", s.people, Parameter{"the simulated participants"});
+  visit("session", s.session, Parameter{"what people read, train and are asked; simulated participants none of it"});
 }
 
 // What has a list of its own.

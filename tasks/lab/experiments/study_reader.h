@@ -61,7 +61,7 @@ void readField(const JsonValue& v, std::vector<Item>& field, const Parameter& pa
     v.reject(fmt::format("has {} elements; at most {} are allowed.", v.array().size(), kMostInStudyList));
   for (const JsonValue& json : v.array()) {
     Item item{};
-    if constexpr (requires { item.name; }) item = namedItem(json, field);
+    if constexpr (requires { item.published; }) item = namedItem(json, field);
     readField(json, item, parameter);
     list.push_back(std::move(item));
   }

@@ -93,7 +93,9 @@ class SchemaWriter {
   template <class Item>
   void describe(const std::vector<Item>&, const Parameter& p) {
     ++in_list_;
-    json_.key("type").value("array").key("minItems").value(1).key("items").beginObject();
+    json_.key("type").value("array");
+    if constexpr (!std::same_as<Item, SurveyItem> && !std::same_as<Item, std::string>) json_.key("minItems").value(1);
+    json_.key("items").beginObject();
     describe(Item{}, p);
     json_.endObject();
     --in_list_;

@@ -82,10 +82,10 @@ Quat ShapeExplorer::held() const {
   return Quat(cosine, sine, 0, 0) * Quat(R);
 }
 
-ShapeAction ShapeExplorer::act(const FingerPercept& finger, double time, Cue cue) {
+OneFingerAction ShapeExplorer::act(const FingerPercept& finger, double time, Cue cue) {
   const double dt = time - now_;
   now_ = time;
-  ShapeAction action;
+  OneFingerAction action;
   if (finger.tactile.valid && finger.tactile.place_L) {
     if (!first_place_) first_place_ = finger.tactile.place_L->x();
     tactor_moves_ = tactor_moves_ || std::abs(finger.tactile.place_L->x() - *first_place_) > limits_.common.tactor_moves;
@@ -96,14 +96,14 @@ ShapeAction ShapeExplorer::act(const FingerPercept& finger, double time, Cue cue
     if (finger.f_D.norm() > kFeltPush || reach_ < 0) enter(Phase::kFollow);
   } else if (phase_ == Phase::kFollow) {
     follow(finger, dt);
-    action.finger.interval_over = phase_ == Phase::kAnswer;
+    action.interval_over = phase_ == Phase::kAnswer;
   } else if (phase_ == Phase::kAnswer) {
     reach_ = std::min(limits_.distance, reach_ + limits_.approach_speed * dt);
-    action.finger.answered = now_ - entered_ >= limits_.common.reaction_time;
+    action.answered = now_ - entered_ >= limits_.common.reaction_time;
   }
   action.q_WF = held();
-  action.finger.pull = body_.hands[0];
-  action.finger.pull.p_D = cues_.q_WD.conjugate() * (cues_.middle_W + reach_ * ray() - cues_.p_WD);
+  action.pull = body_.hands[0];
+  action.pull.p_D = cues_.q_WD.conjugate() * (cues_.middle_W + reach_ * ray() - cues_.p_WD);
   return action;
 }
 

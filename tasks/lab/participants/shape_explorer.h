@@ -62,17 +62,13 @@ struct ShapeCues {
   double tactor_reach = 8e-3;    // largest place that the tactor can show [m]
 };
 
-struct ShapeAction {
-  OneFingerAction finger;
-  Quat q_WF = Quat::Identity();  // how the finger is held: distal (x of F) away and tilted, the pad (-z) down
-};
-
-class ShapeExplorer {
+// It holds its finger with distal (x of F) away and tilted, the pad (-z) down.
+class ShapeExplorer final : public OneFingerObserver {
  public:
   explicit ShapeExplorer(std::uint64_t seed, const ShapeLimits& limits = {}, const HandRanges& ranges = {});
   void begin(const ShapeCues& cues);
   // Allocates nothing, throws nothing.
-  ShapeAction act(const FingerPercept& finger, double time, Cue cue);
+  OneFingerAction act(const FingerPercept& finger, double time, Cue cue) override;
   int answer() const;  // a place in kSolidNames
   double sureness() const;
 

@@ -42,7 +42,7 @@ Figure alignmentFigure(const SessionSummary& summary, const std::vector<TrialRec
       if (t.condition != summary.conditions[c] || t.outcome == "fault") continue;
       const bool timeout = t.outcome == "timeout";
       const double aside = 0.5 * std::fmod(0.618 * static_cast<double>(t.trial), 1.0) - 0.25;  // so that dots don't hide each other
-      table.row(t.trial, t.participant, t.condition, static_cast<double>(c) + aside, kInDegrees * t.error, t.duration, timeout ? 1 : 0);
+      table.row(t.trial + 1, t.participant + 1, t.condition, static_cast<double>(c) + aside, kInDegrees * t.error, t.duration, timeout ? 1 : 0);
       time += t.duration;
       ++n;
       if (timeout) continue;
@@ -73,7 +73,7 @@ Figure turnFigure(const TrialTrace& trace) {
   figure.title = fmt::format("{}: a trial of alignment", conditionLabel(trace.trial.condition));
   figure.caption =
       fmt::format("Trial {}, participant {}. Top: direction of the flat from the monitor; bottom: normal forces of both fingers.",
-                  trace.trial.trial, trace.trial.participant);
+                  trace.trial.trial + 1, trace.trial.participant + 1);
   PlotTable table{"time_s", "flat_deg", "f0_normal_N", "f1_normal_N"};
   const double start = trace.samples.front().time;
   for (const SampleRecord& s : trace.samples) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pincer/tasks/lab/report/finding_words.h"
 #include "pincer/tasks/lab/report/html_page.h"
 
 namespace pincer::tasks {
@@ -52,11 +53,11 @@ std::string trialList(const std::vector<TrialRecord>& trials) {
                              "th");
   for (const TrialRecord& t : trials) {
     const auto text = [](std::int64_t n) { return std::to_string(n); };
-    html += htmlRow({text(t.trial), t.training ? t.task + " (training)" : t.task, text(t.participant), conditionLabel(t.condition),
+    html += htmlRow({text(t.trial + 1), t.training ? t.task + " (training)" : t.task, text(t.participant + 1), conditionLabel(t.condition),
                      number(t.mu_s, 1, 2), t.outcome, text(t.squeezes), text(t.lifts), text(t.tries_5mm), number(t.duration, 1, 2),
                      text(t.slips), text(t.drops), number(t.peak_grip, 1, 2), number(t.grip_ratio, 1, 2),
                      number(t.offset_at_squeeze, 1e3, 1), number(t.error, 57.29577951308232, 1), text(t.regrasps)},
-                    "td", fmt::format(" id=\"trial-{}\"", t.trial));
+                    "td", fmt::format(" id=\"trial-{}\"", t.trial + 1));
   }
   return html +
          "</table></div>\n<p class=\"note\">Grip ratio: grip while held over the smallest that holds, m g / (2 µₛ). Offset: of the "
@@ -70,11 +71,12 @@ std::string reportHtml(const SessionSummary& s, const std::vector<TrialRecord>& 
                        const std::string& figures_name, const std::string& devices) {
   const std::string title = fmt::format("{}, seed {}", s.info.task, s.info.seed);
   std::string html = htmlHead(title, s.warning);
-  html += facts(s) + (s.cells.empty() ? "" : "<h2>Per condition and friction</h2>\n") + cellTable(s) + pairTable(s);
+  for (const std::string& words : findingWords(s)) html += fmt::format("<p class=\"finding\">{}</p>\n", escaped(words));
+  html += (s.cells.empty() ? "" : "<h2>Per condition and friction</h2>\n") + cellTable(s) + pairTable(s);
   for (const Picture& picture : pictures) html += htmlFigure(picture, figures_name);
   html += devices;
   if (!trials.empty()) html += trialList(trials);
-  return html + htmlFoot(s.info);
+  return html + htmlFoot(s.info, facts(s));
 }
 
 }  // namespace pincer::tasks

@@ -18,6 +18,7 @@ tr:target td { background: #fff3cd; }
 .facts th { text-align: left; font-weight: normal; color: #666; }
 .facts td { text-align: left; white-space: normal; overflow-wrap: anywhere; }
 .wide { overflow-x: auto; }
+.finding { font-size: 1.1rem; border-left: 0.4rem solid #0072B2; background: #eef5fa; padding: 0.6rem 1rem; }
 figure { margin: 1rem 0; } img { width: 100%; height: auto; } figcaption, .note { font-size: 0.85rem; color: #444; }
 .warning { border-left: 0.4rem solid #D55E00; background: #fdf1e9; padding: 0.6rem 1rem; }
 pre { background: #f6f6f6; padding: 0.6rem; overflow-x: auto; font-size: 0.8rem; }
@@ -116,8 +117,8 @@ std::string htmlHead(const std::string& title, const std::string& warning) {
   return html;
 }
 
-std::string htmlFoot(const SessionInfo& info) {
-  return "<h2>What was run</h2>\n" + htmlDetails("scene", info.scene_json) + htmlDetails("protocol", info.protocol_json) +
+std::string htmlFoot(const SessionInfo& info, const std::string& facts) {
+  return "<h2>What was run</h2>\n" + facts + htmlDetails("scene", info.scene_json) + htmlDetails("protocol", info.protocol_json) +
          htmlDetails("devices", info.devices_json) + htmlDetails("participants", info.participants_json) + "</body>\n</html>\n";
 }
 

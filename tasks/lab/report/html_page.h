@@ -29,6 +29,6 @@ std::string htmlNotDrawn(const std::vector<std::string>& titles);
 std::string htmlDetails(const char* title, const std::string& json);
 
 std::string htmlHead(const std::string& title, const std::string& warning);
-std::string htmlFoot(const SessionInfo& info);  // what was run, and the end of the page
+std::string htmlFoot(const SessionInfo& info, const std::string& facts = "");  // what was run, and the end of the page
 
 }  // namespace pincer::tasks

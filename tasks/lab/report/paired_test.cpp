@@ -56,6 +56,8 @@ PairedTest comparePairs(const std::vector<double>& a, const std::vector<double>&
   }
   PairedTest test;
   test.n = static_cast<int>(d.size());
+  test.lower = static_cast<int>(std::count_if(d.begin(), d.end(), [](double x) { return x < 0; }));
+  test.higher = static_cast<int>(std::count_if(d.begin(), d.end(), [](double x) { return x > 0; }));
   test.difference = estimateMean(d);
   test.effect = std::numeric_limits<double>::quiet_NaN();
   if (test.n < 2) return test;

@@ -15,6 +15,8 @@ namespace pincer::tasks {
 
 struct PairedTest {
   int n = 0;              // pairs; those with a NaN don't count
+  int lower = 0;          // of them, those with b < a
+  int higher = 0;         // those with b > a
   Estimate difference;    // b - a
   double effect = 0;      // d_z; NaN if n < 2 or nothing varies
   double p_t = 1;         // 1 where it can't be told

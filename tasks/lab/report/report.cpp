@@ -26,14 +26,14 @@ std::vector<Picture> wantedPictures(const SessionReader& session, const SessionS
     const auto alignment = representativeTrial(alignments, condition);  // none squeezes: the first
     if (alignment) {
       const TrialTrace trace = traceOf(session, *alignment);
-      if (!trace.samples.empty()) pictures.push_back({turnFigure(trace), "", std::to_string(alignment->trial)});
+      if (!trace.samples.empty()) pictures.push_back({turnFigure(trace), "", std::to_string(alignment->trial + 1)});
     }
     const auto trial = representativeTrial(pickups, condition);
     if (!trial) continue;
     const TrialTrace trace = traceOf(session, *trial);
     if (trace.samples.empty()) continue;  // recorded without samples
-    pictures.push_back({trialFigure(trace), "", std::to_string(trial->trial)});
-    pictures.push_back({tactorFigure(trace), "", std::to_string(trial->trial)});
+    pictures.push_back({trialFigure(trace), "", std::to_string(trial->trial + 1)});
+    pictures.push_back({tactorFigure(trace), "", std::to_string(trial->trial + 1)});
   }
   if (auto ticks = tickFigure(session)) pictures.push_back({*std::move(ticks), "", ""});
   return pictures;

@@ -43,7 +43,7 @@ Figure headlineFigure(const StudySummary& s) {
     means.row(c.name, x, scale * c.headline.mean, scale * (c.headline.mean - half), scale * (c.headline.mean + half), scale * c.published);
     for (std::size_t i = 0; i < c.people.size(); ++i) {
       const double share = c.people.size() < 2 ? 0.5 : static_cast<double>(i) / static_cast<double>(c.people.size() - 1);
-      people.row(c.name, c.people[i].participant, x + kDotsLeft + kDotsWidth * (share - 0.5), scale * c.people[i].headline);
+      people.row(c.name, c.people[i].participant + 1, x + kDotsLeft + kDotsWidth * (share - 0.5), scale * c.people[i].headline);
     }
   }
   Figure figure;
@@ -115,7 +115,7 @@ Figure placesFigure(const std::vector<ResponseRecord>& responses) {
   std::map<double, std::map<std::int64_t, std::vector<double>>> places;
   for (const ResponseRecord& r : responses) {
     if (std::isnan(r.answer_value)) continue;
-    answers.row(r.participant, 1e3 * r.level, 1e3 * r.answer_value);
+    answers.row(r.participant + 1, 1e3 * r.level, 1e3 * r.answer_value);
     places[r.level][r.participant].push_back(1e3 * r.answer_value);
   }
   for (const auto& [place, people] : places) {

@@ -31,12 +31,13 @@ std::vector<Picture> studyPictures(const SessionReader& session, const StudySumm
 
 std::string studyHtml(const StudySummary& s, const std::vector<Picture>& pictures, const std::string& figures_name,
                       const std::string& errors) {
+  const bool is_simulated = s.info.devices_json.find("\"simulated\"") != std::string::npos;
   std::string html = htmlHead(fmt::format("{}, seed {}", s.info.task, s.info.seed), s.warning);
   html += htmlFacts({{"task", s.info.task},
                      {"seed", std::to_string(s.info.seed)},
                      {"started (UTC)", s.started_utc},
                      {"state of the session", s.state},
-                     {"participants", fmt::format("{}, simulated", s.participants)},
+                     {"participants", fmt::format("{}{}", s.participants, is_simulated ? ", simulated" : "")},
                      {"finished trials", std::to_string(s.trials)},
                      {"fingerprint of the participants' parameters", s.fingerprint},
                      {"pincer", s.info.version},

@@ -2,12 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <new>
 
 #include "pincer/contact/error.h"
 #include "pincer/tasks/lab/experiments/manipulation_file.h"
+#include "pincer/tasks/lab/experiments/study_parameters.h"
 #include "pincer/tasks/lab/findings/claims.h"
+#include "pincer/tasks/lab/sessions/study_experiments.h"
+#include "pincer/tasks/lab/sessions/study_file.h"
 #include "pincer/tasks/run/files/json_writer.h"
 #include "pincer/tasks/run/session/build_info.h"
 
@@ -46,8 +50,28 @@ std::string devicesJson(const ManipulationSessionOptions& o) {
   return json.key("sample_rate").value(o.sample_rate).key("real_time").value(o.servo.clock != ServoClock::kVirtual).endObject().text();
 }
 
-ManipulationSessionResult runInto(SessionWriter& writer, const ManipulationSessionOptions& options, StudyHooks hooks,
-                                  const std::atomic<bool>& interrupted) {
+std::size_t plannedTrials(const ManipulationSessionOptions& options) {
+  const auto trials = manipulationTrials(options.study);
+  const auto& person = options.host.person;
+  return static_cast<std::size_t>(
+      std::count_if(trials.begin(), trials.end(), [&](const ManipulationTrial& t) { return !person || t.participant() == *person; }));
+}
+
+// What the study asks people at this moment. False: the person has left.
+bool askSurvey(const ManipulationSessionOptions& options, SessionWriter& writer, const std::string& path, const std::string& moment) {
+  if (!options.host.ask || !options.host.person) return true;
+  std::vector<std::string> tasks;
+  for (const HandTask task : options.study.tasks) tasks.emplace_back(kHandTaskNames[static_cast<std::size_t>(task)]);
+  std::vector<NamedCondition> conditions;
+  for (const PickupCondition c : options.study.conditions)
+    conditions.push_back({nameOf(c), c == PickupCondition::kForce ? "force only" : "display and force"});
+  const SurveyPlan& plan = options.study.session;
+  const SurveyForm form{questionsOf(moment == "before" ? plan.demographics : plan.survey, tasks, conditions), moment, *options.host.person};
+  return fillForm(form, SessionReader(path).survey(), options.host.ask, [&](const SurveyRecord& answer) { writer.addSurvey(answer); });
+}
+
+ManipulationSessionResult runInto(SessionWriter& writer, const std::string& path, const ManipulationSessionOptions& options,
+                                  StudyHooks hooks, const std::atomic<bool>& interrupted) {
   const std::int64_t stride = options.sample_rate > 0 ? std::lround(options.servo.rate) / options.sample_rate : 0;
   StudySessionSink sink(writer, stride, static_cast<bool>(options.host.hands));
   ManipulationSessionResult result;
@@ -61,7 +85,11 @@ ManipulationSessionResult runInto(SessionWriter& writer, const ManipulationSessi
     };
   }
   try {
-    result.trials = runManipulationStudy(options.study, options.servo, sink, interrupted, hooks);
+    bool left = !askSurvey(options, writer, path, "before");
+    if (!left) result.trials = runManipulationStudy(options.study, options.servo, sink, interrupted, hooks);
+    left = left || result.trials < plannedTrials(options);
+    if (!left && !result.servo.interrupted) left = !askSurvey(options, writer, path, "after");
+    refused = refused || (left && options.host.show);
   } catch (const std::bad_alloc&) {
     writer.abort("not enough memory");
     throw;
@@ -95,8 +123,8 @@ SessionInfo manipulationSessionInfo(const ManipulationSessionOptions& o) {
   tellBuild(info);
   info.protocol_json = studyFile(o.study);
   info.devices_json = devicesJson(o);
-  info.participants_json = describe(o.study.people);
-  info.participants_hash = hashOf(o.study.people);
+  info.participants_json = o.host.person ? personJson(*o.host.person) : describe(o.study.people);
+  info.participants_hash = o.host.person ? fingerprint(info.participants_json) : hashOf(o.study.people);
   if (!o.claims.empty()) info.scene_json = claimsJson(o.claims);
   return info;
 }
@@ -104,9 +132,9 @@ SessionInfo manipulationSessionInfo(const ManipulationSessionOptions& o) {
 void requirePlanned(const SessionReader& session, std::int64_t trial, std::size_t planned) {
   if (trial >= 0 && trial < static_cast<std::int64_t>(planned)) return;
   throw InputError(
-      fmt::format("{}: trial {} isn't one of its plan, which has trials 0 to {}. The file is damaged, or something else than pincer "
+      fmt::format("{}: trial {} isn't one of its plan, which has trials 1 to {}. The file is damaged, or something else than pincer "
                   "changed it. Take a copy of before.",
-                  session.path(), trial, static_cast<std::int64_t>(planned) - 1));
+                  session.path(), trial + 1, planned));
 }
 
 void validate(const ManipulationSessionOptions& options) {
@@ -123,18 +151,20 @@ ManipulationSessionResult runManipulationSession(const ManipulationSessionOption
                                                  const std::atomic<bool>& interrupted, const TrialProgressLine& progress) {
   validate(options);
   SessionWriter writer = SessionWriter::create(path, manipulationSessionInfo(options), storeOptions(options.servo));
-  return runInto(writer, options, {{}, progress, {}, {}}, interrupted);
+  return runInto(writer, path, options, {{}, progress, {}, {}}, interrupted);
 }
 
 ManipulationSessionResult resumeManipulationSession(const ManipulationSessionOptions& wanted, const std::string& path,
                                                     const std::atomic<bool>& interrupted, const TrialProgressLine& progress) {
   ManipulationSessionOptions options = wanted;
-  options.study = parseStudyFile(SessionReader(path).info().protocol_json, path + ": protocol");
+  const SessionInfo info = SessionReader(path).info();
+  options.study = parseStudyFile(info.protocol_json, path + ": protocol");
+  if (options.host.person) options.host.person = personOf(info).value_or(0);
   validate(options);
   SessionWriter writer = SessionWriter::resume(path, storeOptions(options.servo));
   StudyHooks hooks{{}, progress, {}, {}};
   hooks.finished = finishedTrials(SessionReader(path), manipulationTrials(options.study).size());
-  return runInto(writer, options, hooks, interrupted);
+  return runInto(writer, path, options, hooks, interrupted);
 }
 
 }  // namespace pincer::tasks

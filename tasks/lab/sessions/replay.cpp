@@ -10,21 +10,15 @@
 #include "pincer/tasks/lab/experiments/recorded_hands.h"
 #include "pincer/tasks/lab/experiments/simulated_trial.h"
 #include "pincer/tasks/lab/sessions/manipulation_session.h"
+#include "pincer/tasks/lab/sessions/record_comparison.h"
 #include "pincer/tasks/lab/sessions/session_hash.h"
+#include "pincer/tasks/lab/sessions/study_experiments.h"
+#include "pincer/tasks/lab/sessions/study_replay.h"
 #include "pincer/tasks/run/session/build_info.h"
 #include "pincer/tasks/run/session/input_codec.h"
 
 namespace pincer::tasks {
 namespace {
-
-template <class Record>
-std::string differenceOf(const Record& stored, const Record& fresh) {
-  const auto a = comparable(stored), b = comparable(fresh);
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    if (a[i] != b[i]) return fmt::format("{} was {}, is {}", a[i].first, a[i].second, b[i].second);
-  }
-  return "";
-}
 
 // A trial of the session: finished, or cut short with what survived of its inputs.
 struct StoredTrial {
@@ -106,8 +100,8 @@ void compareBuilds(const SessionInfo& then, ReplayResult& result) {
 void requireReplayable(const SessionReader& session, bool simulated, bool other_version) {
   const std::string& task = session.info().task;
   const auto refuse = [&](const std::string& why) { throw InputError(session.path() + ": can't be replayed: " + why); };
-  if (task != "manipulation" && task != "sphere-pickup" && task != "cylinder-alignment") {
-    refuse(fmt::format("only sphere pickup and cylinder alignment are (task: {}).", task));
+  if (task != "manipulation" && task != "sphere-pickup" && task != "cylinder-alignment" && !isOneFingerTask(task)) {
+    refuse(fmt::format("its task, {}, is none of this program's.", task));
   }
   if (const std::string doubled = session.doubledTrials(); !doubled.empty()) refuse(doubled);
   SessionInfo now;
@@ -138,19 +132,15 @@ std::vector<StoredTrial> wantedTrials(const SessionReader& session, std::optiona
     stored.hands = hands;
   }
   if (wanted.empty()) {
-    throw InputError(
-        fmt::format("{}: holds no finished trial{}. `pincer report` lists them.", session.path(), trial ? fmt::format(" {}", *trial) : ""));
+    throw InputError(fmt::format("{}: holds no finished trial{}. `pincer report` lists them.", session.path(),
+                                 trial ? fmt::format(" {}", *trial + 1) : ""));
   }
   return wanted;
 }
 
-// From tick 0 to where one is missing. Whether none was.
 bool readInputs(const SessionReader& session, StoredTrial& stored) {
-  stored.inputs = session.inputs(stored.row.trial);
-  std::size_t whole = 0;
-  while (whole < stored.inputs.size() && stored.inputs[whole].tick == static_cast<std::int64_t>(whole)) ++whole;
-  const bool all = whole == stored.inputs.size();
-  stored.inputs.resize(whole);
+  bool all = false;
+  stored.inputs = wholeInputs(session, stored.row.trial, all);
   return all;
 }
 
@@ -188,8 +178,8 @@ class Replayer {
     const bool whole = stored.hands && readInputs(session_, stored);
     if (!whole || stored.inputs.empty()) {
       result.notes.push_back(
-          fmt::format("Trial {}: {} inputs of its first ticks are kept, then some were lost; it is compared up to there.", stored.row.trial,
-                      stored.inputs.size()));
+          fmt::format("Trial {}: {} inputs of its first ticks are kept, then some were lost; it is compared up to there.",
+                      stored.row.trial + 1, stored.inputs.size()));
       stored.finished = false;
       if (stored.inputs.empty()) return true;
     }
@@ -216,13 +206,18 @@ class Replayer {
 }  // namespace
 
 ReplayResult replaySession(const SessionReader& session, const ReplayOptions& options, const std::atomic<bool>& interrupted,
-                           const std::function<void(std::int64_t, std::int64_t)>& progress, const ReplayRun& run) {
+                           const std::function<void(std::int64_t, std::int64_t)>& progress, const ReplayRun& run,
+                           const FingerReplayRun& finger_run) {
   const bool simulated = session.info().devices_json.find("\"arms\": \"simulated\"") != std::string::npos;
   requireReplayable(session, simulated, options.other_version);
-  std::vector<StoredTrial> trials = wantedTrials(session, options.trial, simulated);
-  Replayer replayer(session, simulated, interrupted, run);
   ReplayResult result;
   compareBuilds(session.info(), result);
+  if (isOneFingerTask(session.info().task)) {
+    replayStudy({session, simulated, options.trial, interrupted, progress, finger_run}, result);
+    return result;
+  }
+  std::vector<StoredTrial> trials = wantedTrials(session, options.trial, simulated);
+  Replayer replayer(session, simulated, interrupted, run);
   std::int64_t done = 0;
   for (StoredTrial& stored : trials) {
     if (!replayer.replay(stored, result) || result.first) break;

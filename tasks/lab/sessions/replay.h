@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "pincer/tasks/lab/experiments/hands_cycle.h"
+#include "pincer/tasks/lab/finger/finger_trial.h"
 #include "pincer/tasks/run/session_store.h"
 
 namespace pincer::tasks {
@@ -33,6 +34,8 @@ struct ReplayResult {
 
 // Runs a trial's cycle in virtual time, and may look at it; the row is the stored one.
 using ReplayRun = std::function<ServoReport(HandsCycle& cycle, const TrialRecord& row)>;
+// Likewise of a trial with one finger.
+using FingerReplayRun = std::function<ServoReport(FingerTrial& trial)>;
 
 struct ReplayOptions {
   std::optional<std::int64_t> trial{};  // only this one
@@ -42,6 +45,7 @@ struct ReplayOptions {
 // Every trial, or only one. Stops at the first difference. Throws InputError for a session that can't be replayed: of another task, without
 // people's inputs, with doubled trials, by a program of another version or with other sources (build_info.h).
 ReplayResult replaySession(const SessionReader& session, const ReplayOptions& options, const std::atomic<bool>& interrupted,
-                           const std::function<void(std::int64_t done, std::int64_t total)>& progress = {}, const ReplayRun& run = {});
+                           const std::function<void(std::int64_t done, std::int64_t total)>& progress = {}, const ReplayRun& run = {},
+                           const FingerReplayRun& finger_run = {});
 
 }  // namespace pincer::tasks

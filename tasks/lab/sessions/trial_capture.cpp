@@ -28,8 +28,8 @@ void tell(const HandTrial& trial, Cue cue, TrialSnapshot& told) {
       told.instruction = "Done: let go";
       break;
     case Cue::kEnd:
-      told.stage = "over";
-      told.instruction = "The time is over: let go";
+      told.stage = "time-out";
+      told.instruction = "Time-out: the time of this trial is over. Let go";
       break;
     default:
       told.stage = "get ready";
@@ -39,11 +39,13 @@ void tell(const HandTrial& trial, Cue cue, TrialSnapshot& told) {
 
 }  // namespace
 
-TrialCapture::TrialCapture(HandsCycle& cycle, std::size_t trial, std::size_t trials, bool blind) : cycle_(cycle) {
+TrialCapture::TrialCapture(HandsCycle& cycle, std::size_t trial, std::size_t trials, bool blind, bool guided)
+    : cycle_(cycle), guided_(guided && !blind) {
   told_.condition = cycle.trial().scene().model.mounts[0].display_tactile ? "cld+force" : "force";
   told_.trial = static_cast<std::int64_t>(trial) + 1;
   told_.trials = static_cast<std::int64_t>(trials);
   told_.blind = blind;
+  told_.shows_pads = !blind;
   tell(cycle.trial(), Cue::kNone, told_);
 }
 
@@ -57,6 +59,12 @@ void TrialCapture::fill(Snapshot& snapshot) {
   const auto& samples = cycle_.hands().sample();
   for (std::size_t i = 0; i < snapshot.fingers.size(); ++i) captureMount(cycle_, i, samples[i], snapshot.fingers[i]);
   snapshot.trial = told_;
+  const HandGuide guide = trial.guide();
+  snapshot.trial.time_left = guide.time_left;
+  if (!guided_) return;
+  snapshot.trial.hint = guide.hint;
+  snapshot.trial.goal_height = guide.goal_height;
+  snapshot.trial.goal_heading = guide.goal_heading;
 }
 
 }  // namespace pincer::tasks

@@ -10,7 +10,8 @@
 #include "pincer/contact/io/atomic_file.h"
 #include "pincer/tasks/run/csv.h"
 #include "pincer/tasks/run/files/json_writer.h"
-#include "pincer/tasks/run/session/columns.h"
+#include "pincer/tasks/run/session/column_meanings.h"
+#include "pincer/tasks/run/session/table.h"
 
 namespace pincer::tasks {
 namespace {
@@ -62,6 +63,27 @@ std::string tsvField(const Field& field) {
   }
 }
 
+// Participants by the name that their files have; what is counted, from 1.
+template <class Field>
+std::string fieldOf(const ColumnName& name, const Field& field) {
+  if constexpr (std::is_same_v<Field, std::int64_t>) {
+    return name.quantity == "participant" ? subjectOf(field) : tsvField(field + countsFrom(name));
+  } else {
+    return tsvField(field);
+  }
+}
+
+// A column's entry: description, unit and levels, as BIDS has them.
+std::string describedJson(std::string_view table, const ColumnName& name) {
+  const ColumnMeaning meaning = meaningOf(table, name);
+  std::string json = fmt::format("{{\"Description\": {}", quotedJson(meaning.description));
+  if (!meaning.unit.empty()) json += fmt::format(", \"Units\": {}", quotedJson(meaning.unit));
+  std::string levels;
+  for (const auto& [value, means] : meaning.levels)
+    levels += fmt::format("{}{}: {}", levels.empty() ? "" : ", ", quotedJson(value), quotedJson(means));
+  return json + (levels.empty() ? "}" : fmt::format(", \"Levels\": {{{}}}}}", levels));
+}
+
 template <class Record>
 std::string rowsOf(const std::vector<Record>& rows) {
   std::string text;
@@ -70,8 +92,8 @@ std::string rowsOf(const std::vector<Record>& rows) {
   text += '\n';
   for (const Record& row : rows) {
     bool first = true;
-    forEachColumn(row, [&](const ColumnName&, const auto& field) {
-      text += (first ? "" : "\t") + tsvField(field);
+    forEachColumn(row, [&](const ColumnName& name, const auto& field) {
+      text += (first ? "" : "\t") + fieldOf(name, field);
       first = false;
     });
     text += '\n';
@@ -84,8 +106,7 @@ std::string sidecarOf(const std::string& task) {
   std::string json = fmt::format("{{\n  \"TaskName\": \"{}\"", bidsLabel(task));
   const Record names{};
   forEachColumn(names, [&](const ColumnName& name, const auto&) {
-    json += fmt::format(",\n  \"{}\": {{\"Description\": \"{}\"", name.text(), name.quantity);
-    json += name.unit.empty() ? std::string("}") : fmt::format(", \"Units\": \"{}\"}}", name.unit);
+    json += fmt::format(",\n  \"{}\": {}", name.text(), describedJson(tableName<Record>(), name));
   });
   return json + "\n}\n";
 }
@@ -113,6 +134,25 @@ class DataSet {
       write(stem + ".tsv", rowsOf(own));
       write(stem + ".json", sidecarOf<Record>(key.second));
     }
+  }
+
+  // Where BIDS keeps questionnaires.
+  void writeSurvey(const std::vector<SurveyRecord>& survey) {
+    if (survey.empty()) return;
+    makeDirectory(directory_ + "/phenotype");
+    std::string rows = "participant_id\tmoment\titem\ttask\tcondition\tquestion\tanswer\tanswer_value\n";
+    for (const SurveyRecord& r : survey) {
+      rows += subjectOf(r.participant);
+      for (const std::string* text : {&r.moment, &r.item, &r.task, &r.condition, &r.question, &r.answer}) rows += "\t" + tsvText(*text);
+      rows += "\t" + tsvField(r.answer_value) + "\n";
+    }
+    write("phenotype/survey.tsv", rows);
+    std::string json = "{\n  \"MeasurementToolMetadata\": {\"Description\": \"questions of the study's file, asked by pincer\"}";
+    const SurveyRecord names{};
+    forEachColumn(names, [&](const ColumnName& name, const auto&) {
+      if (name.quantity != "participant") json += fmt::format(",\n  \"{}\": {}", name.text(), describedJson("survey", name));
+    });
+    write("phenotype/survey.json", json + "\n}\n");
   }
 
   void writeParticipants() {
@@ -154,6 +194,7 @@ std::vector<std::string> exportBids(const SessionReader& session, const std::str
   set.write("README.md", readmeOf(session));
   set.writeTables(session.trials(), [](const TrialRecord& trial) { return trial.task; });
   set.writeTables(session.responses(), [&](const ResponseRecord&) { return session.info().task; });
+  set.writeSurvey(session.survey());
   set.writeParticipants();
   return set.paths;
 }

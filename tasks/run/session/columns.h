@@ -248,6 +248,18 @@ void forEachColumn(R& r, Visit&& visit) {
   visit(ColumnName{"", "tactor_speed", "", "m_per_s"}, r.tactor_speed);
 }
 
+template <RecordOf<SurveyRecord> R, class Visit>
+void forEachColumn(R& r, Visit&& visit) {
+  visit(ColumnName{"", "participant", "", ""}, r.participant);
+  visit(ColumnName{"", "moment", "", ""}, r.moment);
+  visit(ColumnName{"", "item", "", ""}, r.item);
+  visit(ColumnName{"", "task", "", ""}, r.task);
+  visit(ColumnName{"", "condition", "", ""}, r.condition);
+  visit(ColumnName{"", "question", "", ""}, r.question);
+  visit(ColumnName{"", "answer", "", ""}, r.answer);
+  visit(ColumnName{"", "answer_value", "", "", columns::kLevel}, r.answer_value);
+}
+
 template <RecordOf<SessionInfo> R, class Visit>
 void forEachColumn(R& r, Visit&& visit) {
   visit(ColumnName{"", "task", "", ""}, r.task);

@@ -1,8 +1,10 @@
 #include "pincer/tasks/run/session/csv_export.h"
 
+#include <type_traits>
+
 #include "pincer/contact/io/atomic_file.h"
 #include "pincer/tasks/run/csv.h"
-#include "pincer/tasks/run/session/columns.h"
+#include "pincer/tasks/run/session/column_meanings.h"
 
 namespace pincer::tasks {
 
@@ -16,7 +18,13 @@ void addNames(CsvTable& table) {
 
 template <class Record>
 void addValues(CsvTable& table, const Record& record) {
-  forEachColumn(record, [&](const ColumnName&, const auto& field) { table.add(field); });
+  forEachColumn(record, [&]<class Field>(const ColumnName& name, const Field& field) {
+    if constexpr (std::is_same_v<Field, std::int64_t>) {
+      table.add(field + countsFrom(name));
+    } else {
+      table.add(field);
+    }
+  });
 }
 
 template <class Record>
@@ -86,10 +94,17 @@ std::vector<std::string> exportCsv(const SessionReader& session, const std::stri
   writeAtomically(paths[3], asCsv(session.events()));
   writeAtomically(paths[4], asCsv(session.responses()));
   writeAtomically(paths[5], asCsv(session.readings()));
+  paths.push_back(directory + "/columns.csv");
+  writeAtomically(paths.back(), columnsCsv());
+  if (const auto survey = session.survey(); !survey.empty()) {
+    paths.push_back(directory + "/survey.csv");
+    writeAtomically(paths.back(), asCsv(survey));
+  }
   if (session.hands().empty()) return paths;
-  paths.insert(paths.end(), {directory + "/hands.csv", directory + "/input.csv"});
-  writeAtomically(paths[6], asCsv(session.hands()));
-  writeInputs(session, paths[7]);
+  paths.push_back(directory + "/hands.csv");
+  writeAtomically(paths.back(), asCsv(session.hands()));
+  paths.push_back(directory + "/input.csv");
+  writeInputs(session, paths.back());
   return paths;
 }
 

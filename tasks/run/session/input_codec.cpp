@@ -75,7 +75,7 @@ std::int64_t checkOf(const InputChunk& chunk) {
   throw InputError(
       fmt::format("the inputs of trial {}, ticks {} to {}, are damaged: their bytes aren't those that were recorded. Take a copy of the "
                   "session from before.",
-                  chunk.trial, chunk.first_tick, chunk.first_tick + chunk.ticks - 1));
+                  chunk.trial + 1, chunk.first_tick, chunk.first_tick + chunk.ticks - 1));
 }
 
 }  // namespace

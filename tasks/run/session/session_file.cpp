@@ -42,6 +42,7 @@ void makeTables(Database& d, const SessionInfo& info) {
   makeTable<ReadingRecord>(d);
   makeTable<HandsRecord>(d);
   makeTable<InputChunk>(d);
+  makeTable<SurveyRecord>(d);
   makeIndexes(d);
   Statement insert(d, insertSql<SessionInfo>());
   insertRow(insert, info);
@@ -75,6 +76,7 @@ void upgradeTables(Database& d) {
   if (format >= 3) addColumnsSince<HandsRecord>(d, format);
   makeTable<HandsRecord>(d);
   makeTable<InputChunk>(d);
+  makeTable<SurveyRecord>(d);
   makeIndexes(d);
   d.run(fmt::format("PRAGMA user_version = {}", kFormat));
 }

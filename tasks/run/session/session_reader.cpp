@@ -81,7 +81,7 @@ void requirePossible(const InputRecord& record) {
     const ColumnRange range = name.rangeOf<Field>();
     if (range.holds(static_cast<double>(field))) return;
     throw InputError(fmt::format("the inputs of trial {}, tick {}, are damaged: {} = {} isn't {}. Take a copy of the session from before.",
-                                 record.trial, record.tick, name.text(), field, wordsOf(range, "number")));
+                                 record.trial + 1, record.tick, name.text(), field, wordsOf(range, "number")));
   });
 }
 
@@ -101,7 +101,7 @@ std::string doubledText(const Database& database) {
   for (const char* table : {"trial", "response"}) {
     Statement rows(database, fmt::format("SELECT trial FROM {} GROUP BY trial HAVING count(*) > 1 ORDER BY trial", table));
     for (; rows.step(); ++count) {
-      if (count < 10) numbers += fmt::format("{}{}", count > 0 ? ", " : "", rows.integer(0));
+      if (count < 10) numbers += fmt::format("{}{}", count > 0 ? ", " : "", rows.integer(0) + 1);
     }
   }
   if (count == 0) return "";
@@ -154,6 +154,11 @@ std::vector<EventRecord> SessionReader::events(std::optional<std::int64_t> trial
 }
 std::vector<ReadingRecord> SessionReader::readings(std::optional<std::int64_t> trial) const {
   return readAll<ReadingRecord>(*database_, format_, whereTrial(trial));
+}
+
+std::vector<SurveyRecord> SessionReader::survey() const {
+  constexpr std::int64_t kFirstWithSurvey = 6;
+  return format_ >= kFirstWithSurvey ? readAll<SurveyRecord>(*database_, format_) : std::vector<SurveyRecord>();
 }
 
 std::vector<HandsRecord> SessionReader::hands() const {

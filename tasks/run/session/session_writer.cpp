@@ -47,7 +47,7 @@ SessionInfo infoOfUnfinished(const std::string& path) {
 
 class SessionWriter::Impl {
  public:
-  using FinishedTrial = std::variant<TrialRecord, ResponseRecord>;
+  using FinishedTrial = std::variant<TrialRecord, ResponseRecord, SurveyRecord>;
 
   // Of a session whose file is there; `earlier`: what the file says of it, if another program may have begun it.
   Impl(SessionLock lock, const std::string& path, const SessionOptions& options, const std::optional<SessionInfo>& earlier = {})
@@ -130,10 +130,12 @@ class SessionWriter::Impl {
           hands(d, insertSql<HandsRecord>()),
           input(d, insertSql<InputChunk>()),
           trial(d, insertSql<TrialRecord>()),
-          response(d, insertSql<ResponseRecord>()) {}
+          response(d, insertSql<ResponseRecord>()),
+          survey(d, insertSql<SurveyRecord>()) {}
     void insert(const TrialRecord& record) { insertRow(trial, record); }
     void insert(const ResponseRecord& record) { insertRow(response, record); }
-    Statement sample, event, reading, hands, input, trial, response;
+    void insert(const SurveyRecord& record) { insertRow(survey, record); }
+    Statement sample, event, reading, hands, input, trial, response, survey;
   };
   struct Batch {
     std::vector<EventRecord> events;
@@ -329,6 +331,7 @@ bool SessionWriter::pushInput(const InputRecord& input) noexcept { return impl_-
 void SessionWriter::addHands(const HandsRecord& hands) { impl_->addHands(hands); }
 void SessionWriter::addReading(const ReadingRecord& reading) { impl_->addReading(reading); }
 void SessionWriter::finishTrial(const TrialRecord& trial) { impl_->finish(trial); }
+void SessionWriter::addSurvey(const SurveyRecord& answer) { impl_->finish(answer); }
 void SessionWriter::finishResponse(const ResponseRecord& response) { impl_->finish(response); }
 void SessionWriter::close() { impl_->close(); }
 void SessionWriter::abort(std::string_view why) noexcept { impl_->abort(why); }

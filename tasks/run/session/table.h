@@ -9,6 +9,7 @@
 //   reading    ReadingRecord  deliberate reading of a simulated participant
 //   hands      HandsRecord    trial of a person
 //   input      InputChunk     some ticks of a trial of a person
+//   survey     SurveyRecord   answer of a person to a question beside the trials
 #pragma once
 #include <fmt/format.h>
 
@@ -24,8 +25,9 @@
 namespace pincer::tasks {
 
 constexpr std::int64_t kApplicationId = 0x504e4352;  // "PNCR", in SQLite's header
-constexpr std::int64_t kFormat = 5;                  // raised whenever a column changes or a table is added
-constexpr std::int64_t kOldestFormat = 2;       // that is still read: it lacks the tables hands and input; ColumnName::since has the rest
+constexpr std::int64_t kFormat = 6;                  // raised whenever a column changes or a table is added
+constexpr std::int64_t kOldestFormat =
+    2;  // that is still read: it lacks the tables hands, input and survey; ColumnName::since has the rest
 constexpr std::int64_t kFirstLockedFormat = 5;  // whose writers hold a lock (session_lock.h)
 
 constexpr std::string_view kStateRunning = "running", kStateComplete = "complete", kStateAborted = "aborted: ";
@@ -40,6 +42,7 @@ constexpr std::string_view tableName() {
   if constexpr (std::is_same_v<Record, ReadingRecord>) return "reading";
   if constexpr (std::is_same_v<Record, HandsRecord>) return "hands";
   if constexpr (std::is_same_v<Record, InputChunk>) return "input";
+  if constexpr (std::is_same_v<Record, SurveyRecord>) return "survey";
 }
 
 template <class Field>

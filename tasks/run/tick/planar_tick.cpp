@@ -47,6 +47,21 @@ Vec3 gatedPlanarForce(const PlanarTickModel& model, PlanarTickState& state, cons
   return devices::gateForce(model.gate, in, state.gate);
 }
 
+// As the tick of tasks/run/tick/tick.cpp does it: before the gate the wanted force, the wall's spring being what is stored.
+void keepPlanarPassive(const PlanarTickModel& model, PlanarTickState& state, double depth, double dt, Vec3& f_W) {
+  if (state.passivity.ports.empty()) return;
+  const double stored = 0.5 * model.stiffness * depth * depth;
+  grasp::observePorts(model.passivity, std::span(&state.p_WF, 1), stored, dt, state.passivity);
+  grasp::controlPorts(model.passivity, dt, state.passivity, std::span(&f_W, 1));
+}
+
+// And behind it the force that the motors will hold.
+void watchPlanarPort(const PlanarTickModel& model, PlanarTickState& state, const Vec3& f_D) {
+  if (state.passivity.ports.empty()) return;
+  const Vec3 held_W = model.X_WD.q * f_D;
+  grasp::holdPorts(std::span(&held_W, 1), state.passivity);
+}
+
 }  // namespace
 
 PlanarTickOutput planarTick(const PlanarTickModel& model, const PlanarStimulus& stimulus, PlanarTickState& state,
@@ -59,9 +74,11 @@ PlanarTickOutput planarTick(const PlanarTickModel& model, const PlanarStimulus& 
   out.contact = stimulus.force->queryCircle(p_BC, model.finger_radius, state.force_tracker);
   out.normal_force = model.stiffness * std::max(0.0, -out.contact.phi);
   out.f_W = out.normal_force * Vec3(0, out.contact.n_B.x(), out.contact.n_B.y());
+  keepPlanarPassive(model, state, std::max(0.0, -out.contact.phi), dt, out.f_W);
   out.ok = out.f_W.allFinite();
   out.tactile = tactorPlace(model, stimulus, state, p_BC, out.contact.finger_angle);
   out.f_D = gatedPlanarForce(model, state, sample, out, now, dt);
+  watchPlanarPort(model, state, out.f_D);
   return out;
 }
 

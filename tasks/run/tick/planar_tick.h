@@ -1,6 +1,6 @@
 // planar_tick: the tick of the experiments in the plane: one round fingertip on a curve. A pure function, as tasks/run/tick/tick.h.
 //
-//   arm's sample -> p_BC -> contact with the force curve -> f_W = k max(0, -phi) n -> last gate -> force for the arm
+//   arm's sample -> p_BC -> contact with the force curve -> f_W = k max(0, -phi) n -> passivity, last gate -> force for the arm
 //                        -> contact with the tactile curve -> place s = r (a - pitch), |s| <= largest place -> tactor
 //
 //   B    the plane x = 0 of W along the finger, (y, z), its origin the curve's;  C  the fingertip's centre;  r  its radius [m];  k  stiffness [N/m]
@@ -15,6 +15,7 @@
 #include "pincer/devices/arm/arm.h"
 #include "pincer/devices/cld/tactile_display.h"
 #include "pincer/devices/gate/force_gate.h"
+#include "pincer/grasp/passivity.h"
 
 namespace pincer::tasks {
 
@@ -31,6 +32,7 @@ struct PlanarTickModel {
   double stiffness = 1000;      // k [N/m]
   double velocity_cutoff = 20;  // of the low-pass on the finger's speed [Hz]
   devices::GateLimits gate;
+  grasp::PassivityOptions passivity;  // off unless switched on: simulated arms need none, motors do
 };
 
 struct PlanarTickState {
@@ -40,6 +42,7 @@ struct PlanarTickState {
   double sample_time = 0;
   contact::CurveTracker force_tracker, tactile_tracker;
   devices::GateState gate;
+  grasp::PassivityState passivity;  // with one port; empty: nobody watches
 };
 
 struct PlanarTickOutput {

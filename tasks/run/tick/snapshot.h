@@ -40,13 +40,19 @@ struct FingerSnapshot {
   bool armed = false;
 };
 
-// How a trial stands. Texts are constants of the program.
+// How a trial stands. Texts live as long as the trial.
 struct TrialSnapshot {
   const char* instruction = "";  // what the person should do now
   const char* stage = "";
   const char* condition = "";
   std::int64_t trial = 0, trials = 0;  // from 1; 0: there are no trials
   bool blind = false;                  // the protocol shows nothing of the world
+  bool shows_pads = true;              // blind or not: a screen, or a drawn pad that stands in for touch
+  const char* hint = "";               // what helps somebody who can't feel
+  double time_left = -1;               // of the trial [s]; negative: it doesn't run
+  std::optional<double> goal_height;   // of the object's middle [m]
+  std::optional<double> goal_heading;  // of the object's mark about W's z axis [rad]
+  std::optional<double> target;        // on the pad, along the finger, where the tactor is to be [m]
 };
 
 struct Snapshot {
@@ -60,6 +66,8 @@ struct Snapshot {
   std::vector<ContactSnapshot> contacts;  // the first contact_count count
   int contact_count = 0;
   std::vector<double> drive_forces;  // of every drive of a joint [N, N m]
+  static constexpr int kAllBodies = -2;
+  int hidden_body = -1;  // that isn't there at present, or kAllBodies; -1: all are there
   TrialSnapshot trial;
 
   // Sized for `model`.

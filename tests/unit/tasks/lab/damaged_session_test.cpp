@@ -297,9 +297,9 @@ TEST(DamagedSession, ATrialOutsideThePlanIsNamed) {
   Database(damage.pickups(), Database::Mode::kWrite).run("UPDATE trial SET trial = 999 WHERE trial = 1");
   const std::string error =
       tests::errorOf([&] { replaySession(SessionReader(damage.pickups()), {.trial = 999}, kUndisturbed, {}, doNothing); });
-  EXPECT_TRUE(contains(error, "trial 999 isn't one of its plan, which has trials 0 to 1")) << error;
+  EXPECT_TRUE(contains(error, "trial 1000 isn't one of its plan, which has trials 1 to 2")) << error;
   const std::string resumed = tests::errorOf([&] { resumeManipulationSession({}, damage.pickups(), kStopped, {}); });
-  EXPECT_TRUE(contains(resumed, "trial 999 isn't one of its plan")) << resumed;
+  EXPECT_TRUE(contains(resumed, "trial 1000 isn't one of its plan")) << resumed;
 }
 
 }  // namespace

@@ -159,15 +159,15 @@ int answerAbout(const KnownSolid& solid, std::uint64_t seed, bool display) {
   percept.arm.p_DF = Vec3(0, 0, 0.09);
   constexpr double kTick = 0.01;
   for (int tick = 0; tick < 20'000; ++tick) {
-    const ShapeAction action = explorer.act(percept, kTick * tick, tick == 0 ? Cue::kStart : Cue::kNone);
-    if (action.finger.answered) break;
-    const Vec3 aim = action.finger.pull.p_D, away = aim - solid.nearest(aim);
+    const OneFingerAction action = explorer.act(percept, kTick * tick, tick == 0 ? Cue::kStart : Cue::kNone);
+    if (action.answered) break;
+    const Vec3 aim = action.pull.p_D, away = aim - solid.nearest(aim);
     const double depth = cues.tip_radius - away.norm();
     percept.arm.p_DF = depth > 0 ? Vec3(aim + depth * solid.outward(aim)) : aim;
     percept.f_D = depth > 0 ? Vec3(400 * depth * solid.outward(aim)) : Vec3::Zero();
     if (!display) continue;
     percept.tactile.valid = true;
-    percept.tactile.place_L = placeShown(action.q_WF.conjugate() * -solid.outward(aim), cues);
+    percept.tactile.place_L = placeShown(action.q_WF->conjugate() * -solid.outward(aim), cues);
   }
   return explorer.answer();
 }

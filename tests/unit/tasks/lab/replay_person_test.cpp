@@ -120,7 +120,7 @@ TEST(ReplayOfAPerson, FindsAByteThatChangedInTheFile) {
   Database(directory / "s.db", Database::Mode::kWrite)
       .run("UPDATE input SET data = CAST(substr(data, 1, 40) || x'5a' || substr(data, 42) AS BLOB) WHERE first_tick > 2000");
   const std::string error = tests::errorOf([&] { replaySession(SessionReader(directory / "s.db"), {}, kNobodyStops); });
-  EXPECT_NE(error.find("s.db: the inputs of trial 0, ticks "), std::string::npos) << error;
+  EXPECT_NE(error.find("s.db: the inputs of trial 1, ticks "), std::string::npos) << error;
 }
 
 TEST(ReplayOfAPerson, GoesUpToWhereInputsWereLost) {

@@ -9,6 +9,7 @@
 #include <map>
 
 #include "pincer/tasks/lab/experiments/shape_trial.h"
+#include "pincer/tasks/lab/finger/simulated_finger.h"
 
 namespace pincer::tasks {
 namespace {
@@ -90,10 +91,12 @@ struct PushMemory final : StudySink {
 TEST(Shapes, FacesAcrossTheWayAreFeltAsLightlyAsIsWanted) {
   ShapeTrialSetup setup;
   setup.solid = makeSolid("triangle", false, {});
-  setup.stride = 1;
+  setup.asked.stride = 1;
   ShapeExplorer explorer(1);
   PushMemory memory;
-  ShapeTrial trial(setup, explorer, memory);
+  explorer.begin(shapeCues(setup, 0));
+  SimulatedFinger finger(shapePlace(setup), explorer);
+  ShapeTrial trial(setup, finger, memory);
   const std::atomic<bool> no{false};
   runServo({}, trial, no);
   EXPECT_TRUE(trial.answered());
@@ -106,8 +109,10 @@ TEST(Shapes, WhatTheArmCanDoLimitsTheGateOfAShapeTrial) {
   setup.solid = makeSolid(kSolidNames[0], true, {});
   ShapeExplorer explorer(1);
   NoMemory memory;
-  const ShapeTrial trial(setup, explorer, memory);
-  EXPECT_EQ(trial.gate().peak_torque, devices::SimArm().peakTorque());
+  explorer.begin(shapeCues(setup, 0));
+  SimulatedFinger finger(shapePlace(setup), explorer);
+  const ShapeTrial trial(setup, finger, memory);
+  EXPECT_EQ(trial.gateLimits().peak_torque, devices::SimArm().peakTorque());
 }
 
 }  // namespace

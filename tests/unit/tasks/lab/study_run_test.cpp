@@ -76,7 +76,7 @@ TEST(Study, RefusesToResumeWhatItWouldNotHaveShown) {
   ArcExperiment experiment(smallStudy(backlashStudy()), {}, 50);
   ResponseRecord other;
   other.condition = "C1";
-  EXPECT_TRUE(contains(errorOf([&] { answersOf(experiment, 5, {other}); }), "trial 0 of the session isn't the one"));
+  EXPECT_TRUE(contains(errorOf([&] { answersOf(experiment, 5, {other}); }), "trial 1 of the session isn't the one"));
 }
 
 // A finger that strokes the circle touches it all the way, at about the speed of its hand, and no trial ends in a fault.

@@ -20,7 +20,7 @@ namespace {
 
 using tests::samplesOf;
 
-const std::atomic<bool> kNotInterrupted{false};
+const std::atomic<bool> kNobodyEnds{false};
 
 ManipulationSessionOptions shortStudy(int repetitions = 1) {
   ManipulationSessionOptions options;
@@ -36,7 +36,7 @@ ManipulationSessionOptions shortStudy(int repetitions = 1) {
 
 TEST(PickupSession, KeepsEveryFifthTickByDefault) {
   const tests::TemporaryDirectory directory;
-  const ManipulationSessionResult result = runManipulationSession(shortStudy(), directory / "thin.db", kNotInterrupted, {});
+  const ManipulationSessionResult result = runManipulationSession(shortStudy(), directory / "thin.db", kNobodyEnds, {});
   EXPECT_EQ(result.trials, 1u);
   const SessionReader session(directory / "thin.db");
   const std::vector<SampleRecord> samples = samplesOf(session);
@@ -52,9 +52,9 @@ TEST(PickupSession, KeepsEveryFifthTickByDefault) {
 TEST(PickupSession, IsThinnedWithoutChangingWhatHappens) {
   const tests::TemporaryDirectory directory;
   ManipulationSessionOptions options = shortStudy();
-  runManipulationSession(options, directory / "thin.db", kNotInterrupted, {});
+  runManipulationSession(options, directory / "thin.db", kNobodyEnds, {});
   options.sample_rate = 1000;
-  const ManipulationSessionResult result = runManipulationSession(options, directory / "full.db", kNotInterrupted, {});
+  const ManipulationSessionResult result = runManipulationSession(options, directory / "full.db", kNobodyEnds, {});
   const SessionReader thin(directory / "thin.db"), full(directory / "full.db");
   const std::vector<SampleRecord> few = samplesOf(thin), all = samplesOf(full);
   ASSERT_EQ(static_cast<std::int64_t>(all.size()), result.servo.ticks);
@@ -76,7 +76,7 @@ TEST(PickupSession, RefusesASampleRateThatDoesNotDivideTheTickRate) {
     ManipulationSessionOptions options = shortStudy();
     options.sample_rate = rate;
     try {
-      runManipulationSession(options, directory / "bad.db", kNotInterrupted, {});
+      runManipulationSession(options, directory / "bad.db", kNobodyEnds, {});
       FAIL() << rate;
     } catch (const InputError& e) {
       const std::string said = e.what();
@@ -149,15 +149,15 @@ TEST(WatchedSession, IsTheSameToTheBitOnABusyMachine) {
   const tests::TemporaryDirectory directory;
   ManipulationSessionOptions options = shortStudy();
   options.sample_rate = 1000;
-  runManipulationSession(options, directory / "alone.db", kNotInterrupted, {});
+  runManipulationSession(options, directory / "alone.db", kNobodyEnds, {});
   options.servo.clock = ServoClock::kPaced;
   options.host.serve = [&](HandsCycle& cycle, std::size_t, std::size_t) {
     StallingCycle stalling(cycle);
     PaceControl pace;
     PacedCycle paced(stalling, pace, options.servo.rate);  // as the window has it (tasks/view/view_run.cpp)
-    return runServo(options.servo, paced, kNotInterrupted);
+    return runServo(options.servo, paced, kNobodyEnds);
   };
-  const ManipulationSessionResult result = runManipulationSession(options, directory / "watched.db", kNotInterrupted, {});
+  const ManipulationSessionResult result = runManipulationSession(options, directory / "watched.db", kNobodyEnds, {});
   EXPECT_FALSE(result.servo.watchdog_tripped);
   EXPECT_GT(result.servo.missed, 24);
   const SessionReader alone(directory / "alone.db"), watched(directory / "watched.db");
@@ -180,7 +180,7 @@ TEST(RefusedSession, IsNotComplete) {
   const tests::TemporaryDirectory directory;
   ManipulationSessionOptions options = shortStudy();
   options.host.arm = [](const std::string&) { return false; };
-  EXPECT_TRUE(runManipulationSession(options, directory / "s.db", kNotInterrupted, {}).interrupted);
+  EXPECT_TRUE(runManipulationSession(options, directory / "s.db", kNobodyEnds, {}).interrupted);
   EXPECT_EQ(SessionReader(directory / "s.db").state(), "aborted: interrupted by the user");
 }
 

@@ -178,7 +178,7 @@ TEST(CsvExport, WritesEachTableWithUnitsInTheNames) {
   writer.finishTrial(trial);
   writer.close();
   const auto paths = exportCsv(SessionReader(dir / "a.db"), dir / "new/csv", {.stride = 3});
-  ASSERT_EQ(paths.size(), 6u);
+  ASSERT_EQ(paths.size(), 7u);
 
   const auto session = parse(readFile(dir / "new/csv/session.csv"));
   ASSERT_EQ(session.size(), 2u);
@@ -197,7 +197,7 @@ TEST(CsvExport, WritesEachTableWithUnitsInTheNames) {
   ASSERT_EQ(trials.size(), 2u);
   const auto duration = std::find(trials[0].begin(), trials[0].end(), "duration_s") - trials[0].begin();
   EXPECT_EQ(trials[1].at(static_cast<std::size_t>(duration)), "12.5");
-  EXPECT_EQ(parse(readFile(dir / "new/csv/event.csv"))[1], (std::vector<std::string>{"0", "0.25", "slip", "thumb, \"fast\""}));
+  EXPECT_EQ(parse(readFile(dir / "new/csv/event.csv"))[1], (std::vector<std::string>{"1", "0.25", "slip", "thumb, \"fast\""}));
 }
 
 TEST(AtomicFile, LeavesTheOldFileUntilTheNewOneIsWhole) {

@@ -69,7 +69,7 @@ TEST(InputCodec, FindsAnyChangedByte) {
   for (std::size_t i = 0; i < chunk.data.value.size(); ++i) {
     InputChunk damaged = chunk;
     damaged.data.value[i] = static_cast<char>(damaged.data.value[i] ^ 1 << i % 8);
-    EXPECT_NE(errorOf([&] { unpackInputs(damaged); }).find("trial 7, ticks 1000 to 1002, are damaged"), std::string::npos) << "byte " << i;
+    EXPECT_NE(errorOf([&] { unpackInputs(damaged); }).find("trial 8, ticks 1000 to 1002, are damaged"), std::string::npos) << "byte " << i;
   }
   InputChunk moved = chunk;
   moved.first_tick = 0;

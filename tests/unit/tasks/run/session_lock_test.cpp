@@ -117,7 +117,7 @@ TEST(SessionStore, ReadersSayThatTrialsAreThereTwice) {
   doubleTrials(dir / "a.db");
   const SessionReader reader(dir / "a.db");
   EXPECT_EQ(reader.trials().size(), 3u);
-  EXPECT_TRUE(contains(reader.warning(), "Two programs wrote this session at once: trials 0, 1 are there more than once"))
+  EXPECT_TRUE(contains(reader.warning(), "Two programs wrote this session at once: trials 1, 2 are there more than once"))
       << reader.warning();
   EXPECT_TRUE(contains(reader.warning(), "It holds 3 finished trials")) << reader.warning();
   const std::string error = errorOf([&] { SessionWriter::resume(dir / "a.db"); });
