@@ -52,7 +52,7 @@ struct Recording {
 struct Scene {
   std::string file;  // for messages
   std::string description;
-  std::string remarks;       // what of its robots' files has no effect, as lines for people
+  std::string remarks;           // what of its robots' files has no effect, as lines for people
   engine::WorldOptions options;  // tick, gravity, solver
   double duration = 0;           // [s], a whole number of ticks
   std::vector<engine::BodySpec> bodies;

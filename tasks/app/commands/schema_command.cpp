@@ -44,7 +44,8 @@ std::vector<std::string> kindNames() {
 }
 
 void printSchema(const std::string& name, bool markdown) {
-  if (name == kSessionTables) return markdown ? print("{}\nMade by `pincer schema {} --markdown`.\n", columnsMarkdown(), name) : print("{}", columnsCsv());
+  if (name == kSessionTables)
+    return markdown ? print("{}\nMade by `pincer schema {} --markdown`.\n", columnsMarkdown(), name) : print("{}", columnsCsv());
   for (const FileKind& kind : kFileKinds) {
     if (kind.name != name) continue;
     const std::string schema = kind.schema();
@@ -61,8 +62,11 @@ void addSchemaCommand(CLI::App& app, int& exit_code) {
     bool markdown = false;
   };
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand("schema", "Every key of a scene or study file: a JSON Schema for editors, or tables to read; every column of a session");
-  command->add_option("file", arguments->name, "scene, the study: manipulation, delay-discrimination, ...; session: its tables and their columns")
+  CLI::App* command = app.add_subcommand(
+      "schema", "Every key of a scene or study file: a JSON Schema for editors, or tables to read; every column of a session");
+  command
+      ->add_option("file", arguments->name,
+                   "scene, the study: manipulation, delay-discrimination, ...; session: its tables and their columns")
       ->required()
       ->check(CLI::IsMember(kindNames()));
   command->add_flag("--markdown", arguments->markdown, "Tables, as in docs/reference");

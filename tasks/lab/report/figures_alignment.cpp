@@ -42,7 +42,8 @@ Figure alignmentFigure(const SessionSummary& summary, const std::vector<TrialRec
       if (t.condition != summary.conditions[c] || t.outcome == "fault") continue;
       const bool timeout = t.outcome == "timeout";
       const double aside = 0.5 * std::fmod(0.618 * static_cast<double>(t.trial), 1.0) - 0.25;  // so that dots don't hide each other
-      table.row(t.trial + 1, t.participant + 1, t.condition, static_cast<double>(c) + aside, kInDegrees * t.error, t.duration, timeout ? 1 : 0);
+      table.row(t.trial + 1, t.participant + 1, t.condition, static_cast<double>(c) + aside, kInDegrees * t.error, t.duration,
+                timeout ? 1 : 0);
       time += t.duration;
       ++n;
       if (timeout) continue;

@@ -48,8 +48,8 @@ std::string trialsCsv(const SessionSummary& s, const std::vector<TrialRecord>& t
     for (std::size_t i = 0; i < of_cell.size(); ++i) {
       const TrialRecord& t = of_cell[i];
       const double share = of_cell.size() < 2 ? 0 : static_cast<double>(i) / static_cast<double>(of_cell.size() - 1) - 0.5;
-      table.row(t.trial + 1, t.participant + 1, t.condition, cell.first, t.mu_s, positionOf(s, t.mu_s, cell.first) + kDotsAside + kSpread * share,
-                t.outcome, kMeasures[m].of(t));
+      table.row(t.trial + 1, t.participant + 1, t.condition, cell.first, t.mu_s,
+                positionOf(s, t.mu_s, cell.first) + kDotsAside + kSpread * share, t.outcome, kMeasures[m].of(t));
     }
   }
   return table.take();

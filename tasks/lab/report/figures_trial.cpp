@@ -158,7 +158,9 @@ TrialTrace traceOf(const SessionReader& session, const TrialRecord& trial) {
   return trace;
 }
 
-std::string trialWords(const TrialRecord& t) { return fmt::format("trial {} (participant {}, µₛ {:.2f})", t.trial + 1, t.participant + 1, t.mu_s); }
+std::string trialWords(const TrialRecord& t) {
+  return fmt::format("trial {} (participant {}, µₛ {:.2f})", t.trial + 1, t.participant + 1, t.mu_s);
+}
 
 Figure trialFigure(const TrialTrace& trace) {
   PINCER_ASSERT(!trace.samples.empty());

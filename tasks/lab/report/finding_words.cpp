@@ -46,8 +46,7 @@ std::string comparisonWords(const PairedRow& row) {
 
 std::string verdictWords(const PairedRow& row) {
   if (row.test.n < 2) return "More people are needed for a finding.";
-  if (row.test.p_wilcoxon < kChanceLimit)
-    return fmt::format("So the display {} it.", row.test.difference.mean < 0 ? "lowers" : "raises");
+  if (row.test.p_wilcoxon < kChanceLimit) return fmt::format("So the display {} it.", row.test.difference.mean < 0 ? "lowers" : "raises");
   return "So no effect of the display is shown; that isn't to say that there is none.";
 }
 
@@ -60,8 +59,8 @@ std::string otherWords(const std::vector<PairedRow>& rows, std::size_t primary) 
   std::string differ;
   for (std::size_t k = 0; k < rows.size(); ++k) {
     if (adjusted[k] < kChanceLimit)
-      differ += fmt::format("{}{} ({:+.2f})", differ.empty() ? "" : ", ", findingMeasures()[rows[k].measure].label,
-                            rows[k].test.difference.mean);
+      differ +=
+          fmt::format("{}{} ({:+.2f})", differ.empty() ? "" : ", ", findingMeasures()[rows[k].measure].label, rows[k].test.difference.mean);
   }
   if (looked == 0) return "";
   return differ.empty() ? fmt::format("None of the {} looked at differs beyond chance (Holm).", counted(looked, "other measure"))

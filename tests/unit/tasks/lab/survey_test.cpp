@@ -114,7 +114,8 @@ TEST(SurveyFile, NamesWhatIsWrongAndWhere) {
     ArcStudy study = backlashStudy();
     return errorOf([&] { parseStudy("{\n\"session\": " + session + "\n}", "f.json", study); });
   };
-  EXPECT_TRUE(contains(error(R"({"survey": [{"name": "a", "text": "A"}, {"name": "a", "text": "B"}]})"), "session.survey[1]: the name a is there twice"));
+  EXPECT_TRUE(contains(error(R"({"survey": [{"name": "a", "text": "A"}, {"name": "a", "text": "B"}]})"),
+                       "session.survey[1]: the name a is there twice"));
   EXPECT_TRUE(contains(error(R"({"survey": [{"name": "a", "text": "A"}, {"name": "a", "text": "B"}]})"), "f.json:2: "));
   EXPECT_TRUE(contains(error(R"({"survey": [{"name": "a", "text": "A", "low": 3, "high": 3}]})"), "isn't below"));
   EXPECT_TRUE(
