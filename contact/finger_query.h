@@ -20,14 +20,21 @@ namespace pincer::contact {
 // same one. Allocates nothing; `cache` is memory only.
 SurfaceContacts querySphere(const Shape& shape, const Vec3& p_BC, double r, double margin, SurfaceTracker& tracker, PatchCache& cache);
 
-// What a finger that isn't a sphere remembers from query to query; a plain value, like SurfaceTracker.
-struct FingerTracker {
-  std::array<SurfaceTracker, 3> balls;  // of the deepest place of the core, and of a capsule's two ends
-  Vec3 c_F = Vec3::Zero();              // the deepest place of the core
-  bool warm = false;
+// A place of a finger's core that is followed, and the ball there.
+struct CoreTracker {
+  SurfaceTracker ball;
+  Vec3 c_F = Vec3::Zero();
+  bool warm = false;  // there was a query
 };
 
-constexpr int kMaxFingerContacts = kMaxSurfaceContacts + 2;
+// What a finger that isn't a sphere remembers from query to query; a plain value, like SurfaceTracker.
+struct FingerTracker {
+  static constexpr int kFeet = 4;
+  CoreTracker main;                     // the deepest place of the core
+  std::array<CoreTracker, kFeet> feet;  // of a capsule its two ends, of a pad see shape/pad_query.h
+};
+
+constexpr int kMaxFingerContacts = kMaxSurfaceContacts + FingerTracker::kFeet;
 struct FingerContacts {
   std::array<SurfaceContact, kMaxFingerContacts> points;
   std::array<Vec3, kMaxFingerContacts> p_BT;  // the finger's own point there: p_BT = p_BS + phi n_B [m]
@@ -42,7 +49,8 @@ struct FingerContacts {
 //
 // that is, the finger's support point s(-N) lies on the shading normal over S: the tangent plane is all that the finger meets. P_K nearest
 // point of the core. Found by projected gradient steps with Barzilai and Borwein's step lengths tau, from where the last query ended; each takes
-// one query of a ball; one that doesn't come deeper is taken back and shortened. Where a capsule's ends come near too (it lies flat) they are further contacts.
+// one query of a ball; one that doesn't come deeper is taken back and shortened. Where a capsule's ends come near too (it lies flat) they are further contacts,
+// and so are the corners of what a pad shares with the shape (shape/pad_query.h).
 // Source: J. Barzilai, J. Borwein, IMA J. Numer. Anal. 8 (1988) 141-148; E. Birgin, J. Martinez, M. Raydan, SIAM J. Optim. 10 (2000) 1196-1211.
 FingerContacts queryFinger(const Shape& shape, const FingerShape& finger, const Pose& X_BF, double margin, FingerTracker& tracker,
                            PatchCache& cache);

@@ -88,6 +88,9 @@ struct DrivenPointModel {
   Vec3 damping = Vec3::Constant(5);       // d [N s/m], >= 0
   // Turns about the contact normal against its own spring: k_tau [N m/rad], d_tau [N m s/rad], both >= 0; both 0: it turns as it is told.
   double twist_stiffness = 0, twist_damping = 0;
+  // Turns about every axis through it past what it is told, against a spring without inertia: k_R [N m/rad], d_R [N m s/rad], both >= 0; both 0: as
+  // it is told. Not with a twist: that is in it.
+  double turn_stiffness = 0, turn_damping = 0;
   Eigen::Array<bool, 3, 1> locked = Eigen::Array<bool, 3, 1>::Constant(false);  // this axis follows its target exactly
 };
 

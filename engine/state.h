@@ -20,9 +20,11 @@ struct PointState {
   Vec3 v_W = Vec3::Zero();         // [m/s]
   Vec3 p_target_W = Vec3::Zero();  // where the target was at the end of the last tick
   Vec3 v_target_W = Vec3::Zero();
-  bool touching = false;  // a contact pushed on it in the last tick
-  double twist = 0;       // by which it has turned past its device about the contact normal [rad]
-  double twist_rate = 0;  // [rad/s]
+  bool touching = false;            // a contact pushed on it in the last tick
+  double twist = 0;                 // by which it has turned past its device about the contact normal [rad]
+  double twist_rate = 0;            // [rad/s]
+  Vec3 turn_W = Vec3::Zero();       // by which it has turned past its device, a rotation vector [rad]
+  Vec3 turn_rate_W = Vec3::Zero();  // [rad/s]
 };
 
 // What a contact remembers from tick to tick. Sorted by id.

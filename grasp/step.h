@@ -28,10 +28,18 @@ struct FingerState {
   double normal_force = 0;       // of the last tick [N]
 };
 
+// What fingers remember of the shapes near them, each of as many as it has places for: a thousand fingers among a thousand bodies have room.
+struct FollowedShapes {
+  static constexpr int kMost = 8;  // places of a finger; of more shapes that are near the nearest have them
+  int per_finger = 0;              // 0 where all fingers are spheres and there is no mesh
+  std::vector<int> colliders;      // finger-major: of model.world.colliders; -1: a free place
+  std::vector<double> gaps;        // of the last look [m]
+  std::vector<contact::FingerTracker> trackers;
+};
+
 struct GraspState {
   engine::WorldState world;
-  std::vector<contact::SurfaceTracker> trackers;  // finger-major: fingers x shapes
-  std::vector<contact::FingerTracker> tips;       // likewise, of fingers that aren't spheres; empty if there are none
+  FollowedShapes followed;
   std::vector<FingerState> fingers;
 };
 

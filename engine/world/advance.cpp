@@ -1,6 +1,7 @@
 // From impulses to momenta, from momenta to poses.
 #include <algorithm>
 
+#include "pincer/engine/motion/driven_motion.h"
 #include "pincer/engine/motion/free_motion.h"
 #include "pincer/engine/world/contact_rows.h"
 #include "pincer/engine/world/held_body.h"
@@ -22,8 +23,10 @@ void applyImpulse(WorldScratch& scratch, const Side& side, const Vec3& arm_W, co
     mover.closing = mover.closing || c.closing;
   };
   if (side.kind == SideKind::kPoint) {
-    scratch.points[side.index].twist_impulse += moment_W.dot(c.n_W());
-    return push(scratch.points[side.index]);
+    PointScratch& point = scratch.points[side.index];
+    point.twist_impulse += moment_W.dot(c.n_W());
+    if (point.inverse_turn > 0) point.turn_impulse_W += arm_W.cross(impulse_W) + moment_W;
+    return push(point);
   }
   BodyScratch& body = scratch.bodies[side.index];
   push(body);
@@ -85,6 +88,7 @@ void gatherImpulses(const WorldModel& model, WorldScratch& scratch) {
   for (PointScratch& point : scratch.points) {
     rest(point);
     point.twist_impulse = 0;
+    point.turn_impulse_W.setZero();
   }
   for (Contact& c : scratch.contacts) {
     if (!c.active()) continue;
@@ -144,6 +148,21 @@ void advanceTwist(double h, PointScratch& scratch, PointState& s) {
   s.twist += wayOf(scratch, scratch.twist_share_of_end, h, old, s.twist_rate);
 }
 
+void advanceTurn(double h, PointScratch& scratch, PointState& s) {
+  if (scratch.inverse_turn <= 0) return;
+  const Vec3 gained_W = scratch.inverse_turn * scratch.turn_impulse_W, old_W = s.turn_rate_W;
+  s.turn_rate_W = scratch.turn_rate_W + gained_W;
+  scratch.end.w_W += gained_W;
+  Vec3 way_W;
+  for (int i = 0; i < 3; ++i) way_W[i] = wayOf(scratch, scratch.turn_share_of_end, h, old_W[i], s.turn_rate_W[i]);
+  if (scratch.told_w_W.isZero(0) && s.turn_W.isZero(0)) {
+    s.turn_W = way_W;
+    return;
+  }
+  const Vec3 told_W = h * scratch.told_w_W;
+  s.turn_W = rotationVectorOf(quatFromRotationVector(told_W + way_W) * quatFromRotationVector(s.turn_W) * quatFromRotationVector(-told_W));
+}
+
 // In axes of the coupling that aren't the world's; none of them is locked.
 void advanceTurned(double h, const Vec3& v_old, const PointScratch& scratch, PointState& s) {
   const Vec3 old_A = scratch.R_WA.transpose() * v_old, new_A = scratch.R_WA.transpose() * s.v_W;
@@ -158,6 +177,7 @@ void advancePoint(const std::array<AxisForm, 3>& forms, double h, PointScratch& 
   if (scratch.rest_speed > 0 && isSlow(scratch.rest_speed, s.v_W) && isSlow(scratch.rest_speed, v_old)) s.v_W.setZero();
   scratch.end.v_W = s.v_W;
   advanceTwist(h, scratch, s);
+  advanceTurn(h, scratch, s);
   if (scratch.turned) advanceTurned(h, v_old, scratch, s);
   for (int i = 0; i < 3 && !scratch.turned; ++i) {
     if (forms[i] == AxisForm::kLocked) {

@@ -9,6 +9,16 @@
 namespace pincer::engine {
 namespace {
 
+// Of a point that turns against a spring, about its centre.
+void fillTurn(const Contact& c, int rows, double root, ContactSide& out) {
+  const Vec3& arm_W = c.a.kind == SideKind::kPoint ? c.arm_a_W : c.arm_b_W;
+  for (int k = 0; k < rows; ++k) {
+    const Vec3 turn_W = k < kTorsionRow ? Vec3(arm_W.cross(c.R_WC.col(k))) : Vec3(radiusOf(c, k) * axisOf(c, k));
+    for (int j = 0; j < 3; ++j) out.A[k][3 + j] = root * turn_W[j];
+  }
+  out.is_point = false;
+}
+
 void fillPointSide(const Contact& c, int rows, double sign, const PointScratch& point, ContactSide& out) {
   const Vec3 root = sign * point.root_inverse_mass;
   for (int k = 0; k < kTorsionRow; ++k) {
@@ -18,6 +28,7 @@ void fillPointSide(const Contact& c, int rows, double sign, const PointScratch& 
   }
   for (int k = kTorsionRow; k < rows; ++k) std::fill(out.A[k], out.A[k] + kMoverFreedoms, 0.0);
   if (rows > kTorsionRow) out.A[kTorsionRow][3] = sign * radiusOf(c, kTorsionRow) * std::sqrt(point.inverse_twist);
+  if (point.inverse_turn > 0) fillTurn(c, rows, sign * std::sqrt(point.inverse_turn), out);
 }
 
 // F  of a sphere a multiple of the identity

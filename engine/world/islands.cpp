@@ -28,7 +28,8 @@ int moverOf(const WorldModel& model, const WorldScratch& scratch, const Side& si
   }
   const PointScratch& point = scratch.points[side.index];
   const Vec3& inverse_mass = point.inverse_mass;
-  const bool moves = inverse_mass[0] != 0 || inverse_mass[1] != 0 || inverse_mass[2] != 0 || point.inverse_twist > 0;
+  const bool moves =
+      inverse_mass[0] != 0 || inverse_mass[1] != 0 || inverse_mass[2] != 0 || point.inverse_twist > 0 || point.inverse_turn > 0;
   return moves ? static_cast<int>(model.bodies.size()) + side.index : -1;
 }
 

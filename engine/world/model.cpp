@@ -266,6 +266,11 @@ int WorldBuilder::addPoint(const DrivenPointModel& point) {
   requireRange(point.name + ".mass", point.mass, 0, 1e6, "A proxy's mass is zero or positive, in kilograms.");
   requireRange(point.name + ".twist_stiffness", point.twist_stiffness, 0, 1e6, "In N m/rad; a fingertip has about 0.3.");
   requireRange(point.name + ".twist_damping", point.twist_damping, 0, 1e6, "In N m s/rad; 0.001 suits a fingertip.");
+  requireRange(point.name + ".turn_stiffness", point.turn_stiffness, 0, 1e6, "In N m/rad; a gripper's finger has about 50.");
+  requireRange(point.name + ".turn_damping", point.turn_damping, 0, 1e6,
+               "In N m s/rad; a thousandth of the stiffness damps it within some ticks.");
+  if (point.turn_stiffness + point.turn_damping > 0 && point.twist_stiffness + point.twist_damping > 0)
+    throw InputError(point.name + ": it turns against a spring about every axis (turn_stiffness) and twists against another. Keep one.");
   for (int axis = 0; axis < 3; ++axis) {
     requireRange(fmt::format("{}.stiffness[{}]", point.name, axis), point.stiffness[axis], 0, 1e9, "In N/m; 1000 suits a fingertip.");
     requireRange(fmt::format("{}.damping[{}]", point.name, axis), point.damping[axis], 0, 1e6, "In N s/m; 5 suits a fingertip.");

@@ -110,6 +110,19 @@ void predictTwist(const DrivenPointModel& point, const PointState& s, const Poin
   out.free.w_W += out.twist_rate * out.R_WA.col(2);
 }
 
+// The same about every axis.
+void predictTurn(const DrivenPointModel& point, const PointState& s, double h, PointScratch& out) {
+  out.inverse_turn = 0;
+  if (!(point.turn_stiffness + point.turn_damping > 0)) return;
+  out.told_w_W = out.start.w_W;
+  const AxisInput axis{0, point.turn_stiffness, point.turn_damping, 0, 0, 0, 0, 0, 0, h};
+  const double theta = out.turn_share_of_end = shareOfEnd(axis, s.touching, true);
+  out.inverse_turn = 1 / implicitMass(axis, theta);
+  out.turn_rate_W = -h * point.turn_stiffness * out.inverse_turn * (s.turn_W + (1 - theta) * h * s.turn_rate_W);
+  out.start.w_W += s.turn_rate_W;
+  out.free.w_W += out.turn_rate_W;
+}
+
 // A driven point's error, velocities, the target's motion over the tick and the force, all in one frame.
 struct PointMotion {
   Vec3 e, v, v_target, v_target_end, target_step, f;
@@ -168,6 +181,7 @@ void predictAxes(const DrivenPointModel& point, const std::array<AxisForm, 3>& f
   for (int i = 0; i < 3; ++i)
     out.p_mid_W[i] = forms[i] == AxisForm::kLocked ? 0.5 * (s.p_W[i] + out.p_target_W[i]) : s.p_W[i] + 0.5 * h * s.v_W[i];
   predictTwist(point, s, in, h, out);
+  predictTurn(point, s, h, out);
 }
 
 void predictBodies(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
@@ -220,7 +234,7 @@ void predictImpact(const WorldModel& model, const WorldState& state, WorldScratc
     out.p_mid_W = state.points[i].p_W;
     out.start.v_W = out.free.v_W = out.end.v_W = state.points[i].v_W;
     out.turned = false;
-    out.inverse_twist = 0;
+    out.inverse_twist = out.inverse_turn = 0;
     for (int axis = 0; axis < 3; ++axis) out.inverse_mass[axis] = model.points[i].locked[axis] || mass <= 0 ? 0 : 1 / mass;
     out.root_inverse_mass = out.inverse_mass.cwiseSqrt();
     out.mobility_h = 0;

@@ -27,7 +27,7 @@ namespace {
 
 bool same(const PointState& a, const PointState& b) {
   return a.p_W == b.p_W && a.v_W == b.v_W && a.p_target_W == b.p_target_W && a.v_target_W == b.v_target_W && a.touching == b.touching &&
-         a.twist == b.twist && a.twist_rate == b.twist_rate;
+         a.twist == b.twist && a.twist_rate == b.twist_rate && a.turn_W == b.turn_W && a.turn_rate_W == b.turn_rate_W;
 }
 bool same(const PointInput& a, const PointInput& b) {
   return a.p_target_W == b.p_target_W && a.v_target_W == b.v_target_W && a.f_W == b.f_W && a.w_W == b.w_W && a.turned == b.turned &&

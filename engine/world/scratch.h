@@ -50,6 +50,11 @@ struct PointScratch : MoverScratch {
   double inverse_twist = 0;                                   // effective inverse inertia about A's third axis [1/(kg m^2)]
   double twist_share_of_end = 1;                              // likewise
   double twist_rate = 0;                                      // about it, past what the device turns, if nothing touched [rad/s]
+  double inverse_turn = 0;                                    // effective inverse inertia of its turning spring [1/(kg m^2)]
+  double turn_share_of_end = 1;                               // likewise
+  Vec3 told_w_W = Vec3::Zero();                               // that of its device [rad/s]
+  Vec3 turn_rate_W = Vec3::Zero();                            // past that, if nothing touched [rad/s]
+  Vec3 turn_impulse_W = Vec3::Zero();                         // of all contacts about it [N m s]
   double turning_stiffness = 0;                               // f kappa of its contacts in hollows, see hollow_inertia.h [N/m]
   double twist_impulse = 0;                                   // of all contacts about their normals [N m s]
   Vec3 p_target_W = Vec3::Zero(), v_target_W = Vec3::Zero();  // at the end of the tick

@@ -144,9 +144,13 @@ std::uint64_t hashOf(const WorldState& state) {
   for (const PointState& p : state.points) {
     for (const Vec3& v : {p.p_W, p.v_W, p.p_target_W, p.v_target_W}) hash.add(v);
     hash.add(static_cast<std::uint64_t>(p.touching));
-    if (p.twist == 0 && p.twist_rate == 0) continue;  // of fingers that don't twist
-    hash.add(p.twist);
-    hash.add(p.twist_rate);
+    if (p.twist != 0 || p.twist_rate != 0) {  // of fingers that twist
+      hash.add(p.twist);
+      hash.add(p.twist_rate);
+    }
+    if (p.turn_W.isZero(0) && p.turn_rate_W.isZero(0)) continue;  // of fingers that don't turn past their devices
+    hash.add(p.turn_W);
+    hash.add(p.turn_rate_W);
   }
   for (int i = 0; i < state.contact_count; ++i) add(hash, state.contacts[i]);
   return hash.value();

@@ -38,7 +38,7 @@ bool isFinite(const WorldState& state) {
   double sum = 0;  // a NaN or infinity anywhere survives the sum
   for (const BodyState& b : state.bodies) sum += b.X_WI.p.sum() + b.X_WI.q.coeffs().sum() + b.v_W.sum() + b.L_W.sum();
   for (const Vec3& w_W : state.driven_w_W) sum += w_W.sum();
-  for (const PointState& p : state.points) sum += p.p_W.sum() + p.v_W.sum() + p.twist + p.twist_rate;
+  for (const PointState& p : state.points) sum += p.p_W.sum() + p.v_W.sum() + p.twist + p.twist_rate + p.turn_W.sum() + p.turn_rate_W.sum();
   return std::isfinite(sum);
 }
 

@@ -7,6 +7,7 @@
 #include "pincer/grasp/baseline/nearest_outside.h"
 #include "pincer/grasp/tick/finger_contacts.h"
 #include "pincer/grasp/tick/finger_tick.h"
+#include "pincer/grasp/tick/followed_shapes.h"
 
 namespace pincer::grasp {
 namespace {
@@ -68,19 +69,24 @@ class BaselineFinger {
   // Everything within `margin` of the finger at `p_W`.
   NearSurfaces look(const Vec3& p_W, double margin, bool afresh) {
     NearSurfaces near;
-    for (int i = 0; i < static_cast<int>(model_.world.colliders.size()); ++i) lookAt(i, p_W, margin, afresh, near);
+    FingerFollower follower(state_.followed, index_, scratch_.spare_tracker);
+    for (int i = 0; i < static_cast<int>(model_.world.colliders.size()); ++i) lookAt(i, p_W, margin, afresh ? nullptr : &follower, near);
     return near;
   }
 
-  void lookAt(int collider, const Vec3& p_W, double margin, bool afresh, NearSurfaces& near) {
+  // Without `follower` as if for the first time.
+  void lookAt(int collider, const Vec3& p_W, double margin, FingerFollower* follower, NearSurfaces& near) {
     const engine::ColliderModel& c = model_.world.colliders[static_cast<std::size_t>(collider)];
-    if (afresh) state_.trackers[trackerOf(model_, index_, collider)] = {};
     if (engine::isOnlySeen(c.bits)) return;
     const Pose X_WS = engine::poseOf(c, engine::bodyPose(model_.world, state_.world, c.body));
     const Vec3 p_SC = X_WS.q.conjugate() * (p_W - X_WS.p);
-    if (contact::lowerBoundOfGap(feltShape(model_, collider), p_SC, finger_.radius) > margin) return;
-    const contact::FingerContacts found =
-        fingerOnShape(model_, state_, scratch_.world.patches, index_, collider, X_WS, {input_.q_WF, p_W}, margin);
+    const contact::Shape& shape = feltShape(model_, collider);
+    if (contact::lowerBoundOfGap(shape, p_SC, finger_.radius) > margin) return;
+    const bool is_followed = follower && (finger_.shape || std::holds_alternative<contact::Mesh>(shape));
+    contact::FingerTracker& tracker = is_followed ? follower->of(collider) : scratch_.spare_tracker;
+    if (!is_followed) tracker = {};
+    const contact::FingerContacts found = fingerOnShape(finger_, shape, X_WS, {input_.q_WF, p_W}, margin, tracker, scratch_.world.patches);
+    if (is_followed) follower->noteGap(found.main().phi);
     for (int i = 0; i < found.count; ++i) {
       const contact::SurfaceContact& s = found.points[static_cast<std::size_t>(i)];
       if (s.phi > margin) continue;

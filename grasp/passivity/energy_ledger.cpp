@@ -24,7 +24,8 @@ double storedByFinger(const GraspModel& model, const GraspState& state, int fing
   const engine::PointState& point = state.world.points[static_cast<std::size_t>(finger)];
   const engine::DrivenPointModel& coupling = model.fingers[static_cast<std::size_t>(finger)].coupling;
   const Vec3 e = point.p_W - point.p_target_W;
-  return 0.5 * e.dot(coupling.stiffness.cwiseProduct(e)) + 0.5 * coupling.mass * point.v_W.squaredNorm();
+  return 0.5 * e.dot(coupling.stiffness.cwiseProduct(e)) + 0.5 * coupling.mass * point.v_W.squaredNorm() +
+         0.5 * coupling.turn_stiffness * point.turn_W.squaredNorm();
 }
 
 double storedEnergy(const GraspModel& model, const GraspState& state) {

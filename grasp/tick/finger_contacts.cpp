@@ -6,6 +6,7 @@
 #include "pincer/contact/functions/invariants.h"
 #include "pincer/engine/world/colliders.h"
 #include "pincer/engine/world/thin_contacts.h"
+#include "pincer/grasp/tick/followed_shapes.h"
 
 namespace pincer::grasp {
 namespace {
@@ -19,6 +20,7 @@ class FingerLook {
  public:
   FingerLook(const GraspModel& model, GraspState& state, GraspScratch& scratch, int finger)
       : model_(model),
+        follower_(state.followed, finger, scratch.spare_tracker),
         state_(state),
         scratch_(scratch),
         finger_(finger),
@@ -63,24 +65,29 @@ class FingerLook {
     const Vec3 p_SC = place.R_WS.transpose() * (p_WC - place.p_WS);
     const int number = static_cast<int>(&place.collider - model_.world.colliders.data());
     const contact::Shape& shape = feltShape(model_, number);
-    const std::size_t pair = trackerOf(model_, finger_, number);
     if (!isWithinReach(centre_W, bounding_radius)) {
       const double bound = bounding_radius < kEndless ? (p_WC - centre_W).norm() - bounding_radius - f_.radius
                                                       : contact::lowerBoundOfGap(shape, p_SC, f_.radius);
       if (bound > f_.reach && isBeyondMargin(bound, place.mid)) {
         report_.gap = std::min(report_.gap, bound);
-        if (std::holds_alternative<contact::Mesh>(shape)) state_.trackers[pair] = {};  // closed forms don't use it
-        if (f_.shape) state_.tips[pair] = {};
         return;
       }
     }
     const double margin = marginTo(place.mid);
-    if (f_.shape) {
-      const Pose X_WF{scratch_.q_mid_WF[finger_], p_WC};
-      const Pose X_WS = engine::poseOf(place.collider, place.mid.X_WB_mid);
-      return take(fingerOnShape(model_, state_, scratch_.world.patches, finger_, number, X_WS, X_WF, margin), place, margin);
-    }
-    take(contact::querySphere(shape, p_SC, f_.radius, margin, state_.trackers[pair], scratch_.world.patches), place, margin);
+    contact::PatchCache& patches = scratch_.world.patches;
+    const bool is_followed = f_.shape || std::holds_alternative<contact::Mesh>(shape);
+    if (!is_followed)  // a sphere on a closed form
+      return take(contact::querySphere(shape, p_SC, f_.radius, margin, scratch_.spare_tracker.main.ball, patches), place, margin);
+    contact::FingerTracker& tracker = follower_.of(number);
+    if (!f_.shape) return follow(contact::querySphere(shape, p_SC, f_.radius, margin, tracker.main.ball, patches), place, margin);
+    const Pose X_WF{scratch_.q_mid_WF[finger_], p_WC}, X_WS = engine::poseOf(place.collider, place.mid.X_WB_mid);
+    follow(contact::queryFinger(shape, *f_.shape, X_WS.inverse() * X_WF, margin, tracker, patches), place, margin);
+  }
+
+  template <class Found>
+  void follow(const Found& found, const Place& place, double margin) {
+    follower_.noteGap(found.main().phi);
+    take(found, place, margin);
   }
 
   // Without a root: of what fingers hold, as a rule, the bounding sphere is.
@@ -137,7 +144,8 @@ class FingerLook {
   }
 
   const GraspModel& model_;
-  GraspState& state_;
+  FingerFollower follower_;
+  const GraspState& state_;
   GraspScratch& scratch_;
   const int finger_;
   const FingerModel& f_;
@@ -148,20 +156,11 @@ class FingerLook {
 
 }  // namespace
 
-std::size_t trackerOf(const GraspModel& model, int finger, int collider) {
-  return static_cast<std::size_t>(finger) * model.world.colliders.size() + static_cast<std::size_t>(collider);
-}
-
-contact::FingerContacts fingerOnShape(const GraspModel& model, GraspState& state, contact::PatchCache& patches, int finger, int collider,
-                                      const Pose& X_WS, const Pose& X_WF, double margin) {
-  PINCER_ASSERT(isIndex(finger, model.fingers.size()) && isIndex(collider, model.world.colliders.size()));
-  const FingerModel& f = model.fingers[finger];
-  const contact::Shape& shape = feltShape(model, collider);
-  const std::size_t pair = trackerOf(model, finger, collider);
+contact::FingerContacts fingerOnShape(const FingerModel& finger, const contact::Shape& shape, const Pose& X_WS, const Pose& X_WF,
+                                      double margin, contact::FingerTracker& tracker, contact::PatchCache& patches) {
   const Pose X_BF = X_WS.inverse() * X_WF;
-  PINCER_ASSERT(!f.shape || state.tips.size() == state.trackers.size());
-  if (f.shape) return contact::queryFinger(shape, *f.shape, X_BF, margin, state.tips[pair], patches);
-  const contact::SurfaceContacts found = contact::querySphere(shape, X_BF.p, f.radius, margin, state.trackers[pair], patches);
+  if (finger.shape) return contact::queryFinger(shape, *finger.shape, X_BF, margin, tracker, patches);
+  const contact::SurfaceContacts found = contact::querySphere(shape, X_BF.p, finger.radius, margin, tracker.main.ball, patches);
   contact::FingerContacts all;
   all.count = found.count;
   for (int i = 0; i < found.count; ++i) {

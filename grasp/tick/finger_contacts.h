@@ -8,11 +8,8 @@ namespace pincer::grasp {
 // nearest body and the direction of it. Geometry at the predicted middle of the tick. Advances the finger's trackers in `state`.
 void findFingerContacts(const GraspModel& model, int finger, GraspState& state, GraspScratch& scratch);
 
-// The place of a finger and a shape (of model.world.colliders) in state.trackers, and in state.tips where there are some.
-std::size_t trackerOf(const GraspModel& model, int finger, int collider);
-
-// Contacts of one finger at X_WF with one shape at X_WS, in the shape's frame; p_BT its own points there.
-contact::FingerContacts fingerOnShape(const GraspModel& model, GraspState& state, contact::PatchCache& patches, int finger, int collider,
-                                      const Pose& X_WS, const Pose& X_WF, double margin);
+// Contacts of a finger at X_WF with a shape at X_WS, in the shape's frame; p_BT its own points there.
+contact::FingerContacts fingerOnShape(const FingerModel& finger, const contact::Shape& shape, const Pose& X_WS, const Pose& X_WF,
+                                      double margin, contact::FingerTracker& tracker, contact::PatchCache& patches);
 
 }  // namespace pincer::grasp

@@ -17,6 +17,7 @@ struct GraspScratch {
   std::vector<Vec3> nearest_d_W;           // per finger, from its centre to its own point nearest to the nearest body [m]
   std::vector<FingerReport> fingers;       // of the last tick that was computed
   std::vector<Quat> orientations;          // of the fingers at its end
+  contact::FingerTracker spare_tracker;    // of shapes for which a finger has no place (FollowedShapes)
   std::vector<std::vector<Taxel>> taxels;  // per finger, of the last tick that was computed; empty where no map is asked for
 };
 

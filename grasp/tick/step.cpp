@@ -7,6 +7,7 @@
 #include "pincer/engine/motion/driven_motion.h"
 #include "pincer/grasp/tick/finger_contacts.h"
 #include "pincer/grasp/tick/finger_tick.h"
+#include "pincer/grasp/tick/followed_shapes.h"
 
 namespace pincer::grasp {
 namespace {
@@ -30,8 +31,13 @@ void setInputs(const GraspModel& model, const GraspState& state, std::span<const
     point.v_target_W = inputs[i].v_WF;
     point.f_W = inputs[i].f_W;
     point.w_W.setZero();
-    setRotation(inputs[i], state.fingers[i], model.world.options.h, point, scratch.q_mid_WF[i]);
     const engine::DrivenPointModel& coupling = model.fingers[i].coupling;
+    const double h = model.world.options.h;
+    setRotation(inputs[i], state.fingers[i], h, point, scratch.q_mid_WF[i]);
+    if (coupling.turn_stiffness + coupling.turn_damping > 0) {
+      const engine::PointState& s = state.world.points[i];
+      scratch.q_mid_WF[i] = (quatFromRotationVector(s.turn_W + 0.5 * h * s.turn_rate_W) * scratch.q_mid_WF[i]).normalized();
+    }
     point.turned = model.fingers[i].along_normal;
     const bool has_axis = point.turned || coupling.twist_stiffness + coupling.twist_damping > 0;
     point.n_W = has_axis ? state.fingers[i].n_W : Vec3(Vec3::UnitZ());
@@ -202,10 +208,7 @@ engine::WorldScratch& worldOf(GraspScratch& scratch) { return scratch.world; }
 const engine::WorldScratch& worldOf(const GraspScratch& scratch) { return scratch.world; }
 
 GraspState makeState(const GraspModel& model, const std::vector<engine::BodyStart>& starts, const std::vector<Vec3>& fingers) {
-  GraspState state{engine::makeState(model.world, starts, fingers), {}, {}, {}};
-  state.trackers.resize(model.fingers.size() * model.world.colliders.size());
-  const auto has_shape = [](const FingerModel& f) { return f.shape.has_value(); };
-  if (std::any_of(model.fingers.begin(), model.fingers.end(), has_shape)) state.tips.resize(state.trackers.size());
+  GraspState state{engine::makeState(model.world, starts, fingers), placesFor(model), {}};
   state.fingers.resize(model.fingers.size());
   return state;
 }
@@ -213,9 +216,9 @@ GraspState makeState(const GraspModel& model, const std::vector<engine::BodyStar
 GraspReport step(const GraspModel& model, GraspState& state, GraspScratch& scratch, std::span<const FingerInput> inputs,
                  std::span<const engine::MotionInput> motions, const engine::AppliedForces& applied) {
   PINCER_DEMAND(inputs.size() == model.fingers.size(), "step: one input per finger");
-  PINCER_DEMAND(
-      state.fingers.size() == model.fingers.size() && state.trackers.size() == model.fingers.size() * model.world.colliders.size(),
-      "step: the state is one of this model (makeState)");
+  PINCER_DEMAND(state.fingers.size() == model.fingers.size() &&
+                    state.followed.trackers.size() == model.fingers.size() * static_cast<std::size_t>(state.followed.per_finger),
+                "step: the state is one of this model (makeState)");
   PINCER_DEMAND(scratch.fingers.size() == model.fingers.size(), "step: the scratch is one of this model");
   setInputs(model, state, inputs, scratch);
   FingerContacts contacts(model, state, scratch, inputs);

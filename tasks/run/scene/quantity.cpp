@@ -66,6 +66,7 @@ constexpr std::array kFinger = {
     QuantityKind{"touching", "-", [](M m, I i) { return felt(m, i).touching ? 1.0 : 0.0; }},
     QuantityKind{"sliding", "-", [](M m, I i) { return felt(m, i).sliding ? 1.0 : 0.0; }},
     QuantityKind{"gap", "m", [](M m, I i) { return felt(m, i).gap; }},
+    QuantityKind{"turn", "rad", [](M m, I i) { return proxy(m, i).turn_W.norm(); }},
     QuantityKind{"pressure", "N",
                  [](M m, I i) {
                    double sum = 0;

@@ -49,6 +49,18 @@ void requireOneKindOfAxes(const JsonValue& json) {
   if (const JsonValue* v = json.find("locked")) v->reject("locks axes of the world, but the coupling is along the contact's. Remove one.");
 }
 
+// Damped within some ticks unless it is said how.
+void readTurn(const JsonValue& json, engine::DrivenPointModel& coupling) {
+  constexpr double kUsualDamping = 1e-3;  // over the stiffness [s]
+  const JsonValue *stiffness = json.find("turn_stiffness"), *damping = json.find("turn_damping");
+  if (stiffness) coupling.turn_stiffness = stiffness->number(ranges::kTurn);
+  coupling.turn_damping = damping ? damping->number(ranges::kTurn) : kUsualDamping * coupling.turn_stiffness;
+  if (!(coupling.turn_stiffness + coupling.turn_damping > 0)) return;
+  for (const char* key : {"twist_stiffness", "twist_damping"}) {
+    if (const JsonValue* v = json.find(key)) v->reject("is about the contact normal, but a turn_stiffness is about every axis. Keep one.");
+  }
+}
+
 void readCoupling(const JsonValue& json, grasp::FingerModel& finger) {
   engine::DrivenPointModel& coupling = finger.coupling;
   requireOneKindOfAxes(json);
@@ -60,6 +72,7 @@ void readCoupling(const JsonValue& json, grasp::FingerModel& finger) {
   }
   if (const JsonValue* v = json.find("twist_stiffness")) coupling.twist_stiffness = v->number(ranges::kTwist);
   if (const JsonValue* v = json.find("twist_damping")) coupling.twist_damping = v->number(ranges::kTwist);
+  readTurn(json, coupling);
   coupling.name = finger.name;
   requireHeldAxes(json, coupling);
 }

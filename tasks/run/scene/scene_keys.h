@@ -25,10 +25,27 @@ inline constexpr std::array<Word, 6> kJoint = {"type", "body", "to", "point", "a
 inline constexpr std::array<Word, 4> kJointTypes = {"pivot", "slider", "ball", "weld"};
 inline constexpr std::array<Word, 3> kPair = {"bodies", "touch", "material"};
 inline constexpr std::array<Word, 6> kMaterial = {"mu_s", "mu_d", "restitution", "torsion_radius", "rolling_radius", "stribeck_speed"};
-inline constexpr std::array<Word, 19> kFinger = {
-    "name",     "radius",   "shape",      "method", "mass",         "stiffness", "damping",          "locked",          "force",
-    "position", "rotation", "trajectory", "arm",    "patch_radius", "modulus",   "effective_radius", "twist_stiffness", "twist_damping",
-    "taxels"};
+inline constexpr std::array<Word, 21> kFinger = {"name",
+                                                 "radius",
+                                                 "shape",
+                                                 "method",
+                                                 "mass",
+                                                 "stiffness",
+                                                 "damping",
+                                                 "locked",
+                                                 "force",
+                                                 "position",
+                                                 "rotation",
+                                                 "trajectory",
+                                                 "arm",
+                                                 "patch_radius",
+                                                 "modulus",
+                                                 "effective_radius",
+                                                 "twist_stiffness",
+                                                 "twist_damping",
+                                                 "turn_stiffness",
+                                                 "turn_damping",
+                                                 "taxels"};
 inline constexpr std::array<Word, 3> kTaxels = {"rows", "columns", "pitch"};
 inline constexpr std::array<Word, 2> kPerDirection = {"normal", "tangential"};
 inline constexpr std::array<Word, 2> kArm = {"mass", "damping"};

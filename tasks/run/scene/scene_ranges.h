@@ -76,6 +76,8 @@ inline constexpr NumberRule kStiffness = {.min = 1e-3, .max = 1e6, .remedy = "In
 inline constexpr NumberRule kDamping = {.min = 0, .max = 1e5, .remedy = "In N s/m; typical: 2 to 5."};
 inline constexpr NumberRule kTwist = {
     .min = 1e-9, .max = 1e3, .remedy = "In N m/rad or N m s/rad; a fingertip has about 0.3 and 0.001.", .or_zero = true};
+inline constexpr NumberRule kTurn = {
+    .min = 1e-6, .max = 1e6, .remedy = "In N m/rad or N m s/rad; a gripper's finger has about 50 and 0.05.", .or_zero = true};
 inline constexpr NumberRule kTaxelPitch = {.min = 1e-5, .max = 0.1, .remedy = "In metres; 0.002 is usual."};
 inline constexpr NumberRule kPatch = {.min = kShortestLength, .max = 0.1, .remedy = "In metres; a fingertip's patch has 0.004 to 0.006."};
 inline constexpr NumberRule kModulus = {.min = 100, .max = 1e12, .remedy = "In pascals; a fingertip has about 1e5."};

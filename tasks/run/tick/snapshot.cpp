@@ -32,6 +32,7 @@ void captureGrasp(const grasp::GraspModel& model, const grasp::GraspState& state
     FingerSnapshot& seen = snapshot.fingers[i];
     seen.p_WP = state.world.points[i].p_W;
     seen.p_WF = state.world.points[i].p_target_W;
+    if (model.fingers[i].shape) seen.q_WF = quatFromRotationVector(state.world.points[i].turn_W) * state.fingers[i].q_WF;
     seen.f_user_W = finger.f_user_W;
     seen.normal_force = finger.normal_force;
     seen.touching = finger.touching;

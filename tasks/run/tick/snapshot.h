@@ -25,7 +25,7 @@ struct ContactSnapshot {
 struct FingerSnapshot {
   Vec3 p_WF = Vec3::Zero();      // where the device is [m]
   Vec3 p_WP = Vec3::Zero();      // where the proxy is [m]
-  std::optional<Quat> q_WF;      // absent: the device doesn't say
+  std::optional<Quat> q_WF;      // absent: the device doesn't say, and the tip is a sphere
   Vec3 f_user_W = Vec3::Zero();  // that the finger is to feel [N]
   double normal_force = 0;       // [N]
   bool touching = false, sliding = false;

@@ -130,7 +130,7 @@ std::vector<Record> padsCost(MeasureContext&) {
   const contact::PadTip pad{contact::Polytope::hullOf(corners, "pad"), kRounding};
   const double spheres = medianTick(heldBall(2, box)), pads = medianTick(heldBall(2, box, grasp::FingerMethod::kProxy, pad));
   return {unbounded("two spheres on a box, median", spheres, "us"), unbounded("two flat pads on it, median", pads, "us"),
-          unbounded("pads over spheres", pads / spheres, "-")};
+          atMost("pads over spheres", pads / spheres, "-", 2.5)};
 }
 
 // `n` balls 200 mm apart in rows of 32, each between two spheres; all sway, so that none sleeps.

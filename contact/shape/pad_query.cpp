@@ -1,0 +1,185 @@
+#include "pincer/contact/shape/pad_query.h"
+
+#include <algorithm>
+
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/contact/shape/convex_features.h"
+#include "pincer/contact/shape/core_descent.h"
+#include "pincer/contact/shape/pad_contacts.h"
+#include "pincer/contact/smooth_mesh.h"
+#include "pincer/contact/surface/mesh_features.h"
+
+namespace pincer::contact {
+namespace {
+
+constexpr double kApartOnPad = 1e-3;  // of the pad's size: two places nearer than that are one
+
+class PadQuery {
+ public:
+  PadQuery(const Shape& shape, const FingerShape& finger, const Pose& X_BF, double margin, FingerTracker& tracker, PatchCache& cache)
+      : shape_(shape),
+        pad_(std::get<PadTip>(finger)),
+        finger_(finger),
+        X_BF_(X_BF),
+        margin_(margin),
+        size_(boundingRadiusOf(finger)),
+        tracker_(tracker),
+        cache_(cache) {}
+
+  FingerContacts run() { return std::holds_alternative<Mesh>(shape_) ? onMesh() : onSolid(); }
+
+ private:
+  FingerContacts nearest() {
+    const CoreDescent deepest = descend(shape_, finger_, X_BF_, margin_, tracker_.main, cache_);
+    FingerContacts out;
+    out.queries = deepest.queries;
+    for (int i = 0; i < deepest.found.count; ++i) add(deepest.found.points[static_cast<std::size_t>(i)], out);
+    return out;
+  }
+
+  static void add(const SurfaceContact& point, FingerContacts& out) {
+    PINCER_ASSERT(out.count < kMaxFingerContacts);
+    const auto i = static_cast<std::size_t>(out.count++);
+    out.points[i] = point;
+    out.p_BT[i] = point.p_BS + point.phi * point.n_B;
+  }
+
+  // The normal of a solid's last patch stays where meshes keep the followed contact.
+  Vec3& lastNormal() { return tracker_.main.ball.slots[0].n_B; }
+
+  FingerContacts onSolid() {
+    PairPoints patch;
+    padOnShape(pad_, X_BF_, shape_, margin_, tracker_.main.warm ? lastNormal() : Vec3(Vec3::Zero()), cache_, patch);
+    if (patch.count == 0) return nearest();
+    const FingerContacts found = contactsOf(patch);
+    const SurfaceContact& main = found.main();
+    lastNormal() = main.n_B;
+    tracker_.main.c_F = X_BF_.inverse() * (main.p_BS + (main.phi + pad_.rounding) * main.n_B);
+    tracker_.main.warm = true;
+    return found;
+  }
+
+  // The deepest first; of more than there is room for the deepest.
+  static FingerContacts contactsOf(PairPoints& patch) {
+    std::sort(patch.points.begin(), patch.points.begin() + patch.count,
+              [](const PairPoint& x, const PairPoint& y) { return x.phi < y.phi || (x.phi == y.phi && x.feature < y.feature); });
+    FingerContacts found;
+    found.queries = 1;
+    const int count = std::min(patch.count, kMaxFingerContacts);
+    for (int i = 0; i < count; ++i) {
+      const PairPoint& p = patch.points[static_cast<std::size_t>(i)];
+      add({p.p_W - 0.5 * p.phi * p.n_W, p.n_W, p.phi, p.feature}, found);
+    }
+    return found;
+  }
+
+  FingerContacts onMesh() {
+    FingerContacts found = nearest();
+    if (!(found.main().phi < margin_)) return found;
+    if (mayBeFlat(found.main())) {
+      PairPoints patch;
+      padOnShape(pad_, X_BF_, shape_, margin_, Vec3::Zero(), cache_, patch);
+      if (isFlat(patch, found.main())) return contactsOf(patch);
+    }
+    addFurther(found);
+    return found;
+  }
+
+  const SurfaceSlot& slotOf(const SurfaceContact& main) const { return tracker_.main.ball.slots[main.feature % kMaxSurfaceContacts]; }
+
+  // Inside of a flat triangle the smooth surface has its normal: without that the others needn't be asked.
+  bool mayBeFlat(const SurfaceContact& main) const {
+    constexpr double kOnEdge = 1e-3;  // barycentric
+    const SurfaceSlot& slot = slotOf(main);
+    if (slot.triangle < 0 || std::min({slot.u, slot.v, 1 - slot.u - slot.v}) < kOnEdge) return true;
+    const MeshFeatures& features = std::get<Mesh>(shape_).surface->features();
+    return (features.triangle(slot.triangle).n - main.n_B).squaredNorm() < kSameNormal * kSameNormal;
+  }
+
+  // Whether the flat triangles are the surface where the smooth one is touched: they answer with its normal in more than one place, no shallower, and there
+  // and halfway between two of these the surface has their gap.
+  bool isFlat(const PairPoints& patch, const SurfaceContact& main) {
+    const double same_gap = 1e-6 * size_;
+    const PairPoint *deepest = nullptr, *furthest = nullptr;
+    const auto visitAlike = [&](const auto& visit) {
+      for (int i = 0; i < patch.count; ++i) {
+        const PairPoint& p = patch.points[static_cast<std::size_t>(i)];
+        if ((p.n_W - main.n_B).squaredNorm() < kSameNormal * kSameNormal) visit(p);
+      }
+    };
+    visitAlike([&](const PairPoint& p) { deepest = !deepest || p.phi < deepest->phi ? &p : deepest; });
+    if (!deepest || deepest->phi > main.phi - slotOf(main).ease + same_gap) return false;
+    double way = kApartOnPad * size_;
+    visitAlike([&](const PairPoint& p) {
+      if (const double d = (p.p_W - deepest->p_W).norm(); d > way) way = d, furthest = &p;
+    });
+    if (!furthest) return false;
+    const auto isLevel = [&](const Vec3& p_W, double phi) {
+      SurfaceTracker tracker = tracker_.main.ball;
+      const Vec3 p_BC = p_W + (0.5 * phi + pad_.rounding) * main.n_B;
+      return std::abs(querySphere(shape_, p_BC, pad_.rounding, 0, tracker, cache_).main().phi - phi) < same_gap;
+    };
+    return isLevel(deepest->p_W, deepest->phi) && isLevel(0.5 * (deepest->p_W + furthest->p_W), 0.5 * (deepest->phi + furthest->phi));
+  }
+
+  // Of the facet that faces the surface: along its edges, each a capsule that searches from where the main contact is, and from its corners downhill.
+  void addFurther(FingerContacts& found) {
+    Facet facet;
+    facetOf(Convex{pad_.hull}, X_BF_.q.conjugate() * -found.main().n_B, facet);
+    for (int k = 0; k < facet.count; ++k) addEdge(facet, k, found);
+    for (std::size_t k = 0; k < tracker_.feet.size() && static_cast<int>(k) < facet.count; ++k) addDownhill(facet, k, found);
+  }
+
+  void addEdge(const Facet& facet, int k, FingerContacts& found) {
+    const FacetCorner &from = facet.corners[static_cast<std::size_t>(k)],
+                      &to = facet.corners[static_cast<std::size_t>((k + 1) % facet.count)];
+    CoreTracker tracker{tracker_.main.ball, Vec3::Zero(), false};
+    const FingerShape edge = CapsuleTip{pad_.rounding, 0.5 * (to.p - from.p)};
+    const Pose X_BE{X_BF_.q, X_BF_ * (0.5 * (from.p + to.p))};
+    addIfNew(descend(shape_, edge, X_BE, 0, tracker, cache_), kFirstEdge + from.edge, found);
+  }
+
+  // Of as many corners as there are trackers, evenly around: a place of its own where the surface is hollow between it and the deepest.
+  void addDownhill(const Facet& facet, std::size_t k, FingerContacts& found) {
+    const std::size_t corner =
+        k * static_cast<std::size_t>(facet.count) / std::min<std::size_t>(tracker_.feet.size(), static_cast<std::size_t>(facet.count));
+    CoreTracker& foot = tracker_.feet[k];
+    foot.c_F = facet.corners[corner].p;
+    foot.warm = true;
+    addIfNew(descend(shape_, finger_, X_BF_, 0, foot, cache_), kFirstFoot + static_cast<std::uint32_t>(k), found);
+  }
+
+  void addIfNew(const CoreDescent& there, std::uint32_t feature, FingerContacts& found) const {
+    found.queries += there.queries;
+    SurfaceContact point = there.found.main();
+    if (found.count == kMaxFingerContacts || !(point.phi < margin_) || isKnown(found, point)) return;
+    point.feature = feature;
+    add(point, found);
+  }
+
+  bool isKnown(const FingerContacts& found, const SurfaceContact& point) const {
+    const Vec3 p_BT = point.p_BS + point.phi * point.n_B;
+    return std::any_of(found.p_BT.begin(), found.p_BT.begin() + found.count,
+                       [&](const Vec3& other) { return (other - p_BT).norm() < kApartOnPad * size_; });
+  }
+
+  static constexpr double kSameNormal = 1e-4;                       // [rad]
+  static constexpr std::uint32_t kFirstFoot = 16, kFirstEdge = 32;  // features: above those of the deepest place's ball
+
+  const Shape& shape_;
+  const PadTip& pad_;
+  const FingerShape& finger_;
+  const Pose& X_BF_;
+  const double margin_, size_;
+  FingerTracker& tracker_;
+  PatchCache& cache_;
+};
+
+}  // namespace
+
+FingerContacts queryPad(const Shape& shape, const FingerShape& finger, const Pose& X_BF, double margin, FingerTracker& tracker,
+                        PatchCache& cache) {
+  return PadQuery(shape, finger, X_BF, margin, tracker, cache).run();
+}
+
+}  // namespace pincer::contact
