@@ -21,7 +21,7 @@ std::optional<FingerDistance> nearestOf(const GraspModel& model, const GraspStat
     if (engine::isOnlySeen(c.bits)) continue;
     const Pose X_WS = engine::poseOf(c, X_WB);
     contact::FingerTracker searches;
-    const contact::FingerContacts found = fingerOnShape(f, c.shape, X_WS, X_WF, 0, searches, patches);
+    const contact::FingerContacts found = fingerOnShape(f, feltShape(model, collider), X_WS, X_WF, 0, searches, patches);
     const contact::SurfaceContact& s = found.main();
     if (nearest && !(s.phi < nearest->gap)) continue;
     const Vec3 p_finger_W = X_WS * found.p_BT[0], n_W = X_WS.q * s.n_B;

@@ -8,17 +8,19 @@ namespace pincer::grasp {
 namespace {
 
 // Spheres find their contact with closed forms from nothing.
-int shapesToFollow(const engine::WorldModel& world, const FingerModel& finger) {
-  if (finger.shape) return static_cast<int>(world.colliders.size());
-  return static_cast<int>(std::count_if(world.colliders.begin(), world.colliders.end(),
-                                        [](const engine::ColliderModel& c) { return std::holds_alternative<contact::Mesh>(c.shape); }));
+int shapesToFollow(const GraspModel& model, const FingerModel& finger) {
+  const int shapes = static_cast<int>(model.world.colliders.size());
+  if (finger.shape) return shapes;
+  int meshes = 0;
+  for (int i = 0; i < shapes; ++i) meshes += std::holds_alternative<contact::Mesh>(feltShape(model, i));
+  return meshes;
 }
 
 }  // namespace
 
 FollowedShapes placesFor(const GraspModel& model) {
   FollowedShapes all;
-  for (const FingerModel& finger : model.fingers) all.per_finger = std::max(all.per_finger, shapesToFollow(model.world, finger));
+  for (const FingerModel& finger : model.fingers) all.per_finger = std::max(all.per_finger, shapesToFollow(model, finger));
   all.per_finger = std::min(all.per_finger, FollowedShapes::kMost);
   const std::size_t places = model.fingers.size() * static_cast<std::size_t>(all.per_finger);
   all.colliders.assign(places, -1);
