@@ -85,6 +85,18 @@ struct SlideDerivative {
   return d;
 }
 
+// Derivative D of the projection onto K_mu of a y outside of it and of its polar cone:  D = z z^T / (1 + mu^2) + mu (p_n / |y_T|) (I_T - t t^T),  t = y_T / |y_T|,
+// z = mu t + e_n,  p_n = (y_n + mu |y_T|) / (1 + mu^2). Symmetric; I_T the identity but for the normal row.
+[[gnu::always_inline]] inline void rimDerivative(const double* y, int rows, double mu, double (&D)[kMaxContactRows][kMaxContactRows]) {
+  const double yT = std::sqrt(tangentNorm2(y, rows)), inverse = 1 / (1 + mu * mu), bend = mu * (y[kNormalRow] + mu * yT) * inverse / yT;
+  double t[kMaxContactRows], z[kMaxContactRows];
+  setVector(t, rows, 1 / yT, y, 0);
+  setVector(z, rows, mu / yT, y, 1);
+  for (int k = 0; k < rows; ++k) {
+    for (int l = 0; l < rows; ++l) D[k][l] = inverse * z[k] * z[l] + bend * ((k == l && k != kNormalRow ? 1 : 0) - t[k] * t[l]);
+  }
+}
+
 template <class Rows>
 [[gnu::always_inline]] inline double naturalMap2Of(Rows rows, const double* r, const double* u, double mu, double w) {
   double y[kMaxContactRows] = {}, p[kMaxContactRows], sum = 0;

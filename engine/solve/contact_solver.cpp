@@ -3,295 +3,18 @@
 #include <algorithm>
 
 #include "pincer/contact/functions/invariants.h"
-#include "pincer/engine/solve/alternation.h"
 #include "pincer/engine/solve/cone.h"
 #include "pincer/engine/solve/few_contacts.h"
-#include "pincer/engine/solve/proximal_round.h"
 #include "pincer/engine/solve/residual.h"
-#include "pincer/engine/solve/round_contact.h"
+#include "pincer/engine/solve/search.h"
 #include "pincer/engine/solve/small_problem.h"
-#include "pincer/engine/solve/squeeze.h"
 #include "pincer/engine/solve/sweeps.h"
 
 namespace pincer::engine {
 namespace {
 
-// The parameters of the search; docs/engine.md gives their reasons.
-constexpr double kLeastEpsilon = 1e-5, kFirstEpsilon = 0.1, kMostEpsilon = 1;  // e over w: range, and the first at most
-constexpr double kEpsilonOfError = 1e3;                                        // the first is that times the start's error [s/m]
-constexpr double kEasier = 0.2, kHarder = 5;                                   // epsilon after a short round, after one that failed
-constexpr int kEasySteps = 3, kMostRoundSteps = 8;                             // of a round
-constexpr double kFar = 1e-3;                                                  // from which rounds fail more often than not [m/s]
-constexpr double kShareOfSlip = 3e-4;                                          // of what pushes: below it, in motion, errors don't show
-constexpr double kSliding = 0.05;                                              // of the problem's speeds: what slips faster is swept
-constexpr double kStillFading = 0.7;                                           // of an error or a give, from one time to the next
-constexpr int kAlternations = 10, kSweepsAtATime = 8;                          // at a time
-
-constexpr std::int64_t kPerContactLooked = 150, kPerSmallStep = 1000;  // multiplications; of three contacts at most
-constexpr std::int64_t kFewestOperations = 60'000'000;                 // of a search: some 80 ms
-constexpr int kMostFactorisations = 160;                               // and their steps: beyond, the best iterate counts
-constexpr int kFewestStops = 4;                                        // sweeps, whatever is left of the budget
-constexpr int kPolishRounds = 3;
-constexpr double kPolishEpsilon = 1e-4;
-constexpr double kQuiet = 1e-3;  // of the problem's speeds: what slips less is about to rest
-
-// The fastest slip of what pushes [m/s].
-double fastestSlip(const ContactProblem& problem, const double* r, const double* u) {
-  double fastest2 = 0;
-  for (int i = 0; i < problem.contactCount(); ++i) {
-    const int first = problem.firstRow(i);
-    if (r[first + kNormalRow] > 0) fastest2 = std::max(fastest2, tangentNorm2(u + first, problem.rows(i)));
-  }
-  return std::sqrt(fastest2);
-}
-
-class Search {
- public:
-  Search(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch)
-      : problem_(problem), options_(options), scratch_(scratch) {}
-
-  SolveResult run(double* r, double* u) {
-    weighContacts(problem_, scratch_);
-    std::copy(r, r + rows(), scratch_.centre.data());
-    look();
-    result_.start = error_.residual;
-    if (isEnough() && (isExact() || !isQuiet())) {
-      result_.method = SolveMethod::kWarmStart;
-    } else {
-      search();
-    }
-    write(r, u);
-    return result_;
-  }
-
- private:
-  int rows() const { return problem_.rowCount(); }
-  int times() const { return scratch_.is_patient ? kPatient : 1; }
-  bool isSpent() const { return scratch_.operations_left < std::max<std::int64_t>(0, last_operation_); }
-  bool isWithinTolerance() const { return error_.residual <= options_.tolerance; }
-  // As good as what rests asks for.
-  bool isExact() const {
-    if (problem_.calm && error_.speed <= restErrorOf(options_)) return true;
-    return isWithinTolerance() && (!problem_.strict || error_.residual <= exactResidual(options_.tolerance, referenceSpeed(problem_)));
-  }
-  // What is enough [m/s].
-  double limit() const {
-    if (problem_.contactCount() <= kFewContacts || options_.accuracy == 0) return restErrorOf(options_);
-    return std::max(kShareOfSlip * slip_, options_.accuracy);
-  }
-  bool isEnough() const { return isWithinTolerance() || error_.speed <= limit(); }
-  bool isQuiet() const { return slip_ <= kQuiet * referenceSpeed(problem_); }
-
-  // At scratch.centre: y, u, error; keeps it if it is the best.
-  void look() {
-    spend(kPerContactLooked * problem_.contactCount(), scratch_);
-    error_ = errorOf(problem_, scratch_.centre.data(), scratch_, scratch_.u.data());
-    if (!(error_.residual < best_.residual)) return;
-    keep();
-    slip_ = fastestSlip(problem_, scratch_.best_r.data(), scratch_.best_u.data());
-  }
-  void keep() {
-    best_ = error_;
-    std::copy(scratch_.centre.data(), scratch_.centre.data() + rows(), scratch_.best_r.data());
-    std::copy(scratch_.u.data(), scratch_.u.data() + rows(), scratch_.best_u.data());
-  }
-
-  void search() {
-    if (!problem_.round.empty() || scratch_.operations_left < 0) return sweep();
-    MoverMatrix matrix(problem_, scratch_);
-    if (!matrix.fits()) return sweep();
-    const std::int64_t operations = std::max(kFewestOperations, kMostFactorisations * matrix.costOfFactorisation());
-    last_operation_ = scratch_.operations_left - operations * times() / scratch_.haste;
-    ProximalRound round(problem_, matrix, scratch_);
-    if (isEnough()) return polish(round);
-    Alternation alternation(problem_, matrix, scratch_);
-    approach(alternation);
-    proceed(round, alternation);
-    if (isEnough() && result_.give == 0 && isQuiet()) polish(round);
-    conclude();
-    if (scratch_.operations_left < 0 && result_.method == SolveMethod::kNotConverged) return sweep();  // what is new has no impulse yet
-    if (isSqueezed(problem_, scratch_.weight, scratch_.best_r.data())) soften(round);
-  }
-
-  // What is enough already, brought to round-off.
-  void polish(ProximalRound& round) {
-    const double tolerance = kStrictness * options_.tolerance;
-    for (int n = 0; n < kPolishRounds && best_.residual > tolerance && !isSpent(); ++n) {
-      const double before = best_.residual;
-      if (!round.solve(kPolishEpsilon, kMostRoundSteps, result_.iterations)) break;
-      recentre();
-      if (!(best_.residual < 0.5 * before)) break;
-    }
-    result_.method = SolveMethod::kNewton;
-  }
-
-  // The round's answer becomes the next one's centre.
-  void recentre() {
-    scratch_.centre.swap(scratch_.r);
-    look();
-  }
-
-  bool isFar() const { return best_.speed > kFar; }
-  bool slides() const { return slip_ > kSliding * referenceSpeed(problem_); }
-
-  // To where rounds succeed: what slides by sweeps, what sticks by alternation, as long as they get on.
-  void approach(Alternation& alternation) {
-    double before = std::numeric_limits<double>::infinity();
-    while (slides() && isFar() && best_.speed < kStillFading * before && !isSpent()) {
-      before = best_.speed;
-      smooth();
-    }
-    before = std::numeric_limits<double>::infinity();
-    for (bool resume = false; isFar() && best_.speed < kStillFading * before && !isSpent(); resume = true) {
-      before = best_.speed;
-      alternate(alternation, resume);
-    }
-  }
-  void alternate(Alternation& alternation, bool resume) {
-    alternation.run(kAlternations, resume);
-    result_.iterations += kAlternations;
-    result_.method = SolveMethod::kAlternation;
-    look();
-  }
-  void smooth() {
-    respond(problem_, scratch_.centre.data(), scratch_);
-    Sweeps sweeps(problem_, scratch_, scratch_.centre.data());
-    for (int n = 0; n < kSweepsAtATime && spend(kPerContactSwept * problem_.contactCount(), scratch_); ++n) {
-      if (n > 0) sweeps.accelerate();
-      sweeps.sweep(false);
-    }
-    result_.iterations += kSweepsAtATime;
-    look();
-  }
-
-  // Rounds; after one that failed the other methods again, from where it failed.
-  void proceed(ProximalRound& round, Alternation& alternation) {
-    double epsilon = std::clamp(kEpsilonOfError * error_.speed, 10 * kLeastEpsilon, kFirstEpsilon);
-    double give = std::numeric_limits<double>::infinity();
-    const int longest = kPatience * times();
-    int patience = longest, failures = 0;
-    while (!isEnough() && !isSpent()) {
-      const int before = result_.iterations;
-      if (!round.solve(epsilon, kMostRoundSteps, result_.iterations)) {
-        epsilon = std::min(kMostEpsilon, kHarder * epsilon);
-        if (++failures > kMostFailures * times()) return;
-        goAround(alternation, failures);
-        continue;
-      }
-      const double last_give = give, last_error = error_.speed;
-      give = noteGive(epsilon);
-      recentre();
-      if (give < kStillFading * last_give)
-        patience = longest;
-      else if (epsilon == kLeastEpsilon || !scratch_.is_patient)
-        --patience;
-      if (patience == 0) {
-        if (!isEnough() && give <= options_.largest_give) giveWay(give);
-        return;
-      }
-      if (result_.iterations - before <= kEasySteps || error_.speed > kStillFading * last_error)
-        epsilon = std::max(kLeastEpsilon, kEasier * epsilon);
-    }
-  }
-
-  // What failed once more is gone around further.
-  void goAround(Alternation& alternation, int failures) {
-    if (slides()) return smooth();
-    for (int n = 0; n < failures && !isSpent(); ++n) alternate(alternation, n > 0);
-  }
-
-  // scratch.give = e (r - r_c) of the round just solved; the largest [m/s].
-  double noteGive(double epsilon) {
-    double largest = 0;
-    for (int i = 0; i < problem_.contactCount(); ++i) {
-      const double e = epsilon * scratch_.weight[static_cast<std::size_t>(i)];
-      for (int row = problem_.firstRow(i); row < problem_.firstRow(i + 1); ++row) {
-        const auto k = static_cast<std::size_t>(row);
-        scratch_.give[k] = e * (scratch_.r[k] - scratch_.centre[k]);
-        largest = std::max(largest, std::abs(scratch_.give[k]));
-      }
-    }
-    return largest;
-  }
-
-  // Takes the centre for the answer for q + give, if it is.
-  void giveWay(double give) {
-    WorstResidual worst;
-    for (int i = 0; i < problem_.contactCount(); ++i) {
-      const int first = problem_.firstRow(i);
-      double *const u = scratch_.u.data() + first, *const r = scratch_.centre.data() + first;
-      for (int k = 0; k < problem_.rows(i); ++k) u[k] += scratch_.give[static_cast<std::size_t>(first + k)];
-      const double w = scratch_.weight[static_cast<std::size_t>(i)];
-      worst.add(naturalMap2(r, u, problem_.rows(i), problem_.friction(i), w), u[kNormalRow], w * r[kNormalRow]);
-    }
-    error_ = worst.relativeTo(referenceSpeed(problem_));
-    if (!isEnough()) return;
-    result_.give = give;
-    keep();
-  }
-
-  void conclude() {
-    if (result_.give > 0) {
-      result_.method = SolveMethod::kNewton;
-      return;
-    }
-    error_ = best_;
-    if (isEnough()) {
-      if (result_.method == SolveMethod::kNoContact) result_.method = SolveMethod::kNewton;
-      return;
-    }
-    result_.method = SolveMethod::kNotConverged;
-  }
-
-  // Contacts that are soft, about no impulse.
-  void soften(ProximalRound& round) {
-    for (const double epsilon : kSoftEpsilons) {
-      std::fill(scratch_.centre.begin(), scratch_.centre.begin() + rows(), 0.0);
-      look();
-      if (!round.solve(epsilon, kSoftSteps, result_.iterations)) continue;
-      scratch_.centre.swap(scratch_.r);
-      error_ = errorOf(problem_, scratch_.centre.data(), scratch_, scratch_.u.data());
-      keep();
-      result_.method = SolveMethod::kNotConverged;
-      result_.yields = true;
-      return;
-    }
-  }
-
-  void sweep() {
-    const double enough = std::max(kMostAccuracies * options_.accuracy, options_.tolerance * referenceSpeed(problem_));
-    respond(problem_, scratch_.best_r.data(), scratch_);
-    error_ = respondedError(problem_, scratch_.best_r.data(), scratch_, scratch_.best_u.data());
-    const SweptResult sweeps = sweepUntil(problem_, enough, error_, scratch_, scratch_.best_r.data(), scratch_.best_u.data());
-    result_.iterations += sweeps.sweeps;
-    error_ = best_ = sweeps.error;
-    result_.method = error_.speed <= enough ? SolveMethod::kSweeps : SolveMethod::kNotConverged;
-  }
-
-  void write(double* r, double* u) {
-    const bool found = std::isfinite(best_.residual);
-    for (int row = 0; row < rows(); ++row) {
-      r[row] = found ? scratch_.best_r[static_cast<std::size_t>(row)] : 0;
-      u[row] = scratch_.best_u[static_cast<std::size_t>(row)];
-    }
-    result_.residual = best_.residual;
-    result_.error = best_.speed;
-    result_.converged = result_.method != SolveMethod::kNotConverged;
-  }
-
-  static constexpr double kMostAccuracies = 100;  // of what is too entangled for anything but sweeps
-  static constexpr int kPatience = 3, kMostFailures = 12, kSoftSteps = 12;
-  static constexpr int kPatient = 10;  // times as much of everything, where there is time
-  static constexpr double kSoftEpsilons[] = {1e-3, 1e-2, 0.1};
-
-  const ContactProblem& problem_;
-  const SolverOptions& options_;
-  SolverScratch& scratch_;
-  std::int64_t last_operation_ = 0;
-  ContactError error_, best_;
-  double slip_ = 0;
-  SolveResult result_;
-};
+constexpr std::int64_t kPerSmallStep = 1000;  // multiplications; of three contacts at most
+constexpr int kFewestStops = 4;               // sweeps, whatever is left of the budget
 
 // Scales r so that  E(r) = r . (q + W r / 2),  the energy that it brings in, isn't positive: to the minimum of E on its ray.
 // The biases within q count as velocities, and compliance within W as inertia: the best that can be said without knowing the bodies, and on
@@ -339,7 +62,7 @@ void solveContacts(const ContactProblem& problem, const SolverOptions& options, 
   PINCER_ASSERT(problem.firstRow(problem.contactCount()) == problem.rowCount());
   projectOntoCones(problem, r);
   if (!problem.first_side.empty()) {  // the forms for few contacts know two movers each
-    result = Search(problem, options, scratch).run(r, u);
+    result = searchImpulses(problem, options, scratch, r, u);
     return settleEnergy(problem, scratch, r, u, result);
   }
   const bool is_solved = solveSmallProblem(problem, options, r, u, result);
@@ -349,7 +72,7 @@ void solveContacts(const ContactProblem& problem, const SolverOptions& options, 
   if (is_few) solveFew(problem, options, scratch, r, u, result);
   if (!is_few ||
       (!result.converged && !result.yields && problem.contactCount() >= kManyContacts && options.thorough && scratch.operations_left >= 0))
-    result = Search(problem, options, scratch).run(r, u);
+    result = searchImpulses(problem, options, scratch, r, u);
   settleEnergy(problem, scratch, r, u, result);
 }
 

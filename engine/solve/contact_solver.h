@@ -6,8 +6,8 @@
 //   up to three contacts of one to three movers   Newton's method, with all sizes known to the compiler (small_problem.h)
 //   up to kFewContacts                            few_contacts.h; what it leaves unsolved goes on as if it were more
 //   between balls, or the movers' matrix doesn't factorise cheaply (heaps)   sweeps.h
-//   more                                          far: what slides by sweeps, what sticks by alternation.h in tens of steps;  near: proximal_round.h, epsilon by
-//                                                 how easily the last one went; a round that fails: the former again, and five times the epsilon
+//   more                                          far: what slides by sweeps, then rounds with a frozen shift (descents);  near: rounds, epsilon by how easily
+//                                                 the last one went; one that fails: the former again, and five times the epsilon (proximal_round.h)
 //   spent, or no nearer                           the best iterate, in the cones, scaled so that it adds no energy, with its error
 //
 // The give e (r - r_c) is the error [m/s]. Where contacts contradict each other it doesn't vanish, and is the least that they have to give way by; where it is

@@ -42,8 +42,9 @@ struct SolverScratch {
   std::int64_t operations_left = kNoLimit;  // of the budget; less than 0: spent
   int haste = 1;                            // a search takes so many times fewer operations
   std::vector<double> weight;               // w_i, mean of W_ii's diagonal, per contact [1/kg]
+  std::vector<double> frozen;               // shifts, per contact [m/s]; proximal_round.h
   // Per row: impulses and velocities of the iterate, the rounds' centre r_c, the best iterate, what contacts gave way by, and what methods need.
-  std::vector<double> r, u, centre, best_r, best_u, give, multiplier, change, work;
+  std::vector<double> r, u, centre, best_r, best_u, give, change, work;
   // Per mover: y = A^T r, a direction, a gradient, and what methods need.
   std::vector<double> y, direction, gradient, way;
   std::vector<double> local;        // sweeps.h

@@ -89,7 +89,7 @@ TEST_P(RandomProblems, GiveTheSameBitsAgain) {
 // As another island leaves it that had no finite answer. Which one that is depends on the number of threads.
 void fillWithNaN(SolverScratch& s) {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  for (std::vector<double>* vector : {&s.weight, &s.r, &s.u, &s.centre, &s.best_r, &s.best_u, &s.give, &s.multiplier, &s.change, &s.work,
+  for (std::vector<double>* vector : {&s.weight, &s.r, &s.u, &s.centre, &s.best_r, &s.best_u, &s.give, &s.frozen, &s.change, &s.work,
                                       &s.y, &s.direction, &s.gradient, &s.way, &s.local})
     std::fill(vector->begin(), vector->end(), kNaN);
 }
@@ -189,7 +189,7 @@ TEST(Solver, AllocatesNothing) {
     ++methods[static_cast<int>(result.method)];
   }
   EXPECT_GT(methods[static_cast<int>(SolveMethod::kNewton)], 0);
-  EXPECT_GT(methods[static_cast<int>(SolveMethod::kAlternation)], 0);
+  EXPECT_GT(methods[static_cast<int>(SolveMethod::kDescent)], 0);
 }
 
 // A stack of three whose top is a million times as heavy as its base, resting: the interface forces are the weights.

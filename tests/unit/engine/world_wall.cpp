@@ -13,20 +13,31 @@ struct Wall {
   WorldModel model;
   WorldState state;
 
-  Wall(int columns, int rows, double jitter, const WorldOptions& options = {}) {
+  struct Spec {
+    int columns, rows;
+    double jitter = 0;
+    int deep = 1;           // walls one behind the other, which touch
+    double mass_ratio = 1;  // of the heaviest brick to the lightest, at most
+  };
+
+  Wall(const Spec& spec, const WorldOptions& options) {
     constexpr double kLength = 0.04, kHeight = 0.02, kApart = 1e-3;
     WorldBuilder builder{options};
     std::vector<BodyStart> starts(1);
     builder.addBody({"floor", contact::HalfSpace{}, false, 0, {}});
-    for (int n = 0; n < columns * rows; ++n) {
-      const int row = n / columns, column = n % columns;
-      builder.addBody({"brick", contact::Box{{0.5 * kLength, 0.01, 0.5 * kHeight}}, true, 0.05, {}});
-      const Vec3 off = jitter * Vec3(std::sin(3 * n), std::sin(5 * n), std::sin(7 * n));
-      starts.push_back({{Quat::Identity(), Vec3(column * (kLength + kApart) + row % 2 * 0.25 * kLength, 0, (row + 0.5) * kHeight) + off}});
+    for (int n = 0; n < spec.columns * spec.rows * spec.deep; ++n) {
+      const int row = n / spec.columns % spec.rows, column = n % spec.columns, layer = n / (spec.columns * spec.rows);
+      const double mass = 0.05 * std::pow(spec.mass_ratio, 0.5 * std::sin(11 * n));
+      builder.addBody({"brick", contact::Box{{0.5 * kLength, 0.01, 0.5 * kHeight}}, true, mass, {}});
+      const Vec3 off = spec.jitter * Vec3(std::sin(3 * n), std::sin(5 * n), std::sin(7 * n));
+      const double x = column * (kLength + kApart) + row % 2 * 0.25 * kLength;
+      starts.push_back({{Quat::Identity(), Vec3(x, layer * kHeight, (row + 0.5) * kHeight) + off}});
     }
     model = builder.build();
     state = makeState(model, starts, {});
   }
+  Wall(int columns, int rows, double jitter, const WorldOptions& options = {})
+      : Wall({.columns = columns, .rows = rows, .jitter = jitter}, options) {}
 };
 
 struct WallRun {
@@ -62,9 +73,28 @@ TEST(Wall, LaidExactlyStandsUnflaggedAndRestsToTheBit) {
 // Laid with gaps and overlaps it fell apart: contacts that flickered forgot what they carried.
 TEST(Wall, LaidWithGapsAndOverlapsComesToRest) {
   const WallRun run = runWall(Wall(3, 10, 2e-5), 3000);
-  EXPECT_LT(run.flagged, 60);  // of its first moments
+  EXPECT_LT(run.flagged, 5);  // of its first moments
   EXPECT_TRUE(run.asleep);
   EXPECT_LT(run.moved, 1e-4);  // it settles by its gaps: ten rows of 20 um
+}
+
+// Contacts looked as if they contradicted each other, as long as they were softer than what the heavy bricks weigh on them: every tick was flagged, and the
+// top crept by half a millimetre in a second.
+TEST(Wall, OfMassesAThousandApartRestsToTheBit) {
+  for (const int columns : {2, 3}) {
+    const WallRun run = runWall(Wall({.columns = columns, .rows = 8, .mass_ratio = 1e3}, {}), 300);
+    EXPECT_EQ(run.flagged, 0) << columns;
+    EXPECT_TRUE(run.asleep) << columns;
+    EXPECT_LT(run.moved, 1e-9) << columns;  // 1e-6 m/s for a tick
+  }
+}
+
+// The rounds' own error was larger than what was enough: what was solved was never recognised as such.
+TEST(Wall, ThatTouchesAnotherComesToRest) {
+  const WallRun run = runWall(Wall({.columns = 3, .rows = 5, .deep = 2}, {}), 300);
+  EXPECT_EQ(run.flagged, 0);
+  EXPECT_TRUE(run.asleep);
+  EXPECT_LT(run.moved, 1e-9);
 }
 
 // The same bits whatever the threads.
