@@ -27,7 +27,7 @@ struct SolverOptions {
   double budget = 0;
 };
 
-enum class SolveMethod : std::uint8_t { kNoContact, kWarmStart, kNewton, kDescent, kInteriorPoint, kSweeps, kNotConverged };
+enum class SolveMethod : std::uint8_t { kNoContact, kWarmStart, kNewton, kAlternation, kInteriorPoint, kSweeps, kNotConverged };
 
 struct SolveResult {
   SolveMethod method = SolveMethod::kNoContact;

@@ -149,7 +149,7 @@ class Search {
 
   // Rounds whose shift is that of their start, from the best iterate: they never fail, and come near from wherever they start.
   void descend(ProximalRound& round, double epsilon) {
-    result_.method = SolveMethod::kDescent;
+    result_.method = SolveMethod::kAlternation;
     for (int n = 0; n < kDescents && !isEnough() && !isSpent(); ++n) {
       restart();
       const double before = best_.speed, least = std::max(left(), kRough * best_.speed);

@@ -189,7 +189,7 @@ TEST(Solver, AllocatesNothing) {
     ++methods[static_cast<int>(result.method)];
   }
   EXPECT_GT(methods[static_cast<int>(SolveMethod::kNewton)], 0);
-  EXPECT_GT(methods[static_cast<int>(SolveMethod::kDescent)], 0);
+  EXPECT_GT(methods[static_cast<int>(SolveMethod::kAlternation)], 0);
 }
 
 // A stack of three whose top is a million times as heavy as its base, resting: the interface forces are the weights.
