@@ -81,8 +81,7 @@ void placeBody(const SceneModel& model, SceneState& state, int body, const engin
   for (const engine::PointState& point : state.grasp.world.points) points.push_back(point.p_target_W);
   state.grasp.world.bodies[index] = engine::makeState(model.grasp.world, starts, points).bodies[index];
   state.grasp.world.contact_count = 0;
-  std::fill(state.grasp.trackers.begin(), state.grasp.trackers.end(), contact::SurfaceTracker{});
-  std::fill(state.grasp.tips.begin(), state.grasp.tips.end(), contact::FingerTracker{});
+  std::fill(state.grasp.followed.colliders.begin(), state.grasp.followed.colliders.end(), -1);
 }
 
 SceneInputs::SceneInputs(const SceneModel& model)

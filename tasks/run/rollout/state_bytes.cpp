@@ -13,11 +13,12 @@ namespace {
 // take(part) for every part of a state. The names are bound to all members: who adds one to a state is told here by the compiler to add it below.
 template <class Grasp, class Take>
 void eachPart(Grasp& grasp, const Take& take) {
-  auto& [world, trackers, tips, fingers] = grasp;
+  auto& [world, followed, fingers] = grasp;
+  auto& [per_finger, colliders, gaps, trackers] = followed;
   auto& [time, tick, parts, h_last, bodies, driven_w_W, points, tree_q, tree_v, controls, drives, brakes, contacts, contact_count] = world;
   take(time), take(tick), take(parts), take(h_last), take(contact_count);
   take(bodies), take(driven_w_W), take(points), take(tree_q), take(tree_v), take(controls), take(drives), take(brakes), take(contacts),
-      take(trackers), take(tips), take(fingers);
+      take(per_finger), take(colliders), take(gaps), take(trackers), take(fingers);
 }
 
 std::string heading() { return fmt::format("pincer state {} {}\n", kBuildInfo.version, kBuildInfo.sources); }
