@@ -217,7 +217,7 @@ void SceneDrawing::addGoal(const Snapshot& snapshot, DrawList& list) const {
   if (snapshot.trial.goal_heading) {
     const Vec3 along(math::cos(*snapshot.trial.goal_heading), math::sin(*snapshot.trial.goal_heading), 0);
     const Vec3 top_W = middle_W + object->radius * Vec3::UnitZ();
-    addArrow(top_W, 1.5 * object->radius * along, thin, paint, list);
+    addMarkArrow(marks(), top_W, 1.5 * object->radius * along, thin, paint, list);
   }
 }
 

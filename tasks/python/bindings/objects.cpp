@@ -127,8 +127,9 @@ FingerFelt State::felt(int finger) const {
 }
 
 tasks::Moment State::moment() const {
-  return {model_->grasp, scene_.grasp, stepped_ ? stepper_->fingers() : std::span<const grasp::FingerReport>(reports_),
-          model_->scene.starts};
+  if (!stepped_) stepper_ = std::make_unique<tasks::SceneStepper>(*model_);  // in which nothing touches yet
+  return {model_->grasp,        scene_.grasp,        stepped_ ? stepper_->fingers() : std::span<const grasp::FingerReport>(reports_),
+          model_->scene.starts, stepper_->scratch(), model_->scene.frames};
 }
 
 const grasp::GraspScratch* State::scratch() const { return stepped_ ? &stepper_->scratch() : nullptr; }

@@ -76,8 +76,8 @@ class State {
 
   ModelPointer model_;
   tasks::SceneState scene_;
-  std::unique_ptr<tasks::SceneStepper> stepper_;  // made at the first step
-  bool stepped_ = false;                          // what touches is in the stepper, else in what follows
+  mutable std::unique_ptr<tasks::SceneStepper> stepper_;  // made at the first step, or where a quantity asks for it
+  bool stepped_ = false;                                  // what touches is in the stepper, else in what follows
   std::vector<ContactRow> contacts_;
   std::vector<FingerFelt> felt_;
   std::vector<grasp::FingerReport> reports_;
