@@ -2,8 +2,8 @@
 
 #include <Eigen/Dense>
 #include <cmath>
-#include <complex>
 
+#include "pincer/contact/elementary.h"
 #include "pincer/tasks/judge/exact/runge_kutta.h"
 
 namespace pincer::exact {
@@ -12,6 +12,16 @@ namespace {
 constexpr double kFineStep = 2e-5;  // [s]
 
 using Long = Eigen::Array<long double, Eigen::Dynamic, 1>;
+
+// Beyond double precision by the first two terms about the double next to x: off by 1e-16 at most, as our own functions are.
+long double sine(long double x) {
+  const auto near = static_cast<double>(x);
+  return math::sin(near) + (x - near) * math::cos(near);
+}
+long double cosine(long double x) {
+  const auto near = static_cast<double>(x);
+  return math::cos(near) - (x - near) * math::sin(near);
+}
 
 // Steps of at most kFineStep from 0 to `time`.
 template <typename State, typename Slope>
@@ -38,10 +48,10 @@ std::vector<double> RodChain::angles(const std::vector<double>& start, double ti
     Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic> M(n, n);
     Eigen::Matrix<long double, Eigen::Dynamic, 1> f(n);
     for (int i = 0; i < n; ++i) {
-      f[i] = -weightOf(*this, i) * std::sin(y[i]);
+      f[i] = -weightOf(*this, i) * sine(y[i]);
       for (int j = 0; j < n; ++j) {
-        M(i, j) = inertiaOf(*this, i, j) * std::cos(y[i] - y[j]);
-        f[i] -= inertiaOf(*this, i, j) * std::sin(y[i] - y[j]) * y[n + j] * y[n + j];
+        M(i, j) = inertiaOf(*this, i, j) * cosine(y[i] - y[j]);
+        f[i] -= inertiaOf(*this, i, j) * sine(y[i] - y[j]) * y[n + j] * y[n + j];
       }
     }
     Long out(2 * n);
@@ -60,10 +70,10 @@ double RodChain::energy(const std::vector<double>& angles, const std::vector<dou
   long double sum = 0;
   for (int i = 0; i < rods; ++i) {
     const auto a = static_cast<std::size_t>(i);
-    sum += weightOf(*this, i) * (1 - std::cos(static_cast<long double>(angles[a])));
+    sum += weightOf(*this, i) * (1 - cosine(static_cast<long double>(angles[a])));
     for (int j = 0; j < rods; ++j) {
       const auto b = static_cast<std::size_t>(j);
-      sum += 0.5L * inertiaOf(*this, i, j) * std::cos(static_cast<long double>(angles[a] - angles[b])) * rates[a] * rates[b];
+      sum += 0.5L * inertiaOf(*this, i, j) * cosine(static_cast<long double>(angles[a] - angles[b])) * rates[a] * rates[b];
     }
   }
   return static_cast<double>(sum);
@@ -73,7 +83,7 @@ double EllipticPendulum::angle(double start, double time) const {
   const long double share = static_cast<long double>(mass) / (block + mass), lever = static_cast<long double>(mass) * distance;
   using State = Eigen::Array<long double, 2, 1>;
   const State y = integrated(State(start, 0), time, [&](double, const State& at) {
-    const long double c = std::cos(at[0]), s = std::sin(at[0]);
+    const long double c = cosine(at[0]), s = sine(at[0]);
     const long double inert = inertia + lever * distance * (1 - share * c * c);
     return State(at[1], -(lever * g * s + lever * distance * share * s * c * at[1] * at[1]) / inert);
   });
@@ -81,14 +91,16 @@ double EllipticPendulum::angle(double start, double time) const {
 }
 
 double EllipticPendulum::way(double start, double angle) const {
-  return mass / (block + mass) * distance * (std::sin(start) - std::sin(angle));
+  return mass / (block + mass) * distance * (math::sin(start) - math::sin(angle));
 }
 
 double DampedOscillator::place(double x_0, double v_0, double time) const {
-  using Complex = std::complex<double>;
-  const Complex root = std::sqrt(Complex(d * d - 4 * k * m)), p = (-d + root) / (2 * m), q = (-d - root) / (2 * m);
-  const Complex b = (p * x_0 - v_0) / (p - q), a = x_0 - b;
-  return (a * std::exp(p * time) + b * std::exp(q * time)).real();
+  const double decay = d / (2 * m), square = k / m - decay * decay;  // of the frequency; negative where it creeps back
+  const double v = v_0 + decay * x_0, root = std::sqrt(std::abs(square)), x = root * time;
+  if (square > 0) return math::exp(-decay * time) * (x_0 * math::cos(x) + v / root * math::sin(x));
+  if (square == 0) return math::exp(-decay * time) * (x_0 + v * time);
+  const double up = math::exp((root - decay) * time), down = math::exp(-(root + decay) * time);
+  return 0.5 * (x_0 * (up + down) + v / root * (up - down));
 }
 
 }  // namespace pincer::exact

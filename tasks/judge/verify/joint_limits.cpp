@@ -4,6 +4,7 @@
 //   friction   holds at .999 of its limit, slides with (F - f)/m at 1.001; runs out after v^2 m/2f
 //   limit      a drive gives its limit, and reaches its target
 //   pinch      s4_pinch by two sliders of 50 g that motors of 2 N push: the equations of s4_pinch
+#include "pincer/contact/elementary.h"
 #include "pincer/tasks/judge/verify/linkage.h"
 #include "pincer/tasks/judge/verify/verify.h"
 
@@ -40,8 +41,8 @@ std::vector<Record> stops(MeasureContext&) {
     if (bounces == 0) time_error = std::abs(bouncing.time() - (v + kRestitution * speed) / kForce - hit);
     ++bounces;
     const double height = v * v / (2 * kForce) + kWay - bouncing.position(0);
-    height_error = std::max(height_error, std::abs(height / (kWay * std::pow(kRestitution, 2 * bounces)) - 1));
-    next += 2 * hit * std::pow(kRestitution, bounces);
+    height_error = std::max(height_error, std::abs(height / (kWay * math::pow(kRestitution, 2 * bounces)) - 1));
+    next += 2 * hit * math::pow(kRestitution, bounces);
   }
   Linkage landing = towardsStop(kForce, 0);
   landing.run(1);

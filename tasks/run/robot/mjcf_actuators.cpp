@@ -1,4 +1,4 @@
-// <actuator>: drives of joints and fixed tendons.
+// actuator: drives of joints and fixed tendons.
 //
 //   force = gear (gain u + bias_0 + bias_1 l + bias_2 l'),   l = gear times the coordinate
 //

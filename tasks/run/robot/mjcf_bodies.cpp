@@ -1,4 +1,4 @@
-// <worldbody>: the tree of bodies with their joints, geoms and sites; and what they weigh.
+// worldbody: the tree of bodies with their joints, geoms and sites; and what they weigh.
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
@@ -11,7 +11,7 @@
 namespace pincer::tasks::mjcf {
 namespace {
 
-// Where an element stands: its body, the pose of the innermost <frame> in the body's, and the class of those that name none.
+// Where an element stands: its body, the pose of the innermost frame in the body's, and the class of those that name none.
 struct Surroundings {
   int body = -1;
   Pose X_BR;
@@ -129,7 +129,7 @@ class BodyReader {
     return I;
   }
 
-  // Where <inertial> says nothing, the sum of the geoms'.
+  // Where inertial says nothing, the sum of the geoms'.
   void finishMass(int index) {
     RobotBody& body = robot_.bodies[static_cast<std::size_t>(index)];
     if (!given_[static_cast<std::size_t>(index)] && reading_.compiler().inertia_from_geoms != InertiaFromGeoms::kNever) {
@@ -152,7 +152,7 @@ class BodyReader {
 
   Reading& reading_;
   Robot& robot_;
-  std::vector<bool> given_;                  // by body: <inertial> stands there
+  std::vector<bool> given_;                  // by body: inertial stands there
   std::vector<std::vector<RobotGeom>> own_;  // by body: geoms that add mass
 };
 

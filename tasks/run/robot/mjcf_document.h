@@ -15,7 +15,7 @@ namespace pincer::tasks::mjcf {
 
 enum class InertiaFromGeoms { kNever, kAlways, kWhereMissing };
 
-// Of all <compiler> elements, whatever their place.
+// Of all compiler elements, whatever their place.
 struct Compiler {
   bool degrees = true, autolimits = true, balance_inertia = false, strip_path = false;
   std::string euler_order = "xyz", mesh_folder;
@@ -34,14 +34,14 @@ struct DefaultClass {
 
 struct Document {
   std::string file;
-  XmlElement root;  // <mujoco>, includes in place
+  XmlElement root;  // the element mujoco, includes in place
   Compiler compiler;
   std::vector<DefaultClass> classes;  // the first one is "main"
   ModelFolder folder;
   ImportNotes notes;
 };
 
-// Throws InputError: not XML, no <mujoco>, an element or attribute that MJCF doesn't have or that is refused, an include that is missing,
+// Throws InputError: not XML, no element mujoco, an element or attribute that MJCF doesn't have or that is refused, an include that is missing,
 // outside of the folder or in a circle, a class of no or of two names.
 Document readDocument(const std::string& path, const std::vector<std::string>& allowed_folders);
 

@@ -1,4 +1,4 @@
-// <asset>: meshes from files, or written out in the model.
+// asset: meshes from files, or written out in the model.
 #include <fmt/format.h>
 
 #include <filesystem>

@@ -21,7 +21,7 @@ struct Reading {
   const Compiler& compiler() const { return document.compiler; }
 };
 
-// <asset>: every mesh.
+// asset: every mesh.
 void readMeshes(Reading& reading);
 
 // A geom or joint within frames that move and turn it: X_BR is the pose of the innermost frame in the body's.
@@ -30,13 +30,13 @@ RobotJoint readJoint(Reading& reading, const Values& values, const Pose& X_BR);
 // True if the geom's group lies within inertiagrouprange.
 bool addsMass(const Reading& reading, const Values& values);
 
-// <worldbody>: bodies, joints, geoms, sites, masses.
+// worldbody: bodies, joints, geoms, sites, masses.
 void readBodies(Reading& reading);
-// <contact>, <equality>, <tendon>; after the bodies.
+// contact, equality, tendon; after the bodies.
 void readRelations(Reading& reading);
-// <actuator>; after the tendons.
+// actuator; after the tendons.
 void readActuators(Reading& reading);
-// <keyframe>; after the actuators.
+// keyframe; after the actuators.
 void readKeyframes(Reading& reading);
 
 // The element's reference to a body or joint of that name. Throws InputError at the element, with a did-you-mean.

@@ -1,4 +1,4 @@
-// <contact>, <tendon>, <equality>, <keyframe>: what ties the bodies of the tree together, keeps them apart, and where they start.
+// contact, tendon, equality, keyframe: what ties the bodies of the tree together, keeps them apart, and where they start.
 #include <fmt/format.h>
 
 #include "pincer/tasks/run/files/spelling.h"

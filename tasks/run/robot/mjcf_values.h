@@ -40,7 +40,7 @@ class Values {
   Quat orientation(const Compiler& compiler) const;
   Pose pose(const Compiler& compiler) const { return {orientation(compiler), vector("pos", Vec3::Zero())}; }
 
-  // Throws InputError at the element that has the value: "file:line: <tag> attribute="value" problem".
+  // Throws InputError at the element that has the value: "file:line: tag attribute="value" problem".
   [[noreturn]] void reject(std::string_view name, std::string_view problem) const;
 
  private:

@@ -27,7 +27,7 @@ struct XmlElement {
 
   const std::string* find(std::string_view name) const;  // an attribute's value; null: there is none
   std::string place() const;                             // "file:line"
-  // Throws InputError: "file:line: <tag> <problem>".
+  // Throws InputError: "file:line: tag problem".
   [[noreturn]] void reject(std::string_view problem) const;
 };
 

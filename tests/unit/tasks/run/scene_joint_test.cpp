@@ -76,7 +76,7 @@ TEST(SceneJoints, MistakesAreNamed) {
   says(rail(R"(, "limits": [0.3])"), "must be [lower, upper]");
   says(rail(R"(, "limits": [0.1, 0.3])"), "is beyond a stop");
   says(rail(R"(, "friction": -1)"), "is out of range");
-  says(rail("", R"(, "drives": [{"joint": "rial", "type": "motor"}])"), "Did you mean \"rail\"?");
+  says(rail("", R"(, "drives": [{"joint": "rails", "type": "motor"}])"), "Did you mean \"rail\"?");
   says(rail("", R"(, "drives": [{"type": "motor"}])"), "needs either \"joint\" or \"tendon\"");
   says(rail("", R"(, "drives": [{"joint": "rail", "type": "position"}])"), "needs \"stiffness\"");
   says(rail("", R"(, "drives": [{"joint": "rail", "type": "motor", "stiffness": 3}])"), "goes with drives to a position");

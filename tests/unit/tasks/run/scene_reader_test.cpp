@@ -226,7 +226,7 @@ const std::vector<Complaint> kComplaints = {
     {"JointType", sceneWith(", \"mass\": 1", ", \"joints\": [{\"type\": \"hinge\", \"body\": \"body0\"}]"),
      "s.json:1: joints[0].type = \"hinge\" isn't known. Known here: pivot, slider, ball, weld."},
     {"DampedWeld", sceneWith(", \"mass\": 1", ", \"joints\": [{\"type\": \"weld\", \"body\": \"body0\", \"damping\": 1}]"),
-     "s.json:1: joints[0].damping = 1 doesn't go with this type: only pivots and sliders have a free axis to damp. Remove the key."},
+     "s.json:1: joints[0].damping = 1 doesn't go with this type: only pivots and sliders have one free axis. Remove the key."},
     {"LooseFinger", sceneWithFinger("\"position\": [0, 0, 1], \"stiffness\": [100, 0, 100]"),
      "s.json:1: fingers[0] has neither mass nor stiffness along y: nothing says where it is. Give it a mass or a stiffness, or lock the "
      "axis."},
@@ -239,9 +239,10 @@ const std::vector<Complaint> kComplaints = {
     {"UnknownAxis", sceneWithFinger("\"position\": [0, 0, 1], \"locked\": [\"w\"]"),
      "s.json:1: fingers[0].locked[0] = \"w\" isn't known. Did you mean \"x\"?"},
     {"SameName", sceneWithFinger("\"position\": [0, 0, 1], \"name\": \"body0\""),
-     "s.json:1: fingers[0].name = \"body0\" can't be called \"body0\": another body or finger is. Names tell them apart in quantities."},
+     "s.json:1: fingers[0].name = \"body0\" can't be called \"body0\": another body, joint, drive, frame or finger is. Names tell them "
+     "apart in quantities."},
     {"UnknownOwner", sceneExpecting("\"quantity\": \"bodi0.p_z\", \"time\": 1, \"value\": 1, \"tolerance\": 1"),
-     "s.json:1: expect[0].quantity = \"bodi0.p_z\" names no body or finger of this scene. Did you mean \"body0\"?"},
+     "s.json:1: expect[0].quantity = \"bodi0.p_z\" names no body, joint, drive, frame or finger of this scene. Did you mean \"body0\"?"},
     {"UnknownQuantity", sceneExpecting("\"quantity\": \"enrgy\", \"time\": 1, \"value\": 1, \"tolerance\": 1"),
      "s.json:1: expect[0].quantity = \"enrgy\" isn't known. Did you mean \"energy\"?"},
     {"EqualWithoutTolerance", sceneExpecting("\"quantity\": \"energy\", \"time\": 1, \"value\": 1"),

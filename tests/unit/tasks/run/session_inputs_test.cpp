@@ -179,7 +179,7 @@ TEST(SessionInputs, AFormatThatIsYetToComeIsRefused) {
   const TemporaryDirectory dir;
   SessionWriter::create(dir / "a.db", {}).close();
   Database(dir / "a.db", Database::Mode::kWrite).run("PRAGMA user_version = 99");
-  EXPECT_NE(errorOf([&] { SessionReader(dir / "a.db"); }).find("has session format 99, this pincer reads formats 2 to 5"),
+  EXPECT_NE(errorOf([&] { SessionReader(dir / "a.db"); }).find("has session format 99, this pincer reads formats 2 to 6"),
             std::string::npos);
 }
 
