@@ -33,6 +33,7 @@ class Linkage {
   }
   void couple(const engine::CouplingModel& coupling) { couplings_.push_back(coupling); }
   void drive(const engine::DriveModel& drive) { drives_.push_back(drive); }
+  void exclude(int a, int b) { excluded_.emplace_back(a, b); }  // these two never touch
 
   void build() {
     engine::WorldBuilder builder{options_};
@@ -40,6 +41,7 @@ class Linkage {
     for (const auto& joint : joints_) builder.addJoint(joint);
     for (const auto& coupling : couplings_) builder.addCoupling(coupling);
     for (const auto& drive : drives_) builder.addDrive(drive);
+    for (const auto& [a, b] : excluded_) builder.excludePair(a, b);
     model_ = builder.build();
     state_ = engine::makeState(model_, starts_, {});
     scratch_ = engine::makeScratch(model_);
@@ -67,6 +69,7 @@ class Linkage {
   std::vector<engine::JointModel> joints_;
   std::vector<engine::CouplingModel> couplings_;
   std::vector<engine::DriveModel> drives_;
+  std::vector<std::pair<int, int>> excluded_;
   engine::WorldModel model_;
   engine::WorldState state_;
   engine::ScratchHandle scratch_;

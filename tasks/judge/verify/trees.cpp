@@ -30,6 +30,7 @@ Linkage rodsAt(const std::vector<double>& angles, double h) {
     engine::JointModel joint = jointAlong(JointKind::kPivot, Vec3::UnitY(), body, {0, 0, kRod / 2}, i == 0 ? -1 : body - 1, on_parent);
     joint.traits.start = i == 0 ? angles[i] : angles[i] - angles[i - 1];
     world.joint(joint);
+    for (int other = 0; other < body - 1; ++other) world.exclude(other, body);  // they swing through each other
     end -= q * Vec3(0, 0, kRod);
   }
   world.build();
