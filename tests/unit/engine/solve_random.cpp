@@ -89,8 +89,8 @@ TEST_P(RandomProblems, GiveTheSameBitsAgain) {
 // As another island leaves it that had no finite answer. Which one that is depends on the number of threads.
 void fillWithNaN(SolverScratch& s) {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  for (std::vector<double>* vector : {&s.weight, &s.r, &s.u, &s.centre, &s.best_r, &s.best_u, &s.give, &s.frozen, &s.change, &s.work,
-                                      &s.y, &s.direction, &s.gradient, &s.way, &s.local})
+  for (std::vector<double>* vector : {&s.weight, &s.r, &s.u, &s.centre, &s.best_r, &s.best_u, &s.give, &s.frozen, &s.change, &s.work, &s.y,
+                                      &s.direction, &s.gradient, &s.way, &s.local})
     std::fill(vector->begin(), vector->end(), kNaN);
 }
 
