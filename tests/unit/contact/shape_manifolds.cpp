@@ -202,7 +202,7 @@ TEST(Manifolds, ALineWhoseMiddleIsDeepestKeepsBothEnds) {
     ContactCandidates candidates;
     std::uint32_t feature = 0;
     for (const double x : {-0.01, -0.005, middle, 0.005, 0.01})
-      candidates.add({Vec3(x, 0, 0), Vec3::UnitZ(), x == middle ? -5e-6 : -1e-6, ++feature});
+      candidates.add({{Vec3(x, 0, 0), Vec3::UnitZ(), x == middle ? -5e-6 : -1e-6, ++feature}});
     PairPoints out;
     candidates.keepBest().place(Pose{}, out);
     std::set<double> kept;

@@ -7,6 +7,7 @@
 #include "pincer/contact/polytope.h"
 #include "pincer/contact/smooth_mesh.h"
 #include "pincer/engine/step.h"
+#include "pincer/tests/support/constants.h"
 #include "pincer/tests/support/worlds.h"
 
 namespace pincer::engine {

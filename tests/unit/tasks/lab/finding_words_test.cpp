@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "pincer/tests/support/run_app.h"
 
 namespace pincer::tasks {
