@@ -1,4 +1,5 @@
 // What a session keeps of a person's hands: every bit, and no byte that isn't one.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <limits>
