@@ -1,6 +1,7 @@
 // A pickup study into a session file under the servo: which ticks are kept, what an interrupt leaves, and what a person is told.
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -112,19 +113,35 @@ TEST(PickupSession, IsCompleteWhenTheInterruptComesAfterTheLastTrial) {
   EXPECT_TRUE(SessionReader(directory / "s.db").complete());
 }
 
+// Interrupts after so many ticks, however long a session takes to set up.
+class InterruptingCycle final : public ServoCycle {
+ public:
+  InterruptingCycle(ServoCycle& inner, int ticks, std::atomic<bool>& interrupted)
+      : inner_(inner), left_(ticks), interrupted_(interrupted) {}
+  bool tick(double now) override {
+    if (--left_ == 0) interrupted_ = true;
+    return inner_.tick(now);
+  }
+  void cutForces() noexcept override { inner_.cutForces(); }
+
+ private:
+  ServoCycle& inner_;
+  int left_;
+  std::atomic<bool>& interrupted_;
+};
+
 TEST(PickupSession, AccountsForTheTicksOfAnInterruptedTrialInRealTime) {
   const tests::TemporaryDirectory directory;
   ManipulationSessionOptions options = shortStudy();
   options.servo.clock = ServoClock::kPaced;
   std::atomic<bool> interrupted{false};
-  std::thread operator_thread([&] {
-    std::this_thread::sleep_for(std::chrono::milliseconds(200));
-    interrupted = true;
-  });
+  options.host.serve = [&](HandsCycle& cycle, std::size_t, std::size_t) {
+    InterruptingCycle interrupting(cycle, 100, interrupted);
+    return runServo(options.servo, interrupting, interrupted);
+  };
   const ManipulationSessionResult result = runManipulationSession(options, directory / "s.db", interrupted, {});
-  operator_thread.join();
   EXPECT_TRUE(result.interrupted);
-  EXPECT_GT(result.servo.ticks, 0);
+  EXPECT_EQ(result.servo.ticks, 100);
   EXPECT_EQ(result.servo.lateness.count(), result.servo.ticks);
   EXPECT_EQ(SessionReader(directory / "s.db").state(), "aborted: interrupted by the user");
 }
