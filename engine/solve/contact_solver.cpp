@@ -8,6 +8,7 @@
 #include "pincer/engine/solve/residual.h"
 #include "pincer/engine/solve/search.h"
 #include "pincer/engine/solve/small_problem.h"
+#include "pincer/engine/solve/stuck_contacts.h"
 #include "pincer/engine/solve/sweeps.h"
 
 namespace pincer::engine {
@@ -40,7 +41,8 @@ void solveFew(const ContactProblem& problem, const SolverOptions& options, Solve
   const bool is_exact = !problem.strict || start.residual <= exactResidual(options.tolerance, referenceSpeed(problem));
   const bool rests = problem.calm && start.speed <= restErrorOf(options);
   result = {SolveMethod::kWarmStart, 0, start.residual, start.speed, start.residual, true};
-  if (!rests && !(start.residual <= options.tolerance && is_exact))
+  if (rests || (start.residual <= options.tolerance && is_exact)) return;
+  if (!solveStuckContacts(problem, options, scratch, r, u, result))
     solveFewContacts(problem, options, start.residual, scratch, r, u, result);
 }
 

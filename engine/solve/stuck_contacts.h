@@ -1,0 +1,25 @@
+// stuck_contacts: contacts that all stick, or are open, around a few movers, in one step; more of them than the movers can tell apart, as the corners of a
+// pad or of a box.
+//
+//   minimise |dr|  with  W dr = -u   =>   dr = A N^-2 A^T (-u),   N = A^T A + ridge I     (contact_problem.h: W = A A^T)
+//
+//   u   velocities at the impulses r; dr what is added to those of the contacts that stick [N s]
+//   N   one 6 x 6 block per mover that turns, 3 x 3 per point; points never touch each other, and are eliminated first (Schur)
+//
+// Of all impulses that hold the bodies the step takes those nearest to the warm start: what redundant contacts share among them changes by no more than it
+// must. The ridge, one for all movers, keeps motions that no contact sees out of N's inverse (where it differs from mover to mover they come in);
+// what it leaves of -u, some 1e-9 of it, the next step takes.
+// Source: G. Golub, C. Van Loan, Matrix Computations, 4th ed. (2013), section 5.5 (least norm).
+#pragma once
+#include "pincer/engine/solve/contact_problem.h"
+#include "pincer/engine/solve/solver_scratch.h"
+
+namespace pincer::engine {
+
+// True if the contacts stick or are open, and that solved `problem`: then r, u and `result` are those of solveContacts. Else all three are as before.
+//   r       warm start, in the cones;  u  its velocities;  scratch.weight filled
+//   result  its error
+bool solveStuckContacts(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch, double* r, double* u,
+                        SolveResult& result);
+
+}  // namespace pincer::engine
