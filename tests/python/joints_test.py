@@ -215,7 +215,13 @@ def test_rollouts_tell_drives_and_keep_joints():
         for t in range(steps):
             inputs.drive_target = controls[row, t]
             pincer.step(model, state, inputs=inputs)
-            parts = [[state.time], state.position.ravel(), state.velocity.ravel(), state.joint_position, state.joint_velocity]
+            parts = [
+                [state.time],
+                state.position.ravel(),
+                state.velocity.ravel(),
+                state.joint_position,
+                state.joint_velocity,
+            ]
             assert np.array_equal(wanted.state[row, t], np.concatenate(parts))
     assert len(set(wanted.state[:, -1, -3].tolist())) == rows  # each told something else
 
