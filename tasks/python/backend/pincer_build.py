@@ -43,24 +43,36 @@ def _run(*command):
         ) from None
 
 
+def configure(folder):
+    """Makes a CMake tree for the module in `folder`."""
+    _run(
+        "cmake",
+        "-S",
+        SOURCES,
+        "-B",
+        folder,
+        "-G",
+        "Ninja",
+        "-DPINCER_TESTS=OFF",
+        "-DPINCER_PYTHON=ON",
+        f"-DPython_EXECUTABLE={sys.executable}",
+    )
+
+
 def _build(folder):
     """Builds the module with CMake in `folder`; returns the package's folder."""
     folder = pathlib.Path(folder)
     if not (folder / "build.ninja").exists():
-        _run(
-            "cmake",
-            "-S",
-            SOURCES,
-            "-B",
-            folder,
-            "-G",
-            "Ninja",
-            "-DPINCER_TESTS=OFF",
-            "-DPINCER_PYTHON=ON",
-            f"-DPython_EXECUTABLE={sys.executable}",
-        )
+        configure(folder)
     _run("cmake", "--build", folder, "--target", "pincer_python")
-    return folder / "python" / "pincer"
+    package = folder / "python" / "pincer"
+    module = "_core" + sysconfig.get_config_var("EXT_SUFFIX")
+    if not (package / module).exists():
+        raise SystemExit(
+            f"pincer: {folder} was configured for another Python than {sys.executable}: it has no {module}. "
+            "Leave PINCER_BUILD_DIR out, or name a folder that isn't there yet."
+        )
+    return package
 
 
 def _record(name, data):

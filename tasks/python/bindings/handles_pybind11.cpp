@@ -41,6 +41,11 @@ void setRate(const BodyHandle& body, const py::object& value) {
   body.state->place(body.index, start);
 }
 
+double jointPosition(const JointHandle& joint) { return tasks::jointPosition(joint.state->model(), joint.state->scene(), joint.index); }
+double jointVelocity(const JointHandle& joint) { return tasks::jointVelocity(joint.state->model(), joint.state->scene(), joint.index); }
+void setJointPosition(const JointHandle& joint, double value) { joint.state->setJoint(joint.index, value, jointVelocity(joint)); }
+void setJointVelocity(const JointHandle& joint, double value) { joint.state->setJoint(joint.index, jointPosition(joint), value); }
+
 const engine::PointState& pointOf(const FingerHandle& finger) {
   return finger.state->scene().grasp.world.points[static_cast<std::size_t>(finger.index)];
 }
@@ -77,6 +82,8 @@ auto reportVector(Vec3 grasp::FingerReport::*member) {
 
 BodyHandle bodyOf(State& state, const std::string& name) { return {&state, state.model().bodyNamed(name)}; }
 BodyHandle bodyAt(State& state, int index) { return {&state, checked(index, state.model().scene.bodies.size(), "body")}; }
+JointHandle jointOf(State& state, const std::string& name) { return {&state, state.model().jointNamed(name)}; }
+JointHandle jointAt(State& state, int index) { return {&state, checked(index, state.model().joints.size(), "joint")}; }
 FingerHandle fingerOf(State& state, const std::string& name) { return {&state, state.model().fingerNamed(name)}; }
 FingerHandle fingerAt(State& state, int index) { return {&state, checked(index, state.model().scene.fingers.size(), "finger")}; }
 
@@ -90,6 +97,12 @@ void bindHandles(py::module_& module) {
           "Live view (7): x, y, z [m], quaternion w, x, y, z. Assign 3 or 7 numbers to place it: contacts forget what they remembered.")
       .def_property("velocity", &bodyRate, &setRate,
                     "Live view (6): of the centre of mass [m/s], angular [rad/s], world axes. Assign 6 numbers.");
+  py::class_<JointHandle>(module, "Joint", "One pivot or slider of a state: it has one coordinate [rad] or [m].")
+      .def_readonly("index", &JointHandle::index)
+      .def_property_readonly("name", [](const JointHandle& j) { return nameOfJoint(j.state->model(), static_cast<std::size_t>(j.index)); })
+      .def_property("position", &jointPosition, &setJointPosition,
+                    "Its coordinate [rad, m]. Assign a number: what it carries goes along, contacts forget what they remembered.")
+      .def_property("velocity", &jointVelocity, &setJointVelocity, "Its rate [rad/s, m/s]. Assign a number.");
   py::class_<FingerHandle>(module, "Finger", "One finger of a state: where its device is to go, and what it felt in the last tick.")
       .def_readonly("index", &FingerHandle::index)
       .def_property_readonly(

@@ -12,6 +12,7 @@ Table tableOf(std::vector<Row>& rows) {
   constexpr py::ssize_t kColumns = sizeof(Row) / sizeof(double);
   return {reinterpret_cast<double*>(rows.data()), {static_cast<py::ssize_t>(rows.size()), kColumns}};
 }
+Table tableOf(std::vector<double>& row) { return {row.data(), {static_cast<py::ssize_t>(row.size())}}; }
 Table tableOf(Vec3& row) { return {row.data(), {3}}; }
 
 // Adds a property that is a live view, and takes what can be assigned to it.
@@ -47,6 +48,9 @@ void bindInputs(py::module_& module) {
            "(len(model.driven), 7) x, y, z [m], quaternion w, x, y, z of driven bodies at the end of every tick; NaN: the scene's.");
   addTable(inputs, "motion_velocity", &tasks::SceneInputs::motion_rate,
            "(len(model.driven), 6) velocity of the body's origin [m/s], angular velocity [rad/s]; counts where motion_position is said.");
+  addTable(inputs, "drive_target", &tasks::SceneInputs::drive_target,
+           "(ndrive) what each drive is told all through the step: a position, a rate or a force, as its type has it; NaN: what the scene "
+           "tells it.");
   addTable(inputs, "gravity", &tasks::SceneInputs::gravity, "(3) [m/s^2]; NaN: the scene's.");
 }
 

@@ -25,6 +25,18 @@ std::vector<std::string> drivenNames(const Model& model) {
   return names;
 }
 
+std::vector<std::string> jointNames(const Model& model) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < model.joints.size(); ++i) names.push_back(nameOfJoint(model, i));
+  return names;
+}
+
+std::vector<std::string> driveNames(const Model& model) {
+  std::vector<std::string> names;
+  for (const tasks::SceneDrive& drive : model.scene.drives) names.push_back(drive.model.name);
+  return names;
+}
+
 std::vector<std::string> sensorNames(const Model& model) {
   std::vector<std::string> names;
   for (const tasks::Quantity& quantity : model.scene.record.quantities) names.push_back(quantity.name);
@@ -54,7 +66,11 @@ void bindModel(py::module_& module) {
       .def_property_readonly("bodies", &bodyNames, "Names of the bodies, in the order of State.position.")
       .def_property_readonly("fingers", &fingerNames, "Names of the fingers, in the order of Inputs.finger_position.")
       .def_property_readonly("driven", &drivenNames, "Names of the bodies that follow motions, in the order of Inputs.motion_position.")
+      .def_property_readonly("joints", &jointNames, "Names of the pivots and sliders, in the order of State.joint_position.")
+      .def_property_readonly("drives", &driveNames, "Names of the drives, in the order of Inputs.drive_target.")
       .def_property_readonly("sensors", &sensorNames, "Quantities that the scene records, in the order of rollout's sensordata.")
+      .def_property_readonly(
+          "remarks", [](const Model& m) { return m.scene.remarks; }, "What of its robots' files has no effect, a line each.")
       .def_property_readonly("masses", &masses, "Of the bodies [kg]; 0 for those that don't move freely.")
       .def_property_readonly(
           "tick", [](const Model& m) { return m.scene.options.h; }, "Length of a step [s].")
@@ -66,6 +82,10 @@ void bindModel(py::module_& module) {
           "nbody", [](const Model& m) { return m.scene.bodies.size(); }, "Number of bodies.")
       .def_property_readonly(
           "nfinger", [](const Model& m) { return m.scene.fingers.size(); }, "Number of fingers.")
+      .def_property_readonly(
+          "njoint", [](const Model& m) { return m.joints.size(); }, "Number of pivots and sliders.")
+      .def_property_readonly(
+          "ndrive", [](const Model& m) { return m.scene.drives.size(); }, "Number of drives.")
       .def_property_readonly(
           "ncontrol", [](const Model& m) { return tasks::controlSize(m); }, "Columns of rollout's controls.")
       .def_property_readonly(

@@ -51,12 +51,23 @@ class State::InUse {
 };
 
 State::State(ModelPointer model)
-    : model_(std::move(model)), scene_(*model_), places_(7 * model_->scene.bodies.size()), rates_(6 * model_->scene.bodies.size()) {
+    : model_(std::move(model)),
+      scene_(*model_),
+      places_(7 * model_->scene.bodies.size()),
+      rates_(6 * model_->scene.bodies.size()),
+      joint_positions_(model_->joints.size()),
+      joint_velocities_(model_->joints.size()) {
   reset();
 }
 
 State::State(const State& other)
-    : model_(other.model_), scene_(other.scene_), contacts_(other.contacts()), places_(other.places_), rates_(other.rates_) {
+    : model_(other.model_),
+      scene_(other.scene_),
+      contacts_(other.contacts()),
+      places_(other.places_),
+      rates_(other.rates_),
+      joint_positions_(other.joint_positions_),
+      joint_velocities_(other.joint_velocities_) {
   for (std::size_t i = 0; i < other.model_->scene.fingers.size(); ++i) felt_.push_back(other.felt(static_cast<int>(i)));
   refresh();
 }
@@ -102,6 +113,12 @@ void State::setBytes(std::string_view bytes) {
 void State::place(int body, const engine::BodyStart& start) {
   const InUse in_use(*this);
   tasks::placeBody(*model_, scene_, body, start);
+  refresh();
+}
+
+void State::setJoint(int joint, double position, double velocity) {
+  const InUse in_use(*this);
+  tasks::placeJoint(*model_, scene_, joint, position, velocity);
   refresh();
 }
 
@@ -151,6 +168,7 @@ void State::takeBack() {
 void State::refresh() {
   tasks::writePlaces(*model_, scene_, places_);
   tasks::writeRates(*model_, scene_, rates_);
+  tasks::writeJoints(*model_, scene_, joint_positions_, joint_velocities_);
   if (stepped_) return;
   reports_.clear();
   for (const FingerFelt& felt : felt_) {

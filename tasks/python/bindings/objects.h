@@ -17,6 +17,11 @@ struct Model : tasks::SceneModel {
 };
 using ModelPointer = std::shared_ptr<const Model>;
 
+// Of a pivot or slider.
+inline const std::string& nameOfJoint(const Model& model, std::size_t joint) {
+  return model.scene.joints[static_cast<std::size_t>(model.joints[joint])].name;
+}
+
 // A file's path or the name of a built-in scene. Throws InputError.
 ModelPointer loadModel(const std::string& path_or_name);
 // From the text of a scene; files that it names are relative to the folder of `name`.
@@ -36,7 +41,7 @@ struct FingerFelt {
   std::vector<grasp::Taxel> pressure;
 };
 
-// A state and what is derived from it: rows of places and rates at fixed addresses, which follow every step; contacts and reports of the last tick.
+// A state and what is derived from it: rows of places, rates and joints at fixed addresses, which follow every step; contacts and reports of the last tick.
 class State {
  public:
   explicit State(ModelPointer model);
@@ -55,6 +60,7 @@ class State {
   void reset();                         // to the start of the scene
   void setBytes(std::string_view bytes);
   void place(int body, const engine::BodyStart& start);
+  void setJoint(int joint, double position, double velocity);
   void hold(int finger, const Vec3& place);  // NaN: it follows the scene's trajectory again
   engine::BodyStart startOf(int body) const;
 
@@ -65,6 +71,8 @@ class State {
 
   double* places() { return places_.data(); }  // bodies x 7
   double* rates() { return rates_.data(); }    // bodies x 6
+  double* jointPositions() { return joint_positions_.data(); }
+  double* jointVelocities() { return joint_velocities_.data(); }
 
   // For who steps states in bulk (rollout): between the two nobody else touches it.
   tasks::SceneState& lend();
@@ -81,7 +89,7 @@ class State {
   std::vector<ContactRow> contacts_;
   std::vector<FingerFelt> felt_;
   std::vector<grasp::FingerReport> reports_;
-  std::vector<double> places_, rates_;
+  std::vector<double> places_, rates_, joint_positions_, joint_velocities_;
   std::atomic<bool> busy_{false};
 };
 

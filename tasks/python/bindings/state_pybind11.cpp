@@ -18,6 +18,11 @@ py::array_t<double> ratesOf(const py::object& self) {
   return viewOf(state.rates(), {static_cast<py::ssize_t>(state.model().scene.bodies.size()), 6}, self, false);
 }
 
+py::array_t<double> jointRow(const py::object& self, double* (State::*row)()) {
+  auto& state = self.cast<State&>();
+  return viewOf((state.*row)(), {static_cast<py::ssize_t>(state.model().joints.size())}, self, false);
+}
+
 py::array_t<ContactRow> contactsOf(const State& state) {
   const std::vector<ContactRow> rows = state.contacts();
   return py::array_t<ContactRow>(static_cast<py::ssize_t>(rows.size()), rows.data());
@@ -56,11 +61,19 @@ void bindState(py::module_& module) {
           "velocity", &ratesOf,
           "Live, read-only view (nbody, 6): velocity of the centre of mass [m/s] and angular velocity [rad/s], world axes.")
       .def_property_readonly(
+          "joint_position", [](const py::object& self) { return jointRow(self, &State::jointPositions); },
+          "Live, read-only view (njoint): coordinates of the pivots [rad] and sliders [m].")
+      .def_property_readonly(
+          "joint_velocity", [](const py::object& self) { return jointRow(self, &State::jointVelocities); },
+          "Live, read-only view (njoint): their rates [rad/s, m/s].")
+      .def_property_readonly(
           "contacts", &contactsOf,
           "Copy: structured array of the last tick's contacts; force [N] and moment [N m] act on what touches, `body` feels "
           "the negative; normal points out of `body`; finger or other_body is -1.")
       .def("body", &bodyOf, py::arg("name"), py::keep_alive<0, 1>(), "The body of this name (or index).")
       .def("body", &bodyAt, py::arg("index"), py::keep_alive<0, 1>())
+      .def("joint", &jointOf, py::arg("name"), py::keep_alive<0, 1>(), "The pivot or slider of this name (or index).")
+      .def("joint", &jointAt, py::arg("index"), py::keep_alive<0, 1>())
       .def("finger", &fingerOf, py::arg("name"), py::keep_alive<0, 1>(), "The finger of this name (or index).")
       .def("finger", &fingerAt, py::arg("index"), py::keep_alive<0, 1>())
       .def("measure", &measure, py::arg("quantity"), "A quantity by the name that scenes record it with: \"energy\", \"ball.p_z\".")

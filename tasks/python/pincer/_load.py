@@ -9,7 +9,8 @@ from pincer import _core
 def load(scene, *, name="scene"):
     """The model of a scene.
 
-    scene: name of a built-in scene ("s4_pinch"), path of a scene file, or a dict with the keys of a scene file (docs/scenes.md).
+    scene: name of a built-in scene ("s4_pinch"), path of a scene file or of a robot's (docs/robots.md), or a dict with the keys of a
+           scene file (docs/scenes.md).
     name:  of a dict's scene in messages; files that it names are relative to the folder of `name`.
     Raises InputError that says what is wrong, where, and what helps.
     """

@@ -11,7 +11,8 @@ from pincer import _core
 class RolloutResult(NamedTuple):
     """What came of a rollout.
 
-    state:      (nbatch, nstep, nstate) time [s], then x, y, z [m] and qw, qx, qy, qz of each body, then v [m/s] and w [rad/s] of each
+    state:      (nbatch, nstep, nstate) time [s], then x, y, z [m] and qw, qx, qy, qz of each body, then v [m/s] and w [rad/s] of each,
+                then the coordinates of model.joints, then their rates
     sensordata: (nbatch, nstep, nsensor) the quantities of model.sensors
     status:     (nbatch, nstep) int32, flags of pincer.Status; after a state that isn't finite the row repeats its last values
     final:      the states after the last tick, to go on from; None unless they were asked for
@@ -68,8 +69,8 @@ def rollout(model, states, controls=None, *, nstep=None, out=None, threads=None,
 
     model:      a Model, or a list of nbatch models with the same bodies, fingers and sensors
     states:     a State that all rows begin with, or a list of nbatch; they stay as they are
-    controls:   (nbatch, nstep, ncontrol) or (nstep, ncontrol): places of all fingers' devices [m], x, y, z each; NaN: the scene's
-                trajectory; None: all follow the scene
+    controls:   (nbatch, nstep, ncontrol) or (nstep, ncontrol): places of all fingers' devices [m], x, y, z each, then what each drive
+                is told; NaN: as the scene says; None: all follow the scene
     nstep:      ticks; needed without controls
     out:        (state, sensordata, status), each filled in place or None; C-contiguous, float64 (status: int32)
     threads:    None: one per processor. Neither threads nor chunk_size (rows that a thread takes at once) change a bit

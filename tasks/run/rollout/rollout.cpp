@@ -37,7 +37,10 @@ class RolloutRow {
 
   void tell(std::int64_t t) {
     const std::span<const double> row = cell(job_.controls, t, controlSize(model_));
-    for (std::size_t i = 0; i < row.size() / 3; ++i) inputs_.finger_place[i] = Vec3(row[3 * i], row[3 * i + 1], row[3 * i + 2]);
+    if (row.empty()) return;
+    const std::size_t fingers = inputs_.finger_place.size();
+    for (std::size_t i = 0; i < fingers; ++i) inputs_.finger_place[i] = Vec3(row[3 * i], row[3 * i + 1], row[3 * i + 2]);
+    for (std::size_t i = 0; i < inputs_.drive_target.size(); ++i) inputs_.drive_target[i] = row[3 * fingers + i];
   }
 
   void record(std::int64_t t, const SceneState& state, const SceneStepper& stepper, std::uint32_t status) {
@@ -68,8 +71,8 @@ struct RolloutPool::Memory {
   std::unique_ptr<SceneStepper> stepper;  // of it
 };
 
-std::size_t controlSize(const SceneModel& model) { return 3 * model.scene.fingers.size(); }
-std::size_t stateSize(const SceneModel& model) { return 1 + 13 * model.scene.bodies.size(); }
+std::size_t controlSize(const SceneModel& model) { return 3 * model.scene.fingers.size() + model.scene.drives.size(); }
+std::size_t stateSize(const SceneModel& model) { return 1 + 13 * model.scene.bodies.size() + 2 * model.joints.size(); }
 std::size_t sensorSize(const SceneModel& model) { return model.scene.record.quantities.size(); }
 
 RolloutPool::RolloutPool(int threads) {

@@ -35,6 +35,14 @@ std::vector<int> drivenBodies(const engine::WorldModel& world) {
   return driven;
 }
 
+std::vector<int> jointsWithCoordinate(const std::vector<engine::JointModel>& all) {
+  std::vector<int> joints;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (all[i].kind == engine::JointKind::kPivot || all[i].kind == engine::JointKind::kSlider) joints.push_back(static_cast<int>(i));
+  }
+  return joints;
+}
+
 std::optional<grasp::BaselineFingers> baselinesOf(const Scene& scene) {
   const std::vector<grasp::FingerMethod> methods = methodsOf(scene);
   const bool are_ours = std::all_of(methods.begin(), methods.end(), [](grasp::FingerMethod m) { return m == grasp::FingerMethod::kProxy; });
@@ -50,7 +58,8 @@ bool pushes(const SceneInputs& inputs) {
 
 }  // namespace
 
-SceneModel::SceneModel(Scene read) : scene(std::move(read)), grasp(buildWorld(scene)), driven(drivenBodies(grasp.world)) {}
+SceneModel::SceneModel(Scene read)
+    : scene(std::move(read)), grasp(buildWorld(scene)), driven(drivenBodies(grasp.world)), joints(jointsWithCoordinate(scene.joints)) {}
 
 int SceneModel::bodyNamed(const std::string& name) const {
   return indexOf<engine::BodySpec>(scene.bodies, name, "body", [](const engine::BodySpec& b) { return std::string_view(b.name); });
@@ -60,29 +69,18 @@ int SceneModel::fingerNamed(const std::string& name) const {
   return indexOf<SceneFinger>(scene.fingers, name, "finger", [](const SceneFinger& f) { return std::string_view(f.model.name); });
 }
 
+int SceneModel::jointNamed(const std::string& name) const {
+  std::vector<engine::JointModel> named;
+  for (const int joint : joints) named.push_back(scene.joints[static_cast<std::size_t>(joint)]);
+  return indexOf<engine::JointModel>(named, name, "pivot or slider", [](const engine::JointModel& j) { return std::string_view(j.name); });
+}
+
 SceneState::SceneState(const SceneModel& model)
     : grasp(startState(model.scene, model.grasp)),
       baselines(baselinesOf(model.scene)),
       held(model.scene.fingers.size(), Vec3::Constant(kNotSaid)) {}
 
 std::string hashText(const SceneState& state) { return hashText(state.grasp.world); }
-
-void placeBody(const SceneModel& model, SceneState& state, int body, const engine::BodyStart& start) {
-  const auto index = static_cast<std::size_t>(body);
-  std::vector<engine::BodyStart> starts = model.scene.starts;
-  starts[index] = start;
-  const double length = start.X_WB.q.norm();
-  if (!(length > 0) || !std::isfinite(length)) {
-    throw InputError(fmt::format("body \"{}\": quaternion w, x, y, z = {}, {}, {}, {} is no rotation. It has to be finite and not zero.",
-                                 model.scene.bodies[index].name, start.X_WB.q.w(), start.X_WB.q.x(), start.X_WB.q.y(), start.X_WB.q.z()));
-  }
-  starts[index].X_WB.q.coeffs() /= length;
-  std::vector<Vec3> points;
-  for (const engine::PointState& point : state.grasp.world.points) points.push_back(point.p_target_W);
-  state.grasp.world.bodies[index] = engine::makeState(model.grasp.world, starts, points).bodies[index];
-  state.grasp.world.contact_count = 0;
-  std::fill(state.grasp.followed.colliders.begin(), state.grasp.followed.colliders.end(), -1);
-}
 
 SceneInputs::SceneInputs(const SceneModel& model)
     : finger_place(model.scene.fingers.size(), Vec3::Constant(kNotSaid)),

@@ -27,10 +27,12 @@ struct SceneModel {
   Scene scene;
   grasp::GraspModel grasp;
   std::vector<int> driven;  // bodies that follow motions, in the order of SceneInputs::motion_place
+  std::vector<int> joints;  // pivots and sliders, which have one coordinate each, as places in scene.joints
 
   // Index by name; throws InputError with a did-you-mean.
   int bodyNamed(const std::string& name) const;
   int fingerNamed(const std::string& name) const;
+  int jointNamed(const std::string& name) const;  // place in `joints`
 };
 
 // All that evolves.
@@ -48,8 +50,17 @@ struct SceneState {
 std::string hashText(const SceneState& state);
 
 // Places body `body` anew: pose X_WB, velocity of its centre of mass [m/s], angular velocity [rad/s]. What its contacts remembered is forgotten.
-// The quaternion is normalised. Throws InputError when a value isn't finite, the quaternion is zero, or the body can't have a velocity.
+// The quaternion is normalised. Throws InputError when a value isn't finite, the quaternion is zero, the body can't have a velocity, or a tree of
+// joints places it (placeJoint) or stands on it.
 void placeBody(const SceneModel& model, SceneState& state, int body, const engine::BodyStart& start);
+
+// Coordinate of `joint`, a place in SceneModel::joints, and its rate [rad, rad/s] of a pivot, [m, m/s] of a slider.
+double jointPosition(const SceneModel& model, const SceneState& state, int joint);
+double jointVelocity(const SceneModel& model, const SceneState& state, int joint);
+
+// Sets both; what the joint carries goes along, and what follows it by a coupling. All contacts forget what they remembered. Throws InputError, and
+// changes nothing, when a number isn't finite, the position is beyond the joint's stops, the joint follows another one, or is one of a loop of bodies.
+void placeJoint(const SceneModel& model, SceneState& state, int joint, double position, double velocity);
 
 // What a caller may ask for in place of the scene's trajectories. NaN: not said.
 struct SceneInputs {

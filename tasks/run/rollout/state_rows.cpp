@@ -19,11 +19,19 @@ void writeRates(const SceneModel& model, const SceneState& state, std::span<doub
   }
 }
 
+void writeJoints(const SceneModel& model, const SceneState& state, std::span<double> positions, std::span<double> velocities) {
+  for (std::size_t i = 0; i < model.joints.size(); ++i) {
+    positions[i] = jointPosition(model, state, static_cast<int>(i));
+    velocities[i] = jointVelocity(model, state, static_cast<int>(i));
+  }
+}
+
 void writeStateRow(const SceneModel& model, const SceneState& state, std::span<double> out) {
-  const std::size_t bodies = model.scene.bodies.size();
+  const std::size_t bodies = model.scene.bodies.size(), joints = model.joints.size();
   out[0] = state.time();
   writePlaces(model, state, out.subspan(1, 7 * bodies));
-  writeRates(model, state, out.subspan(1 + 7 * bodies));
+  writeRates(model, state, out.subspan(1 + 7 * bodies, 6 * bodies));
+  writeJoints(model, state, out.subspan(1 + 13 * bodies, joints), out.subspan(1 + 13 * bodies + joints));
 }
 
 }  // namespace pincer::tasks

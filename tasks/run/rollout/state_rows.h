@@ -10,7 +10,9 @@ namespace pincer::tasks {
 void writePlaces(const SceneModel& model, const SceneState& state, std::span<double> out);
 // v_W of the centre of mass [m/s] and w_W [rad/s] per body.
 void writeRates(const SceneModel& model, const SceneState& state, std::span<double> out);
-// Time, places, rates (rollout.h).
+// Coordinates of the pivots and sliders [rad, m], and their rates [rad/s, m/s].
+void writeJoints(const SceneModel& model, const SceneState& state, std::span<double> positions, std::span<double> velocities);
+// Time, places, rates, joints (rollout.h).
 void writeStateRow(const SceneModel& model, const SceneState& state, std::span<double> out);
 
 }  // namespace pincer::tasks

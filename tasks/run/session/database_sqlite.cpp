@@ -112,6 +112,20 @@ void distrust(sqlite3* d) {
   sqlite3_exec(d, "PRAGMA cell_size_check = ON; PRAGMA mmap_size = 0", nullptr, nullptr, nullptr);
 }
 
+// A program that was killed between the two halves of a change leaves a journal, which undoes the first half. Only who may write can do so; of anything
+// else that is wrong the reader tells.
+void undoTornWrite(sqlite3* reader, const std::string& path) {
+  constexpr const char* kRead = "PRAGMA user_version";
+  if (sqlite3_exec(reader, kRead, nullptr, nullptr, nullptr) != SQLITE_READONLY_ROLLBACK) return;
+  sqlite3* writer = nullptr;
+  if (sqlite3_open_v2(path.c_str(), &writer, SQLITE_OPEN_READWRITE, nullptr) == SQLITE_OK) {
+    sqlite3_busy_timeout(writer, kBusyTimeout);
+    distrust(writer);
+    sqlite3_exec(writer, kRead, nullptr, nullptr, nullptr);
+  }
+  sqlite3_close_v2(writer);
+}
+
 }  // namespace
 
 void Database::Close::operator()(sqlite3* d) const noexcept { sqlite3_close_v2(d); }
@@ -140,6 +154,7 @@ Database::Database(std::string path, Mode mode) : path_(std::move(path)) {
   sqlite3_extended_result_codes(raw, 1);
   sqlite3_busy_timeout(raw, kBusyTimeout);
   distrust(raw);
+  if (mode == Mode::kRead) undoTornWrite(raw, path_);
 }
 
 void Database::run(const char* sql) {
