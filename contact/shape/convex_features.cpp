@@ -238,22 +238,30 @@ void facet(const Convex& c, const Vec3& d, Facet& f) {
   constexpr double kAcross = 1e-6;  // cosine
   const Polytope& hull = *c.hull;
   const int vertex = hull.extremeVertex(d);
-  const double length = d.norm();
+  const double length2 = d.squaredNorm(), length = std::sqrt(length2);
   const std::span<const int> edges_here = hull.edgesAt(vertex);
+  const auto edgeOf = [&](int e) -> const Polytope::Edge& { return hull.edges()[static_cast<std::size_t>(e)]; };
+  const auto isAcross = [&](const Polytope::Edge& edge) {
+    const Vec3 along = vertexOf(c, edge.to) - vertexOf(c, edge.from);
+    const double rise = d.dot(along);
+    return rise * rise < kAcross * kAcross * length2 * along.squaredNorm();
+  };
+  constexpr std::size_t kMostKnown = 8;  // of edges at a vertex; asked again beyond
+  std::array<bool, kMostKnown> across{};
+  for (std::size_t k = 0; k < std::min(edges_here.size(), kMostKnown); ++k) across[k] = isAcross(edgeOf(edges_here[k]));
   const auto score = [&](int face) {
     double sum = d.dot(hull.faces()[static_cast<std::size_t>(face)].n) / length;
-    for (const int e : edges_here) {
-      const Polytope::Edge& edge = hull.edges()[static_cast<std::size_t>(e)];
+    for (std::size_t k = 0; k < edges_here.size(); ++k) {
+      const Polytope::Edge& edge = edgeOf(edges_here[k]);
       if (edge.left != face && edge.right != face) continue;
-      const Vec3 along = vertexOf(c, edge.to) - vertexOf(c, edge.from);
-      if (std::abs(d.dot(along)) < kAcross * length * along.norm()) sum += 2;
+      if (k < kMostKnown ? across[k] : isAcross(edge)) sum += 2;
     }
     return sum;
   };
   const Polytope::Face* best = nullptr;
   double most = 0;
   for (const int e : edges_here) {
-    const Polytope::Edge& edge = hull.edges()[static_cast<std::size_t>(e)];
+    const Polytope::Edge& edge = edgeOf(e);
     for (const int i : {edge.left, edge.right}) {
       const double s = score(i);
       if (!best || s > most) most = s, best = &hull.faces()[static_cast<std::size_t>(i)];
@@ -267,12 +275,12 @@ void facet(const Convex& c, const Vec3& d, Facet& f) {
 }
 
 // Faces and edges around the extreme vertex.
-void strata(const Convex& c, const Vec3& d, Strata& s) {
+void strata(const Convex& c, const Vec3& d, bool with_edges, Strata& s) {
   const Polytope& hull = *c.hull;
   const int vertex = hull.extremeVertex(d);
   for (const int e : hull.edgesAt(vertex)) {
     const Polytope::Edge& edge = hull.edges()[static_cast<std::size_t>(e)];
-    s.addEdge((vertexOf(c, edge.to) - vertexOf(c, edge.from)).normalized());
+    if (with_edges) s.addEdge((vertexOf(c, edge.to) - vertexOf(c, edge.from)).normalized());
     const bool leaves = edge.from == vertex;  // each face around the vertex once: the left one of the edges that leave it
     s.addNormal(hull.faces()[static_cast<std::size_t>(leaves ? edge.left : edge.right)].n);
   }
@@ -377,9 +385,14 @@ double reachOf(const Shape& shape, const Vec3& p, const Vec3& d) {
   PINCER_ASSERT(isUnitIfFinite(d));
   return onConvex(shape, [&](const auto& s) -> double { return reach(s, p, d); });
 }
-void strataOf(const Shape& shape, const Vec3& d, Strata& found) {
+void strataOf(const Shape& shape, const Vec3& d, bool with_edges, Strata& found) {
   found.normal_count = found.edge_count = 0;
-  onConvex(shape, [&](const auto& s) -> void { strata(s, d, found); });
+  onConvex(shape, [&](const auto& s) -> void {
+    if constexpr (std::is_same_v<std::decay_t<decltype(s)>, Convex>)
+      strata(s, d, with_edges, found);
+    else
+      strata(s, d, found);
+  });
 }
 Mat3 bendOf(const Shape& shape, const Vec3& d) {
   PINCER_ASSERT(isUnitIfFinite(d));

@@ -72,7 +72,8 @@ void addRimCorner(const Vec2& towards, Facet& facet);
 // How far the ray from `p` along the unit vector `d` runs until it leaves a capsule or cylinder [m]; where it misses the wall, until it is
 // nearest to the axis. Of other solids, until the plane across d through their furthest point.
 double reachOf(const Shape& shape, const Vec3& p, const Vec3& d);
-void strataOf(const Shape& shape, const Vec3& d, Strata& strata);
+// `with_edges`: or those of a hull are left out, which cost a root each.
+void strataOf(const Shape& shape, const Vec3& d, bool with_edges, Strata& strata);
 Mat3 bendOf(const Shape& shape, const Vec3& d);
 bool isRound(const Shape& shape);  // bendOf isn't always zero
 

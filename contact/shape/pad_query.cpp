@@ -123,11 +123,52 @@ class PadQuery {
   }
 
   // Of the facet that faces the surface: along its edges, each a capsule that searches from where the main contact is, and from its corners downhill.
+  // Neither finds a place where the mesh only falls away from the main one.
   void addFurther(FingerContacts& found) {
     Facet facet;
     facetOf(Convex{pad_.hull}, X_BF_.q.conjugate() * -found.main().n_B, facet);
-    for (int k = 0; k < facet.count; ++k) addEdge(facet, k, found);
+    for (int k = 0; k < facet.count; ++k) {
+      if (mayReachEdge(facet, k)) addEdge(facet, k, found);
+    }
+    if (onlyFallsAway(facet, found.main())) return;
     for (std::size_t k = 0; k < tracker_.feet.size() && static_cast<int>(k) < facet.count; ++k) addDownhill(facet, k, found);
+  }
+
+  const MeshFeatures& features() const { return std::get<Mesh>(shape_).surface->features(); }
+  // How far from the core flat triangles may be that the surface touches.
+  double reach() const { return pad_.rounding + margin_ + std::get<Mesh>(shape_).surface->bulge(); }
+  Vec3 cornerOf(const Facet& facet, int k) const { return X_BF_ * facet.corners[static_cast<std::size_t>(k % facet.count)].p; }
+
+  bool mayReachEdge(const Facet& facet, int k) const {
+    const Vec3 from = cornerOf(facet, k), to = cornerOf(facet, k + 1), around = Vec3::Constant(reach());
+    const Vec3 low = from.cwiseMin(to) - around, high = from.cwiseMax(to) + around;
+    bool may = false;
+    features().visitBox(low, high, [&](std::int32_t t) { may = may || features().meetsBox(t, low, high); });
+    return may;
+  }
+
+  // True if every triangle that the facet may touch leans away from the main contact: then the gap grows along each way from there, and has no other
+  // minimum. Another rim or bump would have a side that faces it. What is level along a way, as a cylinder, isn't known by that.
+  bool onlyFallsAway(const Facet& facet, const SurfaceContact& main) const {
+    constexpr double kLeans = 1e-6;  // sine
+    const Vec3 ahead = X_BF_.q * facet.n, around = Vec3::Constant(reach());
+    Vec3 low = Vec3::Constant(kInfinity), high = -low;
+    for (int k = 0; k < facet.count; ++k) {
+      low = low.cwiseMin(cornerOf(facet, k));
+      high = high.cwiseMax(cornerOf(facet, k));
+    }
+    const Vec3 from = cornerOf(facet, 0);
+    bool falls = facet.count > 2;
+    features().visitBox(low - around, high + around, [&](std::int32_t t) {
+      if (!falls) return;
+      const auto triangle = features().triangle(t);
+      const auto heightOf = [&](int i) { return ahead.dot(triangle.corner(i) - from); };
+      if (std::min({heightOf(0), heightOf(1), heightOf(2)}) > reach()) return;
+      const Vec3 way = (triangle.corner(0) + triangle.corner(1) + triangle.corner(2)) / 3 - main.p_BS;
+      const Vec3 level = way - ahead.dot(way) * ahead;
+      falls = triangle.n.dot(level) > kLeans * level.norm();
+    });
+    return falls;
   }
 
   void addEdge(const Facet& facet, int k, FingerContacts& found) {

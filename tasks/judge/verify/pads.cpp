@@ -5,6 +5,8 @@
 //   slip      mu = .98 m g/(2 N): falls with .02 g and doesn't turn
 //   spin      four corners at radius r carry N/4 each: w' = -2 mu N r / I, about the pads' normal
 //   rod       pads that move apart by d turn a rod of radius R between them by d/(2 R), without slip
+#include <fmt/format.h>
+
 #include <array>
 
 #include "pincer/contact/generated_meshes.h"
@@ -40,7 +42,9 @@ struct PadGrip {
   double patch_radius = 0;                                 // [m]
   double turn_stiffness = 0;                               // [N m/rad]
   double beside = 0;                                       // the object's centre of mass from its middle along y [m]
+  Vec3 off = Vec3::Zero();                                 // of the pads from the object's middle [m]
   double press = 15;                                       // N [N]
+  double seconds = 60;                                     // held for
   Vec3 stiffness = Vec3::Constant(5000);                   // along x: 0 presses with a force, else with a spring [N/m]
   Eigen::Array<bool, 3, 1> locked{false, false, false};
   Vec3 gravity_W{0, 0, -kVerifyG};
@@ -70,7 +74,7 @@ class PadRun {
       f.coupling.damping = Vec3::Constant(5);
       f.coupling.locked = grip.locked;
       if (!(grip.stiffness.x() > 0)) f.coupling.mass = 0.05;
-      places.push_back(Vec3(sideOf(i) * (grip.half + grip.tip_reach), 0, kUp));
+      places.push_back(Vec3(sideOf(i) * (grip.half + grip.tip_reach), 0, kUp) + grip.off);
     }
     model = grasp::buildGrasp(std::move(builder), fingers);
     engine::BodyStart start;
@@ -86,7 +90,7 @@ class PadRun {
     for (int i = 0; i < 2; ++i) {
       const double way = i == 0 ? 1 : sign, deep = sprung ? grip_.press / grip_.stiffness.x() : 0;
       grasp::FingerInput& in = inputs_[static_cast<std::size_t>(i)];
-      in.p_WF = Vec3(sideOf(i) * (grip_.half + grip_.tip_reach - deep), 0, kUp) + way * d;
+      in.p_WF = Vec3(sideOf(i) * (grip_.half + grip_.tip_reach - deep), 0, kUp) + grip_.off + way * d;
       in.v_WF = way * v;
       in.f_W = sprung ? Vec3(Vec3::Zero()) : Vec3(-sideOf(i) * grip_.press, 0, 0);
     }
@@ -118,18 +122,29 @@ std::vector<Record> hold(const PadGrip& grip, MeasureContext& context) {
   while (run.time() < 1) run.tick();
   const Vec3 p = run.place() - run.padsPlace();
   const Quat q = run.turned();
-  while (run.time() < 60 && !context.interrupted()) {
+  while (run.time() < grip.seconds && !context.interrupted()) {
     run.tick();
     slip = std::max(slip, (run.place() - run.padsPlace() - p).norm());
     turn = std::max(turn, angleBetween(q, run.turned()));
   }
-  return {atMost("slip in 60 s", 1e6 * slip, "um", 1e-6), atMost("rotation in 60 s", turn, "rad", 1e-9),
+  const std::string held = fmt::format("in {} s", grip.seconds);
+  return {atMost("slip " + held, 1e6 * slip, "um", 1e-6), atMost("rotation " + held, turn, "rad", 1e-9),
           exactly("flagged ticks", static_cast<double>(run.flagged), "-", 0)};
 }
 
 Measurement holdOf(const char* name, const contact::Shape& shape, double width) {
   PadGrip grip{shape};
   grip.width = width;
+  grip.w_W = Vec3(0, 0.3, 0);
+  return {name, [grip](MeasureContext& context) { return hold(grip, context); }};
+}
+
+// The pads reach over the object's edge by `over` of their width, along y and, at a corner, along z.
+Measurement overhangOf(const char* name, double over, bool at_corner) {
+  PadGrip grip{kBrick};
+  grip.off.y() = 0.02 + (over - 0.5) * grip.width;
+  if (at_corner) grip.off.z() = 0.025 + (over - 0.5) * grip.width;
+  grip.seconds = 10;
   grip.w_W = Vec3(0, 0.3, 0);
   return {name, [grip](MeasureContext& context) { return hold(grip, context); }};
 }
@@ -161,6 +176,27 @@ Measurement meshOf(const char* name, const contact::TriangleMesh& mesh, double h
   grip.half = half;
   grip.width = width;
   grip.patch_radius = 0.004;
+  grip.w_W = Vec3(0, 0.3, 0);
+  return {name, [grip](MeasureContext& context) { return hold(grip, context); }};
+}
+
+// Profile of a solid of the half length `half`, of the radius `middle` there and of less by `bulge` at its ends [m].
+std::vector<Vec2> bulging(double middle, double bulge, double half) {
+  constexpr int kSteps = 12;
+  std::vector<Vec2> profile{{0, -half}};
+  for (int i = 0; i <= kSteps; ++i) {
+    const double z = -1 + 2.0 * i / kSteps;
+    profile.push_back({middle - bulge * z * z, half * z});
+  }
+  profile.push_back({0, half});
+  return profile;
+}
+
+// Curved meshes that pads touch in a point or along a rim.
+Measurement curvedOf(const char* name, const contact::TriangleMesh& mesh) {
+  PadGrip grip{smooth(mesh)};
+  grip.patch_radius = 0.004;
+  grip.seconds = 5;
   grip.w_W = Vec3(0, 0.3, 0);
   return {name, [grip](MeasureContext& context) { return hold(grip, context); }};
 }
@@ -205,8 +241,11 @@ std::vector<Record> shake(const Vec3& along, MeasureContext&) {
           exactly("flagged ticks", static_cast<double>(run.flagged), "-", 0)};
 }
 
-std::vector<Record> slipsOut(MeasureContext&) {
+// Gravity lies in the pads' plane, at `heading` from -z.
+std::vector<Record> slipsOut(double heading, MeasureContext&) {
   PadGrip grip{kBrick};
+  const Vec3 down(0, math::sin(heading), -math::cos(heading));
+  grip.gravity_W = kVerifyG * down;
   grip.press = 10;
   grip.mu = 0.98 * grip.mass * kVerifyG / (2 * grip.press);
   grip.stiffness.setZero();
@@ -214,7 +253,7 @@ std::vector<Record> slipsOut(MeasureContext&) {
   PadRun run(grip);
   for (int i = 0; i < 300; ++i) run.tick();
   const double whole = 0.5 * 0.02 * kVerifyG * run.time() * run.time();
-  return {atMost("way, error over the whole way", std::abs((kUp - run.place().z()) / whole - 1), "-", 1e-9),
+  return {atMost("way, error over the whole way", std::abs((run.place() - Vec3(0, 0, kUp)).dot(down) / whole - 1), "-", 1e-9),
           atMost("rotation", angleBetween(Quat::Identity(), run.turned()), "rad", 1e-6),
           exactly("flagged ticks", static_cast<double>(run.flagged), "-", 0)};
 }
@@ -273,16 +312,25 @@ std::vector<Measurement> verifyPads() {
           holdOf("pads/hold-40mm", kBrick, 0.04),
           holdOf("pads/hold-cylinder", contact::Cylinder{0.015, 0.03}, 0.02),
           holdOf("pads/hold-rod", contact::Capsule{0.015, 0.03}, 0.02),
+          holdOf("pads/hold-short-rod", contact::Capsule{0.015, 0.005}, 0.02),
+          overhangOf("pads/hold-edge", 0.6, false),
+          overhangOf("pads/hold-corner", 0.6, true),
           tipOf("pads/tip-sphere", contact::Sphere{0.008}, 0.008),
           tipOf("pads/tip-capsule", contact::CapsuleTip{0.006, Vec3(0, 0, 0.008)}, 0.006),
           tipOf("pads/tip-ellipsoid", contact::EllipsoidTip{Vec3(0.006, 0.009, 0.008)}, 0.006),
           tipOf("pads/tip-round", roundPad(), kHalfThickness),
           meshOf("pads/mesh-box", contact::gridBox(Vec3(0.015, 0.02, 0.025), 6), 0.015, 0.02),
           meshOf("pads/mesh-cylinder", contact::lathe({{0, -0.02}, {0.018, -0.02}, {0.018, 0.02}, {0, 0.02}}, 48), 0.018, 0.02),
+          curvedOf("pads/mesh-ball", contact::geodesicSphere(0.015, 8)),
+          curvedOf("pads/mesh-barrel", contact::lathe(bulging(0.015, 0.004, 0.02), 48)),
+          curvedOf("pads/mesh-short-barrel", contact::lathe(bulging(0.015, 0.001, 0.006), 48)),
+          curvedOf("pads/mesh-spool", contact::lathe(bulging(0.013, -0.002, 0.02), 48)),
           {"pads/tilt", hangs},
           {"pads/shake-across", [](MeasureContext& c) { return shake(Vec3::UnitY(), c); }},
           {"pads/shake-along", [](MeasureContext& c) { return shake(Vec3::UnitZ(), c); }},
-          {"pads/slip-0.98", slipsOut},
+          {"pads/slip-0.98", [](MeasureContext& c) { return slipsOut(0, c); }},
+          {"pads/slip-0.98-askew", [](MeasureContext& c) { return slipsOut(0.3, c); }},
+          {"pads/slip-0.98-diagonal", [](MeasureContext& c) { return slipsOut(0.25 * M_PI, c); }},
           {"pads/spin-down", spinsDown},
           {"pads/roll-rod", rollsRod}};
 }
