@@ -19,6 +19,11 @@ struct HaplyServiceSettings {
   bool vector = true, values = false;  // spellings of a force that it takes
   bool one_message_old = true;         // its states
   double force_scale = 1;
+  std::string preset = "defaults";  // of its devices, and their damping, before somebody configures them
+  double damping = 0;
+  bool takes_configuration = true;  // of a session's first message
+  bool tells_force = true;          // that it applies
+  bool wired_grips = false;         // on a cable: `button` and `hall`, no battery
 };
 
 class HaplyService {

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <iterator>
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "pincer/devices/emulate/haply_service.h"
 
@@ -10,96 +12,120 @@ using nlohmann::json;
 
 namespace {
 
-json jsonOf(const Vec3& v) { return {{"x", v.x()}, {"y", v.y()}, {"z", v.z()}}; }
+void add(std::string& text, const Vec3& v) { fmt::format_to(std::back_inserter(text), R"({{"x":{},"y":{},"z":{}}})", v.x(), v.y(), v.z()); }
 
-json jsonOf(const Quat& q) { return {{"w", q.w()}, {"x", q.x()}, {"y", q.y()}, {"z", q.z()}}; }
+void add(std::string& text, const Quat& q) {
+  fmt::format_to(std::back_inserter(text), R"({{"w":{},"x":{},"y":{},"z":{}}})", q.w(), q.x(), q.y(), q.z());
+}
 
-json anglesOf() { return {{"a0", 0}, {"a1", 0}, {"a2", 0}}; }
+const char* truth(bool value) { return value ? "true" : "false"; }
+
+constexpr const char* kAngles = R"({"a0":0,"a1":0,"a2":0})";
+constexpr const char* kUpright = R"({"w":1,"x":0,"y":0,"z":0})";
 
 }  // namespace
 
+// Written by hand: a tree of values per answer took longer than all else of a round trip.
 struct HaplyService::Texts {
-  static json config(HaplyService& service, HaplyPlant& plant) {
-    json told = {{"type", plant.settings().type}, {"port", "/dev/ttyACM0"}, {"handedness", "right"}};
-    if (service.settings_.minor < 5) return told;
-    told["device_info"] = {{"major_version", 7}, {"minor_version", 4}, {"id", plant.settings().id}, {"device_type", 4}, {"uuid", "..."}};
-    told["gravity_compensation"] = {{"enabled", true}, {"scaling_factor", 1.0}};
-    told["streaming_mode"] = "USB";
-    told["torque_scaling"] = {{"enabled", true}};
-    told["home_return"] = {{"enabled", false}};
-    told["preset"] = service.fault_ == HaplyFault::kSettingsChanged ? "arm_front" : "defaults";
-    told["basis"] = {{"permutation", "XYZ"}};
-    told["mount"] = {{"position", jsonOf(Vec3::Zero())}, {"rotation", jsonOf(Quat::Identity())}, {"scale", jsonOf(Vec3(1, 1, 1))}};
-    told["filters"] = {{"force_gate", {{"gain", 0.3}}}, {"damping", {{"scalar", 0.0}}}};
-    return told;
+  static void config(HaplyService& service, const HaplyPlant& plant, std::string& text) {
+    const auto out = std::back_inserter(text);
+    fmt::format_to(out, R"({{"type":"{}","port":"/dev/ttyACM0","handedness":"right")", plant.settings().type);
+    if (service.settings_.minor >= 5) {
+      fmt::format_to(
+          out,
+          R"(,"device_info":{{"major_version":7,"minor_version":4,"id":"{}","device_type":4,"uuid":"..."}},)"
+          R"("gravity_compensation":{{"enabled":true,"scaling_factor":1.0}},"streaming_mode":"USB","torque_scaling":{{"enabled":true}},)"
+          R"("home_return":{{"enabled":false}},"preset":"{}","basis":{{"permutation":"XYZ"}},"mount":{{"position":{{"x":0,"y":0,"z":0}},)"
+          R"("rotation":{},"scale":{{"x":1,"y":1,"z":1}}}},"filters":{{"force_gate":{{"gain":0.3}},"damping":{{"scalar":{}}}}})",
+          plant.settings().id, service.fault_ == HaplyFault::kSettingsChanged ? "arm_front" : service.settings_.preset, kUpright,
+          service.settings_.damping);
+    }
+    text += '}';
   }
-  static json state(HaplyService& service, std::size_t i) {
+  static void state(HaplyService& service, std::size_t i, std::string& text) {
     HaplyPlant& plant = *service.plants_[i];
     const HaplyFault fault = service.fault_;
     const Vec3 echo = fault == HaplyFault::kEchoDoubled  ? Vec3(2 * plant.force_H())
                       : fault == HaplyFault::kEchoStrong ? Vec3(0.5, 0, 0)
                                                          : plant.force_H();
     const bool idle = plant.idle() || fault == HaplyFault::kStaysIdle;
-    json told = {{"cursor_position", jsonOf(fault == HaplyFault::kPlaceFrozen ? service.frozen_H_[i] : plant.place_H())},
-                 {"cursor_velocity", jsonOf(plant.velocity_H())},
-                 {"angular_position", anglesOf()},
-                 {"angular_velocity", anglesOf()},
-                 {"body_orientation", jsonOf(Quat::Identity())},
-                 {"current_cursor_force", jsonOf(echo)},
-                 {"current_cursor_position", jsonOf(Vec3::Zero())},
-                 {"current_angular_torques", anglesOf()},
-                 {"current_angular_position", anglesOf()},
-                 {"control_domain", "cartesian"},
-                 {"control_mode", idle ? "idle" : "force"},
-                 {"transform", json::object()}};
-    if (fault == HaplyFault::kTransformed) told["transform"] = {{"scale", jsonOf(Vec3(2, 2, 2))}};
-    return told;
+    text += R"({"cursor_position":)";
+    add(text, fault == HaplyFault::kPlaceFrozen ? service.frozen_H_[i] : plant.place_H());
+    text += R"(,"cursor_velocity":)";
+    add(text, plant.velocity_H());
+    fmt::format_to(std::back_inserter(text), R"(,"angular_position":{0},"angular_velocity":{0},"body_orientation":{1})", kAngles, kUpright);
+    if (service.settings_.tells_force) text += R"(,"current_cursor_force":)", add(text, echo);
+    fmt::format_to(std::back_inserter(text),
+                   R"(,"current_cursor_position":{{"x":0,"y":0,"z":0}},"current_angular_torques":{0},"current_angular_position":{0},)"
+                   R"("control_domain":"cartesian","control_mode":"{1}","transform":{2}}})",
+                   kAngles, idle ? "idle" : "force", fault == HaplyFault::kTransformed ? R"({"scale":{"x":2,"y":2,"z":2}})" : "{}");
   }
-  static json status(const HaplyService& service, int session) {
+  static void status(const HaplyService& service, int session, std::string& text) {
     bool in_use = false;
     for (const auto& [number, other] : service.sessions_) in_use |= number != session && other.commanded;
-    return {{"calibrated", service.fault_ != HaplyFault::kCalibrationLost},
-            {"in_use", in_use},
-            {"power_supply", service.fault_ != HaplyFault::kPowerLost},
-            {"ready", service.fault_ != HaplyFault::kNotReady},
-            {"started", true}};
+    fmt::format_to(std::back_inserter(text), R"({{"calibrated":{},"in_use":{},"power_supply":{},"ready":{},"started":true}})",
+                   truth(service.fault_ != HaplyFault::kCalibrationLost), truth(in_use), truth(service.fault_ != HaplyFault::kPowerLost),
+                   truth(service.fault_ != HaplyFault::kNotReady));
   }
-  static json grip(HaplyService& service, std::size_t i, bool full) {
+  static void arm(HaplyService& service, std::size_t i, int session, bool full, std::string& text) {
+    fmt::format_to(std::back_inserter(text), R"({{"device_id":"{}","state":)", service.plants_[i]->settings().id);
+    state(service, i, text);
+    text += R"(,"status":)";
+    status(service, session, text);
+    if (full) text += R"(,"config":)", config(service, *service.plants_[i], text);
+    text += '}';
+  }
+  static void grip(HaplyService& service, std::size_t i, bool full, std::string& text) {
     HaplyPlant& plant = *service.plants_[i];
-    const bool asleep = service.fault_ == HaplyFault::kGripAsleep;
-    json told = {{"device_id", plant.settings().grip}};
-    told["state"] = {
-        {"orientation", jsonOf(plant.grip_H())}, {"buttons", {{"a", false}, {"b", false}, {"c", false}}}, {"battery_level", 0.87}};
-    if (service.fault_ == HaplyFault::kGripZero) told["state"]["orientation"] = {{"w", 0}, {"x", 0}, {"y", 0}, {"z", 0}};
-    told["status"] = {{"connected", true}, {"awake", !asleep}, {"ready", true}};
-    if (full) told["config"] = {{"type", "wireless_verse_grip"}};
-    return told;
+    fmt::format_to(std::back_inserter(text), R"({{"device_id":"{}","state":{{"orientation":)", plant.settings().grip);
+    if (service.fault_ == HaplyFault::kGripZero) {
+      text += R"({"w":0,"x":0,"y":0,"z":0})";
+    } else {
+      add(text, plant.grip_H());
+    }
+    const bool wired = service.settings_.wired_grips;
+    text += wired ? R"(,"button":false,"hall":0})" : R"(,"buttons":{"a":false,"b":false,"c":false},"battery_level":0.87})";
+    fmt::format_to(std::back_inserter(text), R"(,"status":{{"connected":true,"awake":{},"ready":true}})",
+                   truth(service.fault_ != HaplyFault::kGripAsleep));
+    if (full) fmt::format_to(std::back_inserter(text), R"(,"config":{{"type":"{}"}})", wired ? "verse_grip" : "wireless_verse_grip");
+    text += '}';
   }
   static std::string all(HaplyService& service, int session, bool full, bool first) {
-    json text = {{"inverse3", json::array()}, {"verse_grip", json::array()}, {"wireless_verse_grip", json::array()}};
-    if (first && service.settings_.minor >= 5) text["session_id"] = session;
-    for (std::size_t i = 0; i < service.plants_.size(); ++i) {
-      if (i > 0 || service.fault_ != HaplyFault::kDeviceGone) {
-        json arm = {{"device_id", service.plants_[i]->settings().id}, {"state", state(service, i)}, {"status", status(service, session)}};
-        if (full) arm["config"] = config(service, *service.plants_[i]);
-        text["inverse3"].push_back(std::move(arm));
-      }
-      text["wireless_verse_grip"].push_back(grip(service, i, full));
+    std::string text = "{";
+    text.reserve(4096);
+    if (first && service.settings_.minor >= 5) fmt::format_to(std::back_inserter(text), R"("session_id":{},)", session);
+    text += R"("inverse3":[)";
+    const char* comma = "";
+    for (std::size_t i = service.fault_ == HaplyFault::kDeviceGone ? 1 : 0; i < service.plants_.size(); ++i, comma = ",") {
+      text += comma;
+      arm(service, i, session, full, text);
     }
-    return text.dump();
+    text += service.settings_.wired_grips ? R"(],"wireless_verse_grip":[],"verse_grip":[)" : R"(],"verse_grip":[],"wireless_verse_grip":[)";
+    for (std::size_t i = 0; i < service.plants_.size(); ++i) {
+      if (i > 0) text += ',';
+      grip(service, i, full, text);
+    }
+    return text + "]}";
+  }
+  static void configure(HaplyService& service, const json& wanted) {
+    HaplyServiceSettings& now = service.settings_;
+    if (!now.takes_configuration) return;
+    if (wanted.contains("preset")) now.preset = wanted["preset"].value("preset", now.preset);
+    if (wanted.contains("damping")) now.damping = wanted["damping"].value("scalar", now.damping);
   }
   // Sums the forces of one message for a device, as the service does.
   static void obey(HaplyService& service, const json& device, Session& session) {
     const auto id = device.find("device_id");
     const auto commands = device.find("commands");
+    if (device.contains("configure")) configure(service, device["configure"]);
     if (id == device.end() || commands == device.end() || !commands->contains("set_cursor_force")) return;
     const json& force = (*commands)["set_cursor_force"];
     Vec3 f_H = Vec3::Zero();
-    const auto add = [&](const char* key) {
+    const auto take = [&](const char* key) {
       if (force.contains(key)) f_H += Vec3(force[key].value("x", 0.0), force[key].value("y", 0.0), force[key].value("z", 0.0));
     };
-    if (service.settings_.vector) add("vector");
-    if (service.settings_.values) add("values");
+    if (service.settings_.vector) take("vector");
+    if (service.settings_.values) take("values");
     if (service.fault_ == HaplyFault::kDeafToForces) f_H.setZero();
     for (auto& plant : service.plants_) {
       if (plant->settings().id == *id) plant->command(service.settings_.force_scale * f_H), session.commanded = true;

@@ -25,9 +25,9 @@ inline constexpr std::int64_t kSendPeriod = kMillisecond / 2;  // twice per tick
 inline constexpr std::size_t kMostUnderWay = 8;                // messages without their answer
 inline constexpr double kEchoForce = 0.05;                     // [N]
 
-// Round trips in steps of 50 us; the last one holds all longer ones. Read from any thread.
-inline constexpr std::int64_t kTripStep = 50'000;
-using RoundTrips = std::array<std::atomic<std::uint32_t>, 201>;
+// Round trips in steps of 10 us; the last one holds all longer ones. Read from any thread.
+inline constexpr std::int64_t kTripStep = 10'000;
+using RoundTrips = std::array<std::atomic<std::uint32_t>, 1001>;
 
 struct ArmPlan {
   std::string arm, grip;  // ids; no grip: the finger's turn isn't measured

@@ -274,6 +274,45 @@ TEST(HaplySession, RefusesSettingsThatStayOdd) {
   EXPECT_NE(wire.session.complaint().find("preset"), std::string::npos) << wire.session.complaint();
 }
 
+// No page shows how a preset or a damping is set over the WebSocket: a service that takes ours is configured, one that doesn't is refused.
+TEST(HaplySession, ConfiguresAServiceOrRefusesIt) {
+  for (const bool takes : {true, false}) {
+    for (const HaplyServiceSettings& odd : {HaplyServiceSettings{.preset = "led_front", .takes_configuration = takes},
+                                            HaplyServiceSettings{.damping = 0.7, .takes_configuration = takes}}) {
+      Wire wire(twoArms(), odd);
+      wire.run(1.2);
+      EXPECT_EQ(wire.session.phase(), takes ? SessionPhase::kReady : SessionPhase::kRefused) << wire.session.complaint();
+      const char* const named = odd.damping > 0 ? "damping" : "preset";
+      EXPECT_EQ(wire.session.complaint().find(named) != std::string::npos, !takes) << wire.session.complaint();
+      EXPECT_EQ(wire.force(), 0);
+    }
+  }
+}
+
+// Clients disagree on what a force is told as; where it isn't told at all, nobody knows that a zero arrives.
+TEST(HaplySession, RefusesToPushWhereTheForceIsNotTold) {
+  Wire wire(twoArms(), {.tells_force = false});
+  wire.run(0.6);
+  ASSERT_EQ(wire.session.phase(), SessionPhase::kReady) << wire.session.complaint();
+  wire.arm();
+  wire.push({0, 0, 1});
+  wire.run(0.3);
+  EXPECT_TRUE(wire.session.doubted());
+  EXPECT_EQ(wire.force(), 0);
+}
+
+// Grips on a cable tell other things than wireless ones; both turn the finger.
+TEST(HaplySession, TakesWiredAndWirelessGrips) {
+  for (const bool wired : {false, true}) {
+    Wire wire(twoArms(), {.wired_grips = wired});
+    wire.service.plant(1).arm().setGimbal(Quat(0.5, -0.5, 0.5, 0.5));
+    wire.run(0.6);
+    ASSERT_EQ(wire.session.phase(), SessionPhase::kReady) << wire.session.complaint();
+    ASSERT_TRUE(wire.session.reading(1).q_H);
+    EXPECT_LT(wire.session.reading(1).q_H->angularDistance(wire.service.plant(1).grip_H()), 1e-6) << wired;
+  }
+}
+
 TEST(HaplySession, DoubtsALostEventChannelAfterASecond) {
   Wire wire;
   wire.run(0.6);
