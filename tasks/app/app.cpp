@@ -3,15 +3,17 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <array>
 #include <cstdio>
 #include <exception>
+#include <memory>
 #include <new>
+#include <string>
 
 #include "pincer/contact/error.h"
 #include "pincer/contact/io/printable.h"
 #include "pincer/devices/window/surface.h"
 #include "pincer/tasks/app/commands/commands.h"
+#include "pincer/tasks/app/help_format.h"
 #include "pincer/tasks/app/process.h"
 #include "pincer/tasks/run/process/interrupted.h"
 #include "pincer/tasks/run/servo/hand_devices.h"
@@ -20,15 +22,30 @@
 namespace pincer::tasks {
 namespace {
 
+struct CommandEntry {
+  const char* group;
+  void (*add)(CLI::App& app, int& exit_code);
+};
+
+constexpr const char* kExperiments = "Commands for experiments and sessions";
+constexpr const char* kPhysics = "Commands for physics";
+constexpr const char* kJudges = "Commands that judge pincer";
+constexpr const char* kThings = "Commands for meshes and devices";
+constexpr const char* kTexts = "Commands that tell about pincer";
+
 // The program's table of contents, in the order in which --help shows it.
-constexpr std::array kCommands = {addRunCommand,   addReportCommand, addExportCommand, addReplayCommand, addSimCommand,   addTestCommand,
-                                  addPlanCommand,  addVerifyCommand, addStressCommand, addBenchCommand,  addMeshCommand,  addDevicesCommand,
-                                  addSweepCommand, addImportCommand, addSolveCommand,  addKeysCommand,   addSchemaCommand};
+constexpr CommandEntry kCommands[] = {
+    {kExperiments, addRunCommand},   {kExperiments, addReportCommand}, {kExperiments, addExportCommand}, {kExperiments, addReplayCommand},
+    {kExperiments, addShareCommand}, {kExperiments, addSweepCommand},  {kPhysics, addSimCommand},        {kPhysics, addTestCommand},
+    {kPhysics, addPlanCommand},      {kPhysics, addImportCommand},     {kPhysics, addSolveCommand},      {kJudges, addVerifyCommand},
+    {kJudges, addStressCommand},     {kJudges, addBenchCommand},       {kThings, addMeshCommand},        {kThings, addDevicesCommand},
+    {kTexts, addKeysCommand},        {kTexts, addSchemaCommand},       {kTexts, addManualCommand},       {kTexts, addCompletionCommand}};
 
 constexpr const char* kExamples = R"(
 Examples:
   pincer run sphere-pickup --out out/first               a simulated participant picks up spheres
   pincer report out/first/session.db                     the session as a table and a page with plots
+  pincer share pickup --out pickup.html                  a scene or session as a page that any browser plays
   pincer sim tasks/scenes/s4_pinch.json                  plain physics of a scene, its expectations checked
   pincer plan tasks/scenes/s4_pinch.json                 what runs in a tick, and what it costs
   pincer bench contact                                   what touching a mesh costs and how well it is felt
@@ -54,9 +71,17 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", versionText());
   app.footer(kExamples);
   app.require_subcommand(1);
+  app.formatter(std::make_shared<HelpFormat>());
   app.option_defaults()->disable_flag_override();  // --json=2 is a mistake; of --json=99999999999999999999 CLI11 makes an out_of_range
   int exit_code = kExitOk;
-  for (const auto add : kCommands) add(app, exit_code);
+  for (const CommandEntry& command : kCommands) {
+    command.add(app, exit_code);
+    app.get_subcommands([](const CLI::App*) { return true; }).back()->group(command.group);
+  }
+  if (const std::string problem = unknownCommand(app, argc, argv); !problem.empty()) {
+    complain(problem);
+    return kExitUsage;
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

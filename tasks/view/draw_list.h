@@ -38,11 +38,22 @@ enum class Layer : std::uint8_t {
   kGround,  // takes shadows, has none
 };
 
+// What an item stands for, for somebody who leaves some of them out.
+enum class Part : std::uint8_t { kThing, kContact, kForce, kCone, kJoint, kDevice, kGoal };
+
 struct DrawItem {
-  int mesh = 0;  // Renderer::add
+  int mesh = 0;  // MeshSink::add
   Mat4f X_WM = Mat4f::Identity();
   Paint paint;
   Layer layer = Layer::kSolid;
+  Part part = Part::kThing;
+};
+
+// Who keeps the meshes that items name.
+class MeshSink {
+ public:
+  virtual ~MeshSink() = default;
+  virtual int add(const ViewMesh& mesh) = 0;  // returns its place
 };
 
 using DrawList = std::vector<DrawItem>;

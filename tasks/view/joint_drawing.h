@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "pincer/tasks/run/tick/snapshot.h"
-#include "pincer/tasks/view/renderer.h"
+#include "pincer/tasks/view/draw_list.h"
 
 namespace pincer::tasks {
 

@@ -2,6 +2,7 @@
 #pragma once
 #include <memory>
 
+#include "pincer/tasks/view/renderer.h"
 #include "pincer/tasks/view/scene_drawing.h"
 
 namespace pincer::tasks {

@@ -19,15 +19,15 @@ struct RenderOptions {
   bool smooth_borders = true;    // several samples per pixel there: twice the time without a graphics card
 };
 
-class Renderer {
+class Renderer final : public MeshSink {
  public:
   // Throws devices::DisplayError when the surface can't do what is needed.
   explicit Renderer(devices::Surface& surface);
-  ~Renderer();
+  ~Renderer() override;
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  int add(const ViewMesh& mesh);  // returns its place
+  int add(const ViewMesh& mesh) override;
   std::string graphics() const;   // who draws: "llvmpipe (LLVM 15, 256 bits)"
   bool isSoftware() const;        // no graphics card does
   void draw(const DrawList& list, const Camera& camera, const RenderOptions& options);

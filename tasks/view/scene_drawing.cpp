@@ -47,6 +47,11 @@ bool isHidden(const Snapshot& snapshot, std::size_t body) {
 // A rotation that takes z to `along_W`.
 const Vec3f& gripColour(bool sliding) { return sliding ? kSlip : kStick; }
 
+// Says what everything from the `first` item on stands for.
+void markParts(DrawList& list, std::size_t first, Part part) {
+  for (; first < list.size(); ++first) list[first].part = part;
+}
+
 // Where fingers whose devices give no orientation come from: from outside, and from above.
 Quat plainOrientation(const Snapshot& start, std::size_t finger) {
   Vec3 others = Vec3::Zero();
@@ -62,23 +67,23 @@ Quat plainOrientation(const Snapshot& start, std::size_t finger) {
 
 }  // namespace
 
-SceneDrawing::SceneDrawing(const grasp::GraspModel& model, const Snapshot& start, Renderer& renderer)
+SceneDrawing::SceneDrawing(const grasp::GraspModel& model, const Snapshot& start, MeshSink& meshes)
     : fingers_(model.fingers),
       joints_(model.world),
-      ball_(renderer.add(ballMesh())),
-      rod_(renderer.add(rodMesh())),
-      cone_(renderer.add(openConeMesh())),
-      head_(renderer.add(arrowHeadMesh())),
-      finger_(renderer.add(fingerMesh(kFingerBehind))),
-      pad_(renderer.add(padMesh(kPadAngle))),
-      nail_(renderer.add(nailMesh())) {
-  for (const grasp::FingerModel& finger : fingers_) tips_.push_back(finger.shape ? renderer.add(tipMesh(*finger.shape)) : -1);
+      ball_(meshes.add(ballMesh())),
+      rod_(meshes.add(rodMesh())),
+      cone_(meshes.add(openConeMesh())),
+      head_(meshes.add(arrowHeadMesh())),
+      finger_(meshes.add(fingerMesh(kFingerBehind))),
+      pad_(meshes.add(padMesh(kPadAngle))),
+      nail_(meshes.add(nailMesh())) {
+  for (const grasp::FingerModel& finger : fingers_) tips_.push_back(finger.shape ? meshes.add(tipMesh(*finger.shape)) : -1);
   double smallest = kInfinity;
   for (const engine::BodyModel& body : model.world.bodies) {
     bodies_.push_back(bodyLook(model.world, body));
     if (body.dynamic) smallest = std::min(smallest, body.bounding_radius);
   }
-  addShapes(model.world, radius(start), renderer);
+  addShapes(model.world, radius(start), meshes);
   for (const grasp::FingerModel& finger : model.fingers) smallest = std::min(smallest, 3 * finger.radius);
   if (smallest < kInfinity) size_ = smallest;
   for (std::size_t i = 0; i < start.fingers.size(); ++i) plain_q_WF_.push_back(plainOrientation(start, i));
@@ -96,7 +101,7 @@ SceneDrawing::BodyLook SceneDrawing::bodyLook(const engine::WorldModel& model, c
   return look;
 }
 
-SceneDrawing::ShapeLook SceneDrawing::shapeLook(const engine::ColliderModel& collider, double reach, Renderer& renderer) {
+SceneDrawing::ShapeLook SceneDrawing::shapeLook(const engine::ColliderModel& collider, double reach, MeshSink& meshes) {
   ShapeLook look;
   look.body = static_cast<std::size_t>(collider.body);
   look.X_BS = collider.X_BS;
@@ -104,19 +109,19 @@ SceneDrawing::ShapeLook SceneDrawing::shapeLook(const engine::ColliderModel& col
   look.layer = std::holds_alternative<contact::HalfSpace>(collider.shape) ? Layer::kGround : Layer::kSolid;
   const auto* dish = std::get_if<contact::Dish>(&collider.shape);
   const double extent = dish ? std::min(0.55 * dish->radius, std::max(1.2 * reach, 0.3 * dish->radius)) : kGroundExtent * reach;
-  look.smooth = look.facets = renderer.add(shapeMesh(collider.shape, MeshLook::kSmooth, extent));
-  if (look.is_mesh) look.facets = renderer.add(shapeMesh(collider.shape, MeshLook::kFacets, extent));
+  look.smooth = look.facets = meshes.add(shapeMesh(collider.shape, MeshLook::kSmooth, extent));
+  if (look.is_mesh) look.facets = meshes.add(shapeMesh(collider.shape, MeshLook::kFacets, extent));
   return look;
 }
 
 // Bodies that move differ in colour, a body's shapes don't.
-void SceneDrawing::addShapes(const engine::WorldModel& model, double reach, Renderer& renderer) {
+void SceneDrawing::addShapes(const engine::WorldModel& model, double reach, MeshSink& meshes) {
   std::size_t next_colour = 0;
   for (const engine::BodyModel& body : model.bodies) {
     const Vec3f& colour = kBodyColours[next_colour % kBodyColours.size()];
     if (body.dynamic) ++next_colour;
     for (const engine::ColliderModel& collider : engine::collidersOf(model, body)) {
-      ShapeLook& look = shapes_.emplace_back(shapeLook(collider, reach, renderer));
+      ShapeLook& look = shapes_.emplace_back(shapeLook(collider, reach, meshes));
       look.paint = paintOf(collider.shape, body.dynamic, colour);
       if (look.layer == Layer::kGround) look.paint.fade = static_cast<float>(kGroundExtent * reach);
     }
@@ -129,12 +134,18 @@ DrawList SceneDrawing::compose(const Snapshot& snapshot, const ViewChoice& choic
   if (snapshot.trial.blind) return list;
   for (std::size_t i = 0; i < snapshot.fingers.size(); ++i) {
     addFinger(snapshot, i, list);
+    const std::size_t first = list.size();
     if (choice.devices) addDevice(snapshot.fingers[i], i, list);
     if (*snapshot.trial.hint) addDropShadow(snapshot.fingers[i].p_WP, fingers_[i].radius, list);
+    markParts(list, first, Part::kDevice);
   }
+  const std::size_t goals = list.size();
   addGoal(snapshot, list);
+  markParts(list, goals, Part::kGoal);
   const double scale = metresPerNewton(snapshot);
+  const std::size_t joints = list.size();
   if (choice.joints) joints_.add(snapshot, marks(), scale, list);
+  markParts(list, joints, Part::kJoint);
   for (int i = 0; i < snapshot.contact_count; ++i) addContact(snapshot.contacts[static_cast<std::size_t>(i)], choice, scale, list);
   return list;
 }
@@ -232,20 +243,25 @@ double SceneDrawing::metresPerNewton(const Snapshot& snapshot) const {
 void SceneDrawing::addContact(const ContactSnapshot& contact, const ViewChoice& choice, double metres_per_newton, DrawList& list) const {
   const double size = contact.finger < 0 ? 0.4 * size_ : size_;  // bodies have many
   const Paint paint{.colour = gripColour(contact.sliding), .gloss = 0.5f, .glow = 0.35f};
+  const std::size_t places = list.size();
   if (choice.contacts) {
     list.push_back({ball_, placed({Quat::Identity(), contact.p_W}, Vec3::Constant(0.06 * size)), paint, Layer::kMark});
     addMarkArrow(marks(), contact.p_W, 0.45 * size * contact.n_W, 0.012 * size, {.colour = kNormal, .glow = 0.7f}, list);
   }
+  markParts(list, places, Part::kContact);
+  const std::size_t forces = list.size();
   if (choice.forces && contact.f_W.norm() > kLeastForce) {
     addMarkArrow(marks(), contact.p_W, metres_per_newton * contact.f_W, 0.035 * size, paint, list);
   }
+  markParts(list, forces, Part::kForce);
   if (!choice.cones || contact.finger < 0 || !(contact.mu > 0)) return;
   const double height = 0.9 * size / std::sqrt(1 + contact.mu * contact.mu);
   const Vec3 stretch(contact.mu * height, contact.mu * height, height);
   list.push_back({cone_,
                   placed(pointing(contact.p_W, contact.n_W), stretch),
                   {.colour = gripColour(contact.sliding), .alpha = 0.22f, .gloss = 0.2f, .glow = 0.5f},
-                  Layer::kMark});
+                  Layer::kMark,
+                  Part::kCone});
 }
 
 std::vector<ViewLabel> SceneDrawing::labels(const Snapshot& snapshot, const ViewChoice& choice) const {

@@ -9,8 +9,8 @@
 
 #include "pincer/tasks/run/tick/snapshot.h"
 #include "pincer/tasks/view/camera.h"
+#include "pincer/tasks/view/draw_list.h"
 #include "pincer/tasks/view/joint_drawing.h"
-#include "pincer/tasks/view/renderer.h"
 
 namespace pincer::tasks {
 
@@ -41,7 +41,7 @@ struct ViewLabel {
 class SceneDrawing {
  public:
   // Makes the meshes; `start` says where things are at first.
-  SceneDrawing(const grasp::GraspModel& model, const Snapshot& start, Renderer& renderer);
+  SceneDrawing(const grasp::GraspModel& model, const Snapshot& start, MeshSink& meshes);
 
   // What there is to see of `snapshot`. A blind trial shows nothing but the fingers' home: an empty dish.
   DrawList compose(const Snapshot& snapshot, const ViewChoice& choice) const;
@@ -70,8 +70,8 @@ class SceneDrawing {
   };
 
   static BodyLook bodyLook(const engine::WorldModel& model, const engine::BodyModel& body);
-  static ShapeLook shapeLook(const engine::ColliderModel& collider, double reach, Renderer& renderer);
-  void addShapes(const engine::WorldModel& model, double reach, Renderer& renderer);
+  static ShapeLook shapeLook(const engine::ColliderModel& collider, double reach, MeshSink& meshes);
+  void addShapes(const engine::WorldModel& model, double reach, MeshSink& meshes);
   void addBodies(const Snapshot& snapshot, const ViewChoice& choice, DrawList& list) const;
   void addFinger(const Snapshot& snapshot, std::size_t finger, DrawList& list) const;
   void addDevice(const FingerSnapshot& seen, std::size_t finger, DrawList& list) const;

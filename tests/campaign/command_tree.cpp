@@ -48,6 +48,7 @@ Help parse(const std::string& text, const std::vector<std::string>& words) {
   for (std::string line; std::getline(lines, line);) {
     if (line.empty()) section.clear();
     if (line == "Options:" || line == "Positionals:" || line == "Subcommands:") section = line;
+    if (line.starts_with("Commands ") && line.ends_with(':')) section = "Subcommands:";  // of one kind
     if (section.empty() || line.size() < 4 || !line.starts_with("  ") || line[2] == ' ') continue;
     const Option option = optionIn(line);
     if (section == "Options:") help.command.options.push_back(option);
@@ -79,6 +80,7 @@ std::string soundValue(const Ground& ground, const Option& wanted) {
   if (wanted.name == "session") return pickupSession(ground);
   if (wanted.name == "scene") return ground.inputs() / "scenes/s4_pinch.json";
   if (wanted.name == "what") return "s4_pinch";
+  if (wanted.name == "source") return "s4_pinch";
   if (wanted.name == "file") return ground.inputs() / "meshes/cube.obj";
   if (wanted.name == "out") return "out.obj";
   if (wanted.name == "--vary") return "sphere.material.mu_s=0.4,0.5";

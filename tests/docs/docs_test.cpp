@@ -65,7 +65,11 @@ const std::vector<Shorter> kShorter = {
      "$1 --help"},
 };
 
+// Where the page of `pincer share` wasn't bundled (no npm), it can't write one.
+bool hasPage() { return fs::exists(fs::path(PINCER_BINARY_DIR) / "tasks/share/page/page.html"); }
+
 std::string shortened(std::string command) {
+  if (!hasPage()) command = std::regex_replace(command, std::regex("^(pincer share .*)$"), "$1 --help");
   for (const Shorter& shorter : kShorter) command = std::regex_replace(command, shorter.in_docs, shorter.instead);
   return command;
 }

@@ -49,7 +49,7 @@ const std::map<std::string, std::vector<std::string>> kRooms = {
     {"engine", {"motion", "solve", "tree", "world"}},
     {"grasp", {"coupling", "tick", "baseline", "passivity", "quality"}},
     {"devices", {"arm", "cld", "usb", "falcon", "haply", "gate", "window", "emulate"}},
-    {"tasks", {"run", "lab", "judge", "view", "python", "app"}},
+    {"tasks", {"run", "lab", "judge", "view", "share", "python", "app"}},
     {"tasks/run", {"process", "measure", "files", "robot", "session", "scene", "rollout", "tick", "servo"}},
     {"tasks/lab", {"participants", "study", "report", "finger", "experiments", "findings", "sessions", "sweep"}},
     {"tasks/app", {"commands"}},
@@ -235,7 +235,7 @@ TEST(House, LibrariesStayInTheirFiles) {
                                                    {"sqlite3.h", "_sqlite"},   {"libusb.h", "_libusb"},    {"nlohmann/", ""},
                                                    {"GLFW/", "_glfw"},         {"EGL/", "_egl"},           {"glad/", "_gl"},
                                                    {"imgui", "_imgui"},        {"png.h", "_png"},          {"boost/", "_beast"},
-                                                   {"pybind11/", "_pybind11"}, {"hdf5.h", "_hdf5"}};
+                                                   {"pybind11/", "_pybind11"}, {"hdf5.h", "_hdf5"},        {"zlib.h", "_zlib"}};
   for (const auto& [folder, seen] : kMaySee) {
     for (const fs::path& file : sourcesUnder(fs::path(PINCER_SOURCE_DIR) / folder)) {
       for (const std::string& line : linesOf(file)) {

@@ -30,8 +30,8 @@ Example:
   pincer mesh subdivide part.obj fine.obj --units mm --levels 2)";
 
 constexpr double kMetresPerMicrometre = 1e-6;
-constexpr double kTypicalError = 20;  // [um]: less than the facets of what people print or scan
-constexpr int kEnough = 10'000;       // triangles, of a noisy scan: they fit the processor's cache
+constexpr double kTypicalError = 20;      // [um]: less than the facets of what people print or scan
+constexpr int kEnoughTriangles = 10'000;  // triangles, of a noisy scan: they fit the processor's cache
 
 struct FinenessArguments {
   MeshInput input;
@@ -51,9 +51,9 @@ contact::SimplifiedMesh simplified(const contact::TriangleMesh& mesh, const Fine
   if (options.triangles > 0 || options.error > 0) return contact::simplify(mesh, options);
   options.error = kMetresPerMicrometre * kTypicalError;
   contact::SimplifiedMesh simple = contact::simplify(mesh, options);
-  if (simple.mesh.triangles.size() <= kEnough) return simple;
+  if (simple.mesh.triangles.size() <= kEnoughTriangles) return simple;
   options.error = 0;
-  options.triangles = kEnough;
+  options.triangles = kEnoughTriangles;
   return contact::simplify(mesh, options);
 }
 

@@ -6,8 +6,8 @@
 
 namespace pincer::tasks {
 
-// Least number of letters to insert, delete or replace that turns `a` into `b`.
-// Source: V. I. Levenshtein, Soviet Physics Doklady 10(8) (1966) 707-710; table by rows after R. Wagner, M. Fischer, J. ACM 21(1) (1974).
+// Least number of letters to insert, delete, replace or swap with their neighbour that turns `a` into `b`; a metric.
+// Source: F. J. Damerau, Comm. ACM 7(3) (1964) 171-176; the table after R. Lowrance, R. A. Wagner, J. ACM 22(2) (1975) 177-183.
 int editDistance(std::string_view a, std::string_view b);
 
 // The closest of `candidates`, empty if none is within a third of the word's length (at least 1, at most 3 edits). Looks only at candidates

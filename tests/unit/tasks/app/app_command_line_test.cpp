@@ -6,8 +6,10 @@
 #include <array>
 #include <cmath>
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 
 #include "pincer/engine/world/stage_clock.h"
 #include "pincer/tasks/app/app.h"
@@ -36,6 +38,9 @@ TEST(CommandLine, HelpsEverywhereWithAnExample) {
                                                                                        {"run", "sphere-pickup"},
                                                                                        {"report"},
                                                                                        {"export"},
+                                                                                       {"share"},
+                                                                                       {"manual"},
+                                                                                       {"completion"},
                                                                                        {"sim"},
                                                                                        {"plan"},
                                                                                        {"bench"},
@@ -77,6 +82,54 @@ TEST(CommandLine, ComplainsAboutUsageInOneLine) {
     EXPECT_EQ(linesOf(wrong.error), 1) << wrong.error;
     EXPECT_TRUE(contains(wrong.error, "--help")) << wrong.error;
   }
+}
+
+TEST(CommandLine, KnowsWhichCommandWasMeant) {
+  const AppResult top = runPincer({"smi", "s4_pinch"}), below = runPincer({"mesh", "cheek", "part.obj"}), far = runPincer({"xyzzy"});
+  EXPECT_EQ(top.exit_code, kExitUsage);
+  EXPECT_TRUE(contains(top.error, "\"smi\" isn't a command of pincer. Did you mean \"sim\"?")) << top.error;
+  EXPECT_TRUE(contains(below.error, "Did you mean \"check\"? See `pincer mesh --help`")) << below.error;
+  EXPECT_TRUE(contains(far.error, "sim") && contains(far.error, "verify")) << far.error;  // all there are
+  EXPECT_EQ(linesOf(top.error), 1);
+}
+
+TEST(CommandLine, NamesFlagsWithoutTheirValues) {
+  const std::string help = runPincer({"sim", "--help"}).out;
+  EXPECT_TRUE(contains(help, "--no-keys "));
+  EXPECT_FALSE(contains(help, "{false}"));
+}
+
+// Every line of an --help that names a command or an option is in the manual, a page per command.
+TEST(ManualCommand, HasAPageForEveryCommandOfHelp) {
+  const tests::TemporaryDirectory folder;
+  ASSERT_EQ(runPincer({"manual", "--out", folder / "man"}).exit_code, kExitOk);
+  for (const std::vector<std::string>& command :
+       std::vector<std::vector<std::string>>{{}, {"sim"}, {"mesh", "check"}, {"run", "manipulation"}}) {
+    std::string file = "pincer";
+    for (const std::string& word : command) file += "-" + word;
+    const std::string page = tests::readFile(folder / ("man/" + file + ".1"));
+    std::vector<std::string> asked = command;
+    asked.push_back("--help");
+    std::istringstream lines(runPincer(asked).out);
+    for (std::string line; std::getline(lines, line);) {
+      const std::size_t at = line.find("--");
+      if (line.rfind("  -", 0) != 0 || at == line.npos) continue;
+      std::string option;
+      for (const char c : line.substr(at, line.find_first_of(" {", at) - at)) option += c == '-' ? "\\-" : std::string(1, c);
+      EXPECT_TRUE(contains(page, option)) << file << " lacks " << option;
+    }
+  }
+}
+
+TEST(CompletionCommand, IsAScriptThatItsShellReads) {
+  const tests::TemporaryDirectory folder;
+  std::ofstream(folder / "completion") << runPincer({"completion", "bash"}).out;
+  const std::string offers = "bash -c 'source \"" + (folder / "completion") +
+                             "\"; COMP_WORDS=(pincer mesh chec) COMP_CWORD=2; _pincer; echo ${COMPREPLY[*]}' > \"" + (folder / "offered") +
+                             "\"";
+  ASSERT_EQ(std::system(offers.c_str()), 0);
+  EXPECT_EQ(tests::readFile(folder / "offered"), "check\n");
+  EXPECT_EQ(runPincer({"completion", "csh"}).exit_code, kExitUsage);
 }
 
 TEST(CommandLine, ReportsBadInputAndUnwritableOutput) {

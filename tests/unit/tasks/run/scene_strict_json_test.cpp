@@ -109,6 +109,8 @@ TEST(EditDistance, CountsLetters) {
   EXPECT_EQ(editDistance("", "abc"), 3);
   EXPECT_EQ(editDistance("kitten", "sitting"), 3);  // the textbook example
   EXPECT_EQ(editDistance("mass", "mass"), 0);
+  EXPECT_EQ(editDistance("smi", "sim"), 1);
+  EXPECT_EQ(editDistance("ca", "abc"), 2);  // swapped, and b between: not by swaps of what stays neighbours
 }
 
 RC_GTEST_PROP(EditDistance, IsAMetric, (const std::string& a, const std::string& b, const std::string& c)) {

@@ -1,0 +1,66 @@
+# What is installed besides the library (component program, python), how it is removed again, and the Debian packages.
+#
+#   cmake --install build --prefix DIR [--component program]     then cmake --build build --target uninstall
+#   cd build && cpack                                            pincer_*.deb, libpincer-dev_*.deb, python3-pincer_*.deb in build/packages
+if(TARGET pincer)
+  # The command line says itself how it is documented and completed.
+  install(CODE "
+    execute_process(COMMAND $<TARGET_FILE:pincer> manual --out ${PROJECT_BINARY_DIR}/manual COMMAND_ERROR_IS_FATAL ANY OUTPUT_QUIET)
+    foreach(shell bash zsh fish)
+      execute_process(COMMAND $<TARGET_FILE:pincer> completion \${shell} OUTPUT_FILE ${PROJECT_BINARY_DIR}/completion.\${shell}
+                      COMMAND_ERROR_IS_FATAL ANY)
+    endforeach()" COMPONENT program)
+  install(DIRECTORY ${PROJECT_BINARY_DIR}/manual/ DESTINATION share/man/man1 COMPONENT program)
+  install(FILES ${PROJECT_BINARY_DIR}/completion.bash DESTINATION share/bash-completion/completions RENAME pincer COMPONENT program)
+  install(FILES ${PROJECT_BINARY_DIR}/completion.zsh DESTINATION share/zsh/vendor-completions RENAME _pincer COMPONENT program)
+  install(FILES ${PROJECT_BINARY_DIR}/completion.fish DESTINATION share/fish/vendor_completions.d RENAME pincer.fish COMPONENT program)
+  install(FILES devices/usb/70-pincer.rules DESTINATION lib/udev/rules.d COMPONENT program)
+  install(DIRECTORY tasks/scenes/ DESTINATION share/pincer/scenes COMPONENT program PATTERN CMakeLists.txt EXCLUDE)
+  install(FILES docs/scene.schema.json DESTINATION share/pincer COMPONENT program)
+  install(DIRECTORY docs/ DESTINATION share/doc/pincer/docs COMPONENT program FILES_MATCHING PATTERN "*.md" PATTERN "*.png"
+          PATTERN journal EXCLUDE PATTERN examples EXCLUDE PATTERN ci EXCLUDE PATTERN site EXCLUDE)
+endif()
+if(PINCER_PYTHON AND PINCER_APP)
+  install(TARGETS pincer_python DESTINATION lib/python3/dist-packages/pincer COMPONENT python)
+  install(DIRECTORY tasks/python/pincer/ DESTINATION lib/python3/dist-packages/pincer COMPONENT python PATTERN __pycache__ EXCLUDE)
+endif()
+foreach(part program=pincer library=libpincer-dev python=python3-pincer)
+  string(REPLACE "=" ";" part ${part})
+  list(GET part 0 component)
+  list(GET part 1 package)
+  install(FILES LICENSE DESTINATION share/doc/${package} RENAME copyright COMPONENT ${component})
+  install(FILES docs/third-party.md DESTINATION share/doc/${package} COMPONENT ${component})
+endforeach()
+
+# Removes what the last `cmake --install` wrote, for those who have no package manager do it.
+add_custom_target(uninstall COMMAND ${CMAKE_COMMAND} -D BUILD=${PROJECT_BINARY_DIR} -P ${CMAKE_CURRENT_LIST_DIR}/uninstall.cmake VERBATIM)
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME pincer)
+set(CPACK_PACKAGE_CONTACT "The pincer developers <pincer@localhost>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
+set(CPACK_PACKAGE_DIRECTORY ${PROJECT_BINARY_DIR}/packages)
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_COMPONENTS_ALL program library)
+if(PINCER_PYTHON AND PINCER_APP)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+endif()
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME pincer)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "gnuplot-nox")
+set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "Physics of bodies that fingers pinch, lift and turn: the program, its scenes and manual pages.")
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libpincer-dev)
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS "libeigen3-dev, libfmt-dev, libopenmesh-dev, libbullet-dev, libsqlite3-dev, libtinyxml2-dev, \
+libusb-1.0-0-dev, libglfw3-dev, libegl-dev, libgl-dev, pkg-config")
+set(CPACK_COMPONENT_LIBRARY_DESCRIPTION "Physics of bodies that fingers pinch, lift and turn: headers and static libraries.")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-pincer)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.11), python3 (<< 3.12), python3-numpy")
+set(CPACK_COMPONENT_PYTHON_DESCRIPTION "Physics of bodies that fingers pinch, lift and turn: the Python module.")
+include(CPack)
