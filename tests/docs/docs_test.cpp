@@ -1,4 +1,5 @@
-// The documentation is true: its commands run, the files that it names are there, and the API reference builds without a warning.
+// The documentation is true: its commands run, the files that it names are there, its lines are short, and the API reference builds without a
+// warning.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -8,6 +9,7 @@
 #include <filesystem>
 #include <regex>
 #include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -110,6 +112,23 @@ TEST_P(DocsPage, NamesFilesThatAreThere) {
   for (const std::string& file : matches(text, pattern)) EXPECT_TRUE(fs::exists(kSource / file)) << GetParam() << " names " << file;
   for (const std::string& file : matches(text, link)) {
     EXPECT_TRUE(fs::exists((kSource / GetParam()).parent_path() / file)) << GetParam() << " links to " << file;
+  }
+}
+
+// Tables and blocks of code are as wide as what they show; pages of the reference are made by the program.
+TEST_P(DocsPage, KeepsItsLinesTo110Characters) {
+  if (GetParam().starts_with("docs/reference/")) return;
+  std::istringstream text(readFile(kSource / GetParam()));
+  bool in_code = false;
+  int number = 0;
+  for (std::string line; std::getline(text, line);) {
+    ++number;
+    if (line.starts_with("```")) in_code = !in_code;
+    const std::size_t begin = line.find_first_not_of(' ');
+    const bool is_prose = !in_code && begin != line.npos && begin < 4 && line[begin] != '|';
+    const auto continues = [](unsigned char c) { return (c & 0xc0) == 0x80; };  // a byte of UTF-8 that begins no character
+    const auto length = static_cast<long>(line.size()) - std::count_if(line.begin(), line.end(), continues);
+    if (is_prose) EXPECT_LE(length, 110) << GetParam() << ":" << number << ": " << line.substr(0, 60);
   }
 }
 
