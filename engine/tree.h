@@ -71,6 +71,8 @@ struct DriveModel {
   } control = Control::kForce;
   double lower_force = -std::numeric_limits<double>::infinity();  // [N, N m]
   double upper_force = std::numeric_limits<double>::infinity();
+  double lower_control = -std::numeric_limits<double>::infinity();  // u is cut off there
+  double upper_control = std::numeric_limits<double>::infinity();
 };
 
 // Control of a drive for one tick.
@@ -122,6 +124,17 @@ struct TreeDrive {
   std::vector<Term> terms;
 };
 
+// A joint beside the tree, between two links or a link and the base: it closes a loop.
+struct TreeLoop {
+  int joint = 0;  // of WorldModel::joints
+  JointKind kind = JointKind::kBall;
+  int a = 0, b = -1;  // links; b = -1: the base
+  Pose X_AJ, X_BJ;    // J in their inertial frames (W or the base body's)
+};
+// Rows of a loop: of its point, and with its turns.
+inline int pointRowsOf(JointKind kind) { return kind == JointKind::kSlider ? 2 : 3; }
+inline int rowsOf(JointKind kind) { return kind == JointKind::kWeld ? 6 : kind == JointKind::kBall ? 3 : 5; }
+
 // A run of at most six columns: one mover of the contact problem.
 struct TreeBlock {
   int first = 0, count = 0;  // its innermost column (the next ones follow by `before`), and how many
@@ -133,6 +146,8 @@ struct TreeModel {
   std::vector<TreeLink> links;              // parents first
   std::vector<TreeCoordinate> coordinates;  // by links
   std::vector<TreeDrive> drives;
+  std::vector<TreeLoop> loops;  // with any, all columns are one path
+  int blocked = 0;              // directions that the loops take wherever they are (engine/tree/loop_basis.h)
   // The equations' columns: column c depends on those that before[c], before[before[c]] .. name. That of a tree without ties is that of its branches; what
   // a tendon or a coupling ties across branches is one chain.
   std::vector<int> before;
@@ -150,6 +165,8 @@ struct TreeModel {
   bool may_touch = false;  // something can touch one of its links
 
   int columnCount() const { return static_cast<int>(before.size()); }
+  // Of the columns that are left once loops are closed.
+  int freedomCount() const { return columnCount() - blocked; }
   int coordinateCount() const { return static_cast<int>(coordinates.size()); }
 };
 

@@ -18,6 +18,8 @@ namespace {
 
 using HullFacet = std::array<int, 3>;
 
+constexpr double kLeastPlane = 1e-4;  // times what is taken for one plane at first
+
 Vec3 normalOf(const std::vector<Vec3>& p, const HullFacet& f) {
   const auto at = [&](int k) -> const Vec3& { return p[static_cast<std::size_t>(f[static_cast<std::size_t>(k)])]; };
   return (at(1) - at(0)).cross(at(2) - at(0));
@@ -133,8 +135,17 @@ std::shared_ptr<const Polytope> Polytope::hullOf(const std::vector<Vec3>& points
 
 Polytope::Polytope(const std::vector<Vec3>& points, const std::string& source) {
   const double flat = kFlat * sizeOf(points);
-  vertices_ = points;
-  setFaces(quickHull(points), flat, source);
+  const std::vector<HullFacet> facets = quickHull(points);
+  // A finely rounded solid may have facets that lie in one plane pair by pair and not as a whole: then less is taken for one plane.
+  for (double one_plane = flat;; one_plane *= 0.1) {
+    vertices_ = points;
+    try {
+      setFaces(facets, one_plane, source);
+      break;
+    } catch (const InputError&) {
+      if (one_plane < kLeastPlane * flat) throw;
+    }
+  }
   if (vertices_.size() > kMaxVertices)
     throw InputError(
         fmt::format("{}: the hull has {} corners, more than {}. Use fewer points, or a mesh.", source, vertices_.size(), kMaxVertices));
@@ -162,6 +173,8 @@ double Polytope::leastDepth(const std::vector<Vec3>& points) const {
 
 // Faces with their loops; keeps the corners only, those where three faces meet.
 void Polytope::setFaces(const std::vector<HullFacet>& facets, double flat, const std::string& source) {
+  faces_.clear();
+  corners_.clear();
   const HalfEdges edges = halfEdgesOf(facets);
   const std::vector<int> group = groupsOf(vertices_, facets, edges, flat);
   std::vector<std::vector<int>> loops;

@@ -37,14 +37,21 @@ void solve(const TreeModel& tree, const TreeFactor& factor, std::span<double> x)
     for (int j = tree.before[slot(i)]; j >= 0; j = tree.before[slot(j)]) x[slot(j)] -= factor.entries[entryOf(tree, i, j)] * x[slot(i)];
   }
   for (std::size_t i = 0; i < x.size(); ++i) x[i] *= factor.root_inverse[i];
+  if (!tree.loops.empty()) factor.loops.dropBlocked(x);
   unscale(tree, factor, x);
 }
 
-void scaleRow(const TreeModel& tree, const TreeFactor& factor, int tip, std::span<double> row) {
+void scaleOpenRow(const TreeModel& tree, const TreeFactor& factor, int tip, std::span<double> row) {
   for (int i = tip; i >= 0; i = tree.before[slot(i)]) {
     for (int j = tree.before[slot(i)]; j >= 0; j = tree.before[slot(j)]) row[slot(j)] -= row[slot(i)] * factor.entries[entryOf(tree, i, j)];
     row[slot(i)] *= factor.root_inverse[slot(i)];
   }
+}
+
+int scaleRow(const TreeModel& tree, const TreeFactor& factor, int tip, std::span<double> row) {
+  scaleOpenRow(tree, factor, tip, row);
+  if (!tree.loops.empty()) factor.loops.takeFree(row);
+  return tipOfRow(tree, tip);
 }
 
 void unscale(const TreeModel& tree, const TreeFactor& factor, std::span<double> x) {

@@ -2,6 +2,8 @@
 //
 //   M = L^T D L,   L_ij != 0 only for j on the path of i,   L_ii = 1;     outboard first, so that nothing fills in
 //
+// Of a tree with loops, M^-1 stands for L^-1 D^-1/2 (1 - Q Q^T) D^-1/2 L^-T: the answer of the closed tree (loop_basis.h).
+//
 // Packed: rows by columns' paths. L takes M's place, the entries of D too.
 // Source: R. Featherstone, Int. J. Robotics Res. 24 (2005) 487-500.
 #pragma once
@@ -9,14 +11,16 @@
 #include <vector>
 
 #include "pincer/engine/tree.h"
+#include "pincer/engine/tree/loop_basis.h"
 
 namespace pincer::engine {
 
 struct TreeFactor {
   explicit TreeFactor(const TreeModel& tree)
-      : entries(static_cast<std::size_t>(tree.entries)), root_inverse(static_cast<std::size_t>(tree.columnCount())) {}
+      : entries(static_cast<std::size_t>(tree.entries)), root_inverse(static_cast<std::size_t>(tree.columnCount())), loops(tree) {}
   std::vector<double> entries;       // M, then L and D
   std::vector<double> root_inverse;  // D^-1/2
+  LoopBasis loops;                   // of none until factoriseClosed has filled it (loop_closure.h)
 };
 
 // A column's share in a length l: dl/dt = sum of share u.
@@ -39,8 +43,14 @@ bool factorise(const TreeModel& tree, TreeFactor& factor);
 // x <- M^-1 x
 void solve(const TreeModel& tree, const TreeFactor& factor, std::span<double> x);
 
-// row <- row L^-1 D^-1/2, where the row is 0 but on the path of `tip`: a row of A of the contact problem, W = A A^T = J M^-1 J^T.
-void scaleRow(const TreeModel& tree, const TreeFactor& factor, int tip, std::span<double> row);
+// row <- row L^-1 D^-1/2, where the row is 0 but on the path of `tip`.
+void scaleOpenRow(const TreeModel& tree, const TreeFactor& factor, int tip, std::span<double> row);
+
+// A row of A of the contact problem, W = A A^T = J M^-1 J^T: scaled, and of a tree with loops by the freedoms that these leave. Returns the tip of its
+// entries' path.
+int scaleRow(const TreeModel& tree, const TreeFactor& factor, int tip, std::span<double> row);
+// That tip, of anything that moves with `column`; -1 if nothing can move it.
+inline int tipOfRow(const TreeModel& tree, int column) { return column < 0 || tree.loops.empty() ? column : tree.freedomCount() - 1; }
 
 // x <- L^-1 D^-1/2 x: of movers' scaled velocities A^T r the columns' rates.
 void unscale(const TreeModel& tree, const TreeFactor& factor, std::span<double> x);

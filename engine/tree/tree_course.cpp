@@ -8,6 +8,8 @@
 namespace pincer::engine {
 namespace {
 
+constexpr int kLoopPasses = 3;  // Newton's method from a tick's error: 1e-6, 1e-12, round-off
+
 void addTimes(double factor, const std::vector<double>& x, std::vector<double>& sum) {
   for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += factor * x[i];
 }
@@ -65,21 +67,22 @@ double leastInertia(const TreeModel& tree, std::span<const ColumnShare> c, TreeC
     row[slot(share.column)] += share.share;
     tip = std::max(tip, share.column);
   }
-  scaleRow(tree, course.stage_factor, tip, row);
+  tip = scaleRow(tree, course.stage_factor, tip, row);
   double sum = 0;
   for (int i = tip; i >= 0; i = tree.before[slot(i)]) sum += row[slot(i)] * row[slot(i)];
   return 1 / sum;
 }
 
 // M^ and its factor at q_m, the elements' laws from where the tick starts, and their impulses by columns in course.step. True if all are soft.
-bool fillMiddle(const TreeModel& tree, const TreePush& push, std::span<const double> q, std::span<const double> u, double h,
-                TreeCourse& course) {
+bool fillMiddle(const TreeModel& tree, const TreeBase& base, const TreePush& push, std::span<const double> q, std::span<const double> u,
+                double h, TreeCourse& course) {
   fillInertia(tree, course.mid, course.composite, course.factor.entries);
   course.stage_factor.entries = course.factor.entries;
+  if (!tree.loops.empty()) fillLoops(tree, base, course.mid, course.loop_rows);
   std::fill(course.step.begin(), course.step.end(), 0.0);
   bool are_soft = true, is_factorised = false;
   forEachElement(tree, push, course.mid, q, course, [&](const Element& element, ElementCourse& out) {
-    if (!is_factorised) factorise(tree, course.stage_factor);
+    if (!is_factorised) factoriseClosed(tree, course.loop_rows, course.stage_factor);
     is_factorised = true;
     const DriveTick& law = element.law;
     const ElementTick tick{law.stiffness, law.damping,    element.l - law.target, along(element.c, u),
@@ -92,26 +95,30 @@ bool fillMiddle(const TreeModel& tree, const TreePush& push, std::span<const dou
     addSquare(tree, element.c, out.implied.mass, course.factor.entries);
     for (const ColumnShare& c : element.c) course.step[slot(c.column)] += c.share * out.implied.impulse;
   });
-  course.sound = factorise(tree, course.factor);
+  course.sound = factoriseClosed(tree, course.loop_rows, course.factor);
   return are_soft;
 }
 
-// Dv = M^^-1 (h (tau - C(q_m, u)) + p) at the rates course.u; into `change`.
-void respond(const TreeModel& tree, const BaseCourse& base, const TreePush& push, double h, TreeCourse& course,
+// Du = M^^-1 (h (tau - C(q_m, course.u)) + p) of what goes by u at the start; into `change`.
+void respond(const TreeModel& tree, const BaseCourse& base, const TreePush& push, std::span<const double> u, double h, TreeCourse& course,
              std::vector<double>& change) {
   moveLinks(tree, base.mid, course.q, course.u, course.mid);
   fillBias(tree, course.mid, base.mid, push.gravity_W, push.forces, course.u, course.biases, course.C);
   for (std::size_t c = 0; c < change.size(); ++c) change[c] = h * (course.force[c] - course.C[c]) + course.step[c];
   solve(tree, course.factor, change);
+  if (tree.loops.empty()) return;
+  wantNoOpening(u, course.loop_rows);
+  wantBend(tree, base.mid, push.gravity_W, course.mid, course.biases, 0.5 * h, course.loop_rows);
+  addWanted(tree, course.factor, course.loop_rows, change);
 }
 
 void goByTheMiddle(const TreeModel& tree, const BaseCourse& base, const TreePush& push, std::span<const double> u, double h,
                    TreeCourse& course) {
   fillConstantForces(tree, push, course.mid, course, course.force);
   std::copy(u.begin(), u.end(), course.u.begin());
-  respond(tree, base, push, h, course, course.slope);
+  respond(tree, base, push, u, h, course, course.slope);
   addTimes(0.5, course.slope, course.u);
-  respond(tree, base, push, h, course, course.slope);
+  respond(tree, base, push, u, h, course, course.slope);
   moveLinks(tree, base.mid, course.q, u, course.mid);
   for (std::size_t c = 0; c < u.size(); ++c) {
     course.u_free[c] = u[c] + course.slope[c];
@@ -143,8 +150,13 @@ void lookAt(const TreeModel& tree, const TreeBase& base, const TreePush& push, d
     for (const ColumnShare& c : element.c) course.slope[slot(c.column)] += c.share * force;
   });
   fillInertia(tree, course.stage, course.composite, course.stage_factor.entries);
-  if (!factorise(tree, course.stage_factor)) course.sound = false;
+  if (!tree.loops.empty()) fillLoops(tree, base, course.stage, course.loop_rows);
+  if (!factoriseClosed(tree, course.loop_rows, course.stage_factor)) course.sound = false;
   solve(tree, course.stage_factor, course.slope);
+  if (tree.loops.empty()) return;
+  std::fill(course.loop_rows.want.begin(), course.loop_rows.want.end(), 0.0);
+  wantBend(tree, base, push.gravity_W, course.stage, course.biases, 1, course.loop_rows);
+  addWanted(tree, course.stage_factor, course.loop_rows, course.slope);
 }
 
 // How steps from the start change where the columns go by u: of a ball's three, theta' = u - theta x u/2 + theta x (theta x u)/12.
@@ -197,6 +209,8 @@ TreeCourse::TreeCourse(const TreeModel& tree)
       composite(tree.links.size()),
       stage(tree),
       stage_factor(tree),
+      loop_rows(tree),
+      end_loops(tree),
       C(tree.before.size()),
       q(slot(tree.q_count)),
       u(tree.before.size()),
@@ -215,7 +229,7 @@ void predictTree(const TreeModel& tree, const BaseCourse& base, const TreePush& 
   growCoordinates(tree, q, course.step, course.q);
   placeLinks(tree, base.mid, course.q, course.mid);
   moveLinks(tree, base.mid, course.q, u, course.mid);
-  const bool are_soft = fillMiddle(tree, push, q, u, h, course);
+  const bool are_soft = fillMiddle(tree, base.mid, push, q, u, h, course);
   course.fine = are_soft && push.may_be_fine;
   if (course.fine) {
     goByRungeKutta(tree, base, push, q, u, h, course);
@@ -243,7 +257,11 @@ void advanceTree(const TreeModel& tree, const TreeBase& base, const TreeGain& ga
   }
   growCoordinates(tree, q, course.step, q_out);
   placeLinks(tree, base, q_out, course.end);
-  moveLinks(tree, base, q_out, u_out, course.end);
+  if (tree.loops.empty()) {
+    moveLinks(tree, base, q_out, u_out, course.end);
+  } else {
+    closeLoops(tree, base, course.factor, kLoopPasses, course.loop_rows, course.end_loops, q_out, u_out, course.end);
+  }
 }
 
 double lengthOf(const TreeModel& tree, const TreeDrive& drive, std::span<const double> q) {

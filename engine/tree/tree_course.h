@@ -4,6 +4,8 @@
 //   M^ Du = h (tau - C(q_m, u + h a/2)) + p + J^T r,        M^ h a = h (tau - C(q_m, u)) + p
 //
 // q_m is without forces, so that what rests is found where it is. m^ and p of springs, dampers and drives: drive_law.h; tau of what is constant.
+// Loops are closed in all of these (loop_closure.h).
+//
 // A tree that nothing else can push goes by Runge and Kutta's method of 4th order where all of those are soft (balls by exponentials: H. Munthe-Kaas,
 // Appl. Numer. Math. 29 (1999) 115-127).
 #pragma once
@@ -11,6 +13,7 @@
 #include <vector>
 
 #include "pincer/engine/tree/drive_law.h"
+#include "pincer/engine/tree/loop_closure.h"
 #include "pincer/engine/tree/sparse_ldl.h"
 #include "pincer/engine/tree/tree_bias.h"
 #include "pincer/engine/tree/tree_inertia.h"
@@ -60,6 +63,8 @@ struct TreeCourse {
   std::vector<CompositeInertia> composite;
   TreePlace stage;
   TreeFactor stage_factor;
+  LoopRows loop_rows;
+  LoopBasis end_loops;
   std::vector<double> C, q, u, step, force, slope;
   std::vector<ColumnShare> shares;
 };

@@ -62,6 +62,11 @@ std::vector<Columns> whoSeesWhom(const TreeModel& tree, const std::vector<Column
     for (const TreeDrive::Term& term : drive.terms) tied.insert(tree.coordinates[slot(term.coordinate)].column);
     see(tied);
   }
+  if (!tree.loops.empty()) {
+    Columns all;
+    for (std::size_t c = 0; c < seen.size(); ++c) all.insert(static_cast<int>(c));
+    see(all);
+  }
   return seen;
 }
 
@@ -85,7 +90,7 @@ void findPaths(TreeModel& tree, std::vector<Columns> seen) {
   }
 }
 
-// Runs of columns without a branch, cut after as many as a mover has. A run's columns needn't be neighbours by number: what lies between belongs
+// Runs of freedoms without a branch (those of a tree with loops are one), cut after as many as a mover has. A run's columns needn't be neighbours by number: what lies between belongs
 // to another branch; they are put in order first.
 void findBlocks(TreeModel& tree) {
   const std::size_t n = tree.before.size();
@@ -96,7 +101,7 @@ void findBlocks(TreeModel& tree) {
   tree.blocks.clear();
   tree.block_of.assign(n, kNobody);
   tree.column_in_block.assign(n, 0);
-  for (std::size_t c = 0; c < n; ++c) {
+  for (std::size_t c = 0; c < slot(tree.freedomCount()); ++c) {
     const int before = tree.before[c];
     const int inner = before == kNobody ? kNobody : tree.block_of[slot(before)];
     const bool goes_on = before != kNobody && children[slot(before)] == 1 && tree.blocks[slot(inner)].count < kMoverFreedoms;

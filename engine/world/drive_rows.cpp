@@ -57,6 +57,11 @@ void findLaw(const TreeModel& tree, const TreeDrive& own, const TreeScratch& s, 
 
 bool isLimited(const DriveModel& drive) { return std::isfinite(drive.lower_force) || std::isfinite(drive.upper_force); }
 
+DriveInput withinControls(const DriveModel& drive, const DriveInput& told) {
+  if (drive.lower_control <= told.value && told.value <= drive.upper_control) return told;
+  return {std::clamp(told.value, drive.lower_control, drive.upper_control), 0, told.moves};
+}
+
 DriveInput controlAt(const DriveInput& before, const DriveInput& end, double left, double share) {
   if (!end.moves || !(share < 1)) return end;
   Vec3 rate = Vec3::Zero();

@@ -9,6 +9,9 @@ namespace pincer::engine {
 
 bool isLimited(const DriveModel& drive);
 
+// The control that the drive takes of what it is told: at the ends of its range it stands.
+DriveInput withinControls(const DriveModel& drive, const DriveInput& told);
+
 // Place of a control that goes from `before` to `end` in `left`, after a share of that: on the cubic with both rates.
 DriveInput controlAt(const DriveInput& before, const DriveInput& end, double left, double share);
 

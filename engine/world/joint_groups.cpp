@@ -192,6 +192,8 @@ int WorldBuilder::addDrive(const DriveModel& drive) {
   requireRange(name + ".offset", drive.offset, -1e12, 1e12, "A force that is always there.");
   if (!(drive.lower_force <= drive.upper_force))
     throw InputError(fmt::format("{}.force: [{:g}, {:g}]: the lower one comes first.", name, drive.lower_force, drive.upper_force));
+  if (!(drive.lower_control <= drive.upper_control))
+    throw InputError(fmt::format("{}.control: [{:g}, {:g}]: the lower one comes first.", name, drive.lower_control, drive.upper_control));
   if (std::isfinite(drive.lower_force) != std::isfinite(drive.upper_force))
     throw InputError(fmt::format("{}.force: [{:g}, {:g}]: it is limited on one side only. Give both limits, or none.", name,
                                  drive.lower_force, drive.upper_force));

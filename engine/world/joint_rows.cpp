@@ -258,8 +258,7 @@ int scaledRow(const WorldModel& model, const JointRowScratch& row, TreeScratch& 
   } else {
     for (const TreeDrive::Term& term : tree.drives[row.element].terms) add(term.coordinate, term.factor);
   }
-  scaleRow(tree, s.course.factor, tip, s.row);
-  return tip;
+  return scaleRow(tree, s.course.factor, tip, s.row);
 }
 
 void rememberJointRows(const WorldModel& model, WorldState& state, WorldScratch& scratch) {

@@ -340,7 +340,7 @@ class Tick {
   void setControl(std::size_t d, double share) {
     DriveInput end{state_.controls[d].value, state_.controls[d].rate, false};
     const bool is_given = d < inputs_.controls.size(), is_finite = is_given && isFinite(inputs_.controls[d]);
-    if (is_finite) end = inputs_.controls[d];
+    if (is_finite) end = withinControls(model_.drives[d], inputs_.controls[d]);
     if (is_given && !is_finite) report_.status |= kInputNotFinite;
     if (state_.h_last == 0) state_.controls[d] = {end.value - left_ * end.rate, end.rate, end.moves};  // it has come from somewhere
     scratch_.drives[d].input = controlAt(state_.controls[d], end, left_, share);

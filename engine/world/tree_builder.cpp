@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 
 #include "pincer/engine/solve/contact_problem.h"
+#include "pincer/engine/tree/loop_closure.h"
 #include "pincer/engine/tree/tree_pattern.h"
 #include "pincer/engine/world/joint_groups.h"
 
@@ -39,11 +41,71 @@ class Ties {
   std::vector<int> parent_;
 };
 
-// Makes one tree of the joints of some groups.
+// Joints in their order: those that make a tree, and those that close loops in it.
+struct SpanningJoints {
+  std::vector<int> of_tree, of_loops;
+};
+
+// Which joints make the tree: first those that have more than a kind, then welds, pivots and sliders, then balls.
+class SpanningTree {
+ public:
+  SpanningTree(const WorldModel& model, const std::vector<CouplingModel>& couplings) : model_(model), must_(model.joints.size(), false) {
+    for (std::size_t j = 0; j < must_.size(); ++j) must_[j] = !isPlain(model.joints[j]) || model.joints[j].damping > 0;
+    for (const DriveModel& drive : model.drives) {
+      for (const DriveTerm& term : drive.terms) must_[term.joint] = true;
+    }
+    for (const CouplingModel& coupling : couplings) {
+      for (const int joint : {coupling.joint, coupling.follows}) must_[model.joint_places[joint].joint] = true;
+    }
+  }
+
+  // True if joints that are nothing but joints can close all loops.
+  bool canClose(const SpanningJoints& joints) const {
+    return std::none_of(joints.of_loops.begin(), joints.of_loops.end(), [&](int j) { return must_[j]; });
+  }
+
+  SpanningJoints of(const std::vector<int>& joints) {
+    root_.resize(model_.bodies.size() + 1);
+    std::iota(root_.begin(), root_.end(), 0);
+    std::vector<int> order = joints;
+    std::stable_sort(order.begin(), order.end(), [&](int x, int y) { return rankOf(x) < rankOf(y); });
+    SpanningJoints sorted;
+    for (const int j : order) (joins(j) ? sorted.of_tree : sorted.of_loops).push_back(j);
+    std::sort(sorted.of_tree.begin(), sorted.of_tree.end());
+    std::sort(sorted.of_loops.begin(), sorted.of_loops.end());
+    return sorted;
+  }
+
+ private:
+  int rankOf(int joint) const {
+    const JointKind kind = model_.joints[joint].kind;
+    return must_[joint] ? 0 : kind == JointKind::kWeld ? 1 : kind == JointKind::kBall ? 3 : 2;
+  }
+  // All that stands still or is driven is one.
+  int rootOf(int body) const {
+    std::size_t at = body < 0 || !model_.bodies[body].dynamic ? model_.bodies.size() : static_cast<std::size_t>(body);
+    while (root_[at] != static_cast<int>(at)) at = static_cast<std::size_t>(root_[at]);
+    return static_cast<int>(at);
+  }
+  bool joins(int joint) {
+    const int a = rootOf(model_.joints[joint].a), b = rootOf(model_.joints[joint].b);
+    root_[static_cast<std::size_t>(a)] = b;
+    return a != b;
+  }
+  const WorldModel& model_;
+  std::vector<bool> must_;  // by joints of the model
+  std::vector<int> root_;   // by bodies; the last one stands for all that no joint moves
+};
+
+// Makes one tree of the joints of some groups, and of those of them that close loops.
 class TreeMaker {
  public:
-  TreeMaker(WorldModel& model, const std::vector<int>& joints)
-      : model_(model), joints_(joints), number_(static_cast<int>(model.trees.size())), coordinate_(model.joints.size(), -1) {}
+  TreeMaker(WorldModel& model, const SpanningJoints& joints)
+      : model_(model),
+        joints_(joints.of_tree),
+        loops_(joints.of_loops),
+        number_(static_cast<int>(model.trees.size())),
+        coordinate_(model.joints.size(), -1) {}
 
   TreeModel make() {
     for (const int j : joints_) {
@@ -51,6 +113,7 @@ class TreeMaker {
       if (joint.b < 0 || !model_.bodies[joint.b].dynamic) grow(j, joint.a, -1);
     }
     checkAllHang();
+    for (const int j : loops_) addLoop(j);
     return std::move(tree_);
   }
   // The coordinate of a joint, -1 of balls and welds.
@@ -61,7 +124,6 @@ class TreeMaker {
   void grow(int j, int body, int parent) {
     const JointModel& joint = model_.joints[j];
     if (parent < 0) takeBase(joint);
-    if (model_.bodies[body].tree >= 0) throwLoop(body);
     const int link = static_cast<int>(tree_.links.size());
     model_.bodies[body].tree = number_;
     model_.bodies[body].link = link;
@@ -71,11 +133,7 @@ class TreeMaker {
       const JointModel& next = model_.joints[k];
       if (k == j || (next.a != body && next.b != body)) continue;
       const int other = next.a == body ? next.b : next.a;
-      if (other < 0 || !model_.bodies[other].dynamic) {
-        if (next.a == body) throwLoop(body);  // held twice
-        continue;
-      }
-      grow(k, other, link);
+      if (other >= 0 && model_.bodies[other].dynamic) grow(k, other, link);
     }
   }
 
@@ -118,12 +176,15 @@ class TreeMaker {
     tree_.base = joint.b;
   }
 
-  [[noreturn]] void throwLoop(int body) const {
-    throw InputError(
-        fmt::format("body \"{}\": its joints close a loop, or hold it twice. Limits, springs, drives and dry friction act in trees only: "
-                    "take one of the "
-                    "joints away.",
-                    model_.bodies[body].name));
+  void addLoop(int j) {
+    const JointModel& joint = model_.joints[j];
+    const bool is_held = joint.b < 0 || !model_.bodies[joint.b].dynamic;
+    if (is_held && joint.b != tree_.base)
+      throw InputError(
+          fmt::format("body \"{}\": its joints close a loop over two bodies that don't hang together. Hold all of the loop to the "
+                      "same one.",
+                      model_.bodies[joint.a].name));
+    tree_.loops.push_back({j, joint.kind, model_.bodies[joint.a].link, is_held ? -1 : model_.bodies[joint.b].link, joint.X_AJ, joint.X_BJ});
   }
 
   void checkAllHang() const {
@@ -140,7 +201,7 @@ class TreeMaker {
   }
 
   WorldModel& model_;
-  const std::vector<int>& joints_;
+  const std::vector<int>&joints_, &loops_;
   int number_;
   std::vector<int> coordinate_;  // per joint of the model
   TreeModel tree_;
@@ -148,29 +209,43 @@ class TreeMaker {
 
 int placeOf(const WorldModel& model, int joint) { return model.joint_places[joint].joint; }
 
-// True if the group is a tree that hangs on something: as many joints as bodies, one of them to what holds it.
+// True if the group hangs on something, and all of it on the same.
 bool hangs(const WorldModel& model, const JointGroup& group) {
-  const auto holds = [&](const JointModel& joint) { return joint.b < 0 || !model.bodies[joint.b].dynamic; };
-  const auto first = model.joints.begin() + group.first;
-  return group.count == static_cast<int>(group.bodies.size()) && std::count_if(first, first + group.count, holds) == 1;
+  std::optional<int> base;
+  for (int j = group.first; j < group.first + group.count; ++j) {
+    const int b = model.joints[j].b;
+    if (b >= 0 && model.bodies[b].dynamic) continue;
+    if (base && *base != b) return false;
+    base = b;
+  }
+  return base.has_value();
 }
 
-// A chain or tree of pivots and sliders: its free course is of 4th order as a tree, of second by elimination (joints.h).
-bool isBetterAsTree(const WorldModel& model, const JointGroup& group) {
+std::vector<int> jointsOf(const JointGroup& group) {
+  std::vector<int> joints(static_cast<std::size_t>(group.count));
+  std::iota(joints.begin(), joints.end(), group.first);
+  return joints;
+}
+
+// A linkage of pivots and sliders: its free course is of 4th order as a tree, of second by elimination (joints.h).
+bool isBetterAsTree(const WorldModel& model, const JointGroup& group, SpanningTree& spanning) {
   const auto first = model.joints.begin() + group.first;
-  return group.count > 1 && hangs(model, group) && std::all_of(first, first + group.count, [](const JointModel& joint) {
-           return joint.kind == JointKind::kPivot || joint.kind == JointKind::kSlider;
-         });
+  const bool is_linkage = group.count > 1 && hangs(model, group) && std::all_of(first, first + group.count, [](const JointModel& joint) {
+                            return joint.kind == JointKind::kPivot || joint.kind == JointKind::kSlider;
+                          });
+  return is_linkage && spanning.canClose(spanning.of(jointsOf(group)));
 }
 
 // Per group, whether it becomes a tree; ties what drives and couplings bind.
-std::vector<bool> whichBecomeTrees(const WorldModel& model, const std::vector<CouplingModel>& couplings, Ties& ties) {
+std::vector<bool> whichBecomeTrees(const WorldModel& model, const std::vector<CouplingModel>& couplings, SpanningTree& spanning,
+                                   Ties& ties) {
   std::vector<bool> become(model.joint_groups.size(), false);
   for (std::size_t g = 0; g < become.size(); ++g) {
     const JointGroup& group = model.joint_groups[g];
     const auto first = model.joints.begin() + group.first;
     const bool is_large = freedomsOf(model, group) > kMoverFreedoms || 6 * std::ssize(group.bodies) > kMostGroupFreedoms;
-    become[g] = !std::all_of(first, first + group.count, isPlain) || (is_large && hangs(model, group)) || isBetterAsTree(model, group);
+    become[g] =
+        !std::all_of(first, first + group.count, isPlain) || (is_large && hangs(model, group)) || isBetterAsTree(model, group, spanning);
   }
   for (const DriveModel& drive : model.drives) {
     for (const DriveTerm& term : drive.terms) {
@@ -223,12 +298,35 @@ void place(const TreeMaker& maker, TreeModel& tree, WorldModel& model) {
   }
 }
 
-void makeTree(const std::vector<int>& joints, const std::vector<CouplingModel>& couplings, WorldModel& model) {
-  TreeMaker maker(model, joints);
+// Where the joints start.
+std::vector<double> jointsAtStart(const TreeModel& tree) {
+  std::vector<double> q(static_cast<std::size_t>(tree.q_count), 0.0);
+  for (const TreeCoordinate& own : tree.coordinates) {
+    if (own.q >= 0) q[own.q] = own.traits.start;
+  }
+  for (const TreeLink& link : tree.links) {
+    if (link.kind == JointKind::kBall) q[link.first_q] = 1;
+  }
+  return q;
+}
+
+void makeTree(const std::vector<int>& joints, const std::vector<CouplingModel>& couplings, SpanningTree& spanning, WorldModel& model) {
+  const SpanningJoints sorted = spanning.of(joints);
+  if (!spanning.canClose(sorted))
+    throw InputError(fmt::format(
+        "body \"{}\": its joints close a loop, and each of them has limits, a spring, a drive, damping or friction. A joint that "
+        "closes a loop has none: leave one of the loop's without.",
+        model.bodies[model.joints[sorted.of_loops.front()].a].name));
+  TreeMaker maker(model, sorted);
   TreeModel tree = maker.make();
   addCouplings(model, couplings, maker, tree);
   addDrives(model, maker, tree);
   finishTree(tree);
+  if (!tree.loops.empty()) {
+    std::vector<double> q = jointsAtStart(tree);
+    tree.blocked = blockedNear(tree, q);
+    finishTree(tree);
+  }
   place(maker, tree, model);
   model.trees.push_back(std::move(tree));
 }
@@ -247,7 +345,8 @@ void dropGroups(const std::vector<bool>& dropped, WorldModel& model) {
 
 void findTrees(const std::vector<CouplingModel>& couplings, WorldModel& model) {
   Ties ties(model);
-  const std::vector<bool> become = whichBecomeTrees(model, couplings, ties);
+  SpanningTree spanning(model, couplings);
+  const std::vector<bool> become = whichBecomeTrees(model, couplings, spanning, ties);
   const int count = static_cast<int>(become.size());
   std::vector<int> root(become.size());
   for (int g = 0; g < count; ++g) root[g] = ties.rootOf(g);
@@ -257,7 +356,7 @@ void findTrees(const std::vector<CouplingModel>& couplings, WorldModel& model) {
     for (int k = g; k < count; ++k) {
       for (int j = 0; root[k] == g && j < model.joint_groups[k].count; ++j) joints.push_back(model.joint_groups[k].first + j);
     }
-    makeTree(joints, couplings, model);
+    makeTree(joints, couplings, spanning, model);
   }
   dropGroups(become, model);
 }

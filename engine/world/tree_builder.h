@@ -11,7 +11,8 @@
 
 namespace pincer::engine {
 
-// After groupJoints. Groups that became trees are groups no more. Throws InputError where a tree has a loop, or nothing that holds it.
+// After groupJoints. Groups that became trees are groups no more. Throws InputError where all joints of a loop
+// have more than a kind, or nothing holds a tree.
 void findTrees(const std::vector<CouplingModel>& couplings, WorldModel& model);
 
 // Notes which trees something may touch. After pairs are listed.

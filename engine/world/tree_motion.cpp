@@ -159,7 +159,8 @@ void predictTreeImpacts(const WorldModel& model, const WorldState& state, WorldS
     placeLinks(tree, base, treeCoordinates(tree, state), s.course.mid);
     moveLinks(tree, base, treeCoordinates(tree, state), treeRates(tree, state), s.course.mid);
     fillInertia(tree, s.course.mid, s.course.composite, s.course.factor.entries);
-    s.course.sound = factorise(tree, s.course.factor);
+    if (!tree.loops.empty()) fillLoops(tree, base, s.course.mid, s.course.loop_rows);
+    s.course.sound = factoriseClosed(tree, s.course.loop_rows, s.course.factor);
     const std::span<const double> u = treeRates(tree, state);
     std::copy(u.begin(), u.end(), s.course.u_free.begin());
     std::fill(s.course.way_free.begin(), s.course.way_free.end(), 0.0);

@@ -12,10 +12,11 @@ namespace {
 int firstBlock(const WorldModel& model) { return static_cast<int>(model.bodies.size() + model.points.size()); }
 
 int moverOfColumn(const WorldModel& model, const TreeModel& tree, int column) {
-  return column < 0 ? -1 : firstBlock(model) + tree.first_block + tree.block_of[column];
+  const int tip = tipOfRow(tree, column);
+  return tip < 0 ? -1 : firstBlock(model) + tree.first_block + tree.block_of[tip];
 }
 
-int tipOfRow(const TreeModel& tree, const JointRowScratch& row) {
+int outermostOf(const TreeModel& tree, const JointRowScratch& row) {
   if (row.kind != JointRowKind::kDrive) return tree.coordinates[row.element].column;
   int tip = -1;
   for (const TreeDrive::Term& term : tree.drives[row.element].terms) tip = std::max(tip, tree.coordinates[term.coordinate].column);
@@ -42,8 +43,7 @@ void fillLinkSide(const WorldModel& model, WorldScratch& scratch, const Contact&
     const Vec3 n_W = turns ? Vec3(Vec3::Zero()) : Vec3(sign * c.R_WC.col(k)),
                m_W = turns ? Vec3((sign * radiusOf(c, k)) * axisOf(c, k)) : Vec3(Vec3::Zero());
     addJacobian(tree, s.course.mid, body.link, p_OX, n_W, m_W, s.row);
-    scaleRow(tree, s.course.factor, tip, s.row);
-    takeBlock(tree, block, tip, s.row, out.A[k]);
+    takeBlock(tree, block, scaleRow(tree, s.course.factor, tip, s.row), s.row, out.A[k]);
   }
 }
 
@@ -90,7 +90,7 @@ int moverOfRow(const WorldModel& model, const WorldScratch& scratch, const Conta
   if (!is_a) return firstBlock(model) + model.tree_block_count + c.a.index;
   const JointRowScratch& row = scratch.joint_rows[c.a.index];
   const TreeModel& tree = model.trees[row.tree];
-  return moverOfColumn(model, tree, tipOfRow(tree, row));
+  return moverOfColumn(model, tree, outermostOf(tree, row));
 }
 
 void fillTreeSide(const WorldModel& model, WorldScratch& scratch, const Contact& c, int rows, bool is_a, int mover, ContactSide& out) {

@@ -6,6 +6,8 @@
 
 #include "pincer/contact/elementary.h"
 #include "pincer/contact/functions/invariants.h"
+#include "pincer/engine/tree/loop_closure.h"
+#include "pincer/engine/tree/tree_inertia.h"
 #include "pincer/engine/world/tree_motion.h"
 
 namespace pincer::engine {
@@ -27,6 +29,24 @@ double turnNear(const Quat& q, double about) {
   return turn + full * std::round((about - turn) / full);
 }
 
+constexpr int kFromStart = 5;        // passes, from kLargestJointGap
+constexpr int kFromAnywhere = 50;    // from where one of the loop's joints was put
+constexpr double kIsClosed = 1e-12;  // [m, rad]
+
+// Closes the loops, where they can be: the other joints move, by their inertia, but hardly the one that `kept` is the column of.
+double closeTree(const TreeModel& tree, const TreeBase& base, int passes, int kept, std::span<double> q, std::span<double> u) {
+  constexpr double kHeavy = 1e12;
+  TreePlace place(tree);
+  placeLinks(tree, base, q, place);
+  std::vector<CompositeInertia> composite(tree.links.size());
+  TreeFactor factor(tree);
+  fillInertia(tree, place, composite, factor.entries);
+  if (kept >= 0) factor.entries[entryOf(tree, kept, kept)] *= kHeavy;
+  factorise(tree, factor);
+  LoopRows rows(tree);
+  return closeLoops(tree, base, factor, passes, rows, factor.loops, q, u, place);
+}
+
 // Reads one tree's coordinates and rates off the bodies that it moves.
 class TreeReader {
  public:
@@ -43,6 +63,7 @@ class TreeReader {
     for (std::size_t i = 0; i < tree_.coordinates.size(); ++i) checkFollows(tree_.coordinates[i], q, follows);
     std::copy(follows.begin(), follows.end(), q.begin());
     ratesOfColumns(tree_, v_, u);
+    if (!tree_.loops.empty()) closeTree(tree_, baseOfTree(model_, state_, tree_), kFromStart, -1, q, u);
   }
 
  private:
@@ -209,6 +230,10 @@ void setJoint(const WorldModel& model, WorldState& state, int joint, double posi
   state.tree_v[tree.first_v + own.column] = velocity;
   const std::vector<double> none(static_cast<std::size_t>(tree.columnCount()), 0.0);
   growCoordinates(tree, q, none, q);
+  if (!tree.loops.empty() &&
+      closeTree(tree, baseOfTree(model, state, tree), kFromAnywhere, own.column, q, treeRates(tree, state)) > kIsClosed)
+    throw InputError(fmt::format("setJoint: with the joint of body \"{}\" at {:g} its loop can't be closed. Put it nearer to where it was.",
+                                 model.bodies[tree.links[own.link].body].name, position));
   placeLinksOf(model, tree, state);
 }
 

@@ -1,27 +1,9 @@
 // Masses, places and inertias of a robot's bodies as MuJoCo (npm's @mujoco/mujoco) has them, as JSON: node masses.mjs MODULE robot.xml
-import fs from 'node:fs';
-import path from 'node:path';
+import {load} from './model.mjs';
 
 const [module, file] = process.argv.slice(2);
-const mujoco = await (await import(module)).default();
-const folder = path.dirname(file);
-function copy(from, to) {
-  mujoco.FS.mkdir(to);
-  for (const entry of fs.readdirSync(from, {withFileTypes: true})) {
-    const inner = path.join(from, entry.name);
-    if (entry.isDirectory()) copy(inner, `${to}/${entry.name}`);
-    else mujoco.FS.writeFile(`${to}/${entry.name}`, new Uint8Array(fs.readFileSync(inner)));
-  }
-}
-copy(folder, '/robot');
-const model = mujoco.MjModel.from_xml_path(`/robot/${path.basename(file)}`);
-const data = new mujoco.MjData(model);
+const {mujoco, model, data, nameAt} = await load(module, file);
 
-function nameAt(address) {
-  let end = address;
-  while (model.names[end] !== 0) ++end;
-  return String.fromCharCode(...model.names.slice(address, end));
-}
 function bodies() {
   mujoco.mj_forward(model, data);
   const all = [];

@@ -103,4 +103,61 @@ double DampedOscillator::place(double x_0, double v_0, double time) const {
   return 0.5 * (x_0 * (up + down) + v / root * (up - down));
 }
 
+namespace {
+
+double square(double x) { return x * x; }
+
+template <typename Inertia>
+double angleAfter(double start, double rate, double time, const Inertia& inertia) {
+  const double momentum = rate * std::sqrt(inertia(start));
+  return integrated(start, time, [&](double, double a) { return momentum / std::sqrt(inertia(a)); });
+}
+
+}  // namespace
+
+double FourBar::rockerAngle(double angle) const {
+  const double k1 = ground / crank, k2 = ground / rocker;
+  const double k3 = (square(crank) - square(coupler) + square(rocker) + square(ground)) / (2 * crank * rocker);
+  const double c = math::cos(angle), A = c - k1 - k2 * c + k3, B = -2 * math::sin(angle), C = k1 - (k2 + 1) * c + k3;
+  return 2 * math::atan2(-B - std::sqrt(B * B - 4 * A * C), 2 * A);
+}
+
+double FourBar::miss(double angle, double rocker_angle) const {
+  const double k3 = (square(crank) - square(coupler) + square(rocker) + square(ground)) / (2 * crank * rocker);
+  return ground / crank * math::cos(rocker_angle) - ground / rocker * math::cos(angle) + k3 - math::cos(angle - rocker_angle);
+}
+
+double FourBar::ratio(double angle) const {
+  const double b = rockerAngle(angle), x = ground + rocker * math::cos(b) - crank * math::cos(angle),
+               y = rocker * math::sin(b) - crank * math::sin(angle);
+  // The coupler doesn't stretch: (x, y) . d(x, y)/da = 0.
+  return crank * (y * math::cos(angle) - x * math::sin(angle)) / (rocker * (y * math::cos(b) - x * math::sin(b)));
+}
+
+double FourBar::inertia(double angle) const {
+  const double b = rockerAngle(angle), r = ratio(angle);
+  const double ax = -crank * math::sin(angle), ay = crank * math::cos(angle), bx = -r * rocker * math::sin(b),
+               by = r * rocker * math::cos(b);
+  const double turn = std::sqrt(square(bx - ax) + square(by - ay)) / coupler;
+  return crank_inertia + rocker_inertia * r * r + coupler_inertia * turn * turn + coupler_mass * 0.25 * (square(ax + bx) + square(ay + by));
+}
+
+double FourBar::angle(double start, double rate, double time) const {
+  return angleAfter(start, rate, time, [&](double a) { return inertia(a); });
+}
+
+double SliderCrank::place(double angle) const {
+  return crank * math::cos(angle) + std::sqrt(square(rod) - square(crank * math::sin(angle)));
+}
+
+double SliderCrank::inertia(double angle) const {
+  const double ax = -crank * math::sin(angle), ay = crank * math::cos(angle), across = crank * math::sin(angle);
+  const double along = std::sqrt(square(rod) - square(across)), slide = ax - across * ay / along, turn = ay / along;
+  return crank_inertia + slider_mass * slide * slide + rod_inertia * turn * turn + rod_mass * 0.25 * (square(ax + slide) + ay * ay);
+}
+
+double SliderCrank::angle(double start, double rate, double time) const {
+  return angleAfter(start, rate, time, [&](double a) { return inertia(a); });
+}
+
 }  // namespace pincer::exact

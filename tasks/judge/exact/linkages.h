@@ -39,4 +39,29 @@ struct DampedOscillator {
   double place(double x_0, double v_0, double time) const;
 };
 
+// --- Closed linkages of one freedom ----------------------------------------------------------------------------------------------------------
+// Without gravity: E = I(a) a'^2/2 stays, I(a) the inertia that the crank feels; a' = sqrt(2 E/I(a)) by Runge-Kutta's method at 20 us. The crank's pivot is the
+// origin, a its angle from the x axis. Four bars: K_1 cos b - K_2 cos a + K_3 = cos(a - b), the rocker at the angle b (F. Freudenstein, Trans. ASME 77 (1955)
+// 853-861), K_1 = ground/crank, K_2 = ground/rocker, K_3 = (crank^2 - coupler^2 + rocker^2 + ground^2)/(2 crank rocker).
+struct FourBar {
+  double crank, coupler, rocker, ground;  // lengths [m]; the open one of the two ways to put them together
+  double crank_inertia, rocker_inertia;   // about their pivots [kg m^2]
+  double coupler_mass, coupler_inertia;   // about its middle
+
+  double rockerAngle(double angle) const;
+  double miss(double angle, double rocker_angle) const;  // of Freudenstein's equation [-]
+  double ratio(double angle) const;                      // db/da
+  double inertia(double angle) const;
+  double angle(double start, double rate, double time) const;
+};
+
+// The slider's way goes along the x axis through the crank's pivot.
+struct SliderCrank {
+  double crank, rod, crank_inertia, rod_mass, rod_inertia, slider_mass;
+
+  double place(double angle) const;  // of the slider
+  double inertia(double angle) const;
+  double angle(double start, double rate, double time) const;
+};
+
 }  // namespace pincer::exact

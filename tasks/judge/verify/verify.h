@@ -18,6 +18,7 @@ std::vector<Measurement> verifyRolling();
 std::vector<Measurement> verifyFreeBodies();
 std::vector<Measurement> verifyCompounds();
 std::vector<Measurement> verifyTrees();
+std::vector<Measurement> verifyLoops();
 std::vector<Measurement> verifyJointLimits();
 std::vector<Measurement> verifyGrippers();
 std::vector<Measurement> verifyToppling();

@@ -38,6 +38,8 @@ void readTendon(Reading& reading, const XmlElement& element) {
   tendon.limits = values.limits("range", "limited", reading.compiler().autolimits);
   tendon.stiffness = values.number("stiffness", 0);
   tendon.damping = values.number("damping", 0);
+  if (!(tendon.stiffness >= 0 && tendon.damping >= 0))
+    element.reject("has a negative spring or damper. A spring pulls back, a damper brakes.");
   tendon.friction = values.number("frictionloss", 0);
   const std::vector<double> rest = values.numbers("springlength", 1, 2);
   if (!rest.empty() && rest[0] >= 0) tendon.rest = Vec2(rest[0], rest.back());

@@ -6,6 +6,7 @@
 
 #include "pincer/contact/error.h"
 #include "pincer/tasks/run/files/spelling.h"
+#include "pincer/tasks/run/robot/robot_closure.h"
 #include "pincer/tasks/run/robot/robot_pose.h"
 
 namespace pincer::tasks {
@@ -89,8 +90,14 @@ Pose PosedRobot::poseAfter(int body_index, std::size_t joints) const {
 PosedRobot poseRobot(const Robot& robot, const RobotSceneOptions& options, ImportNotes& notes) {
   PosedRobot posed{robot, options.X_WR, keyframeNamed(robot, options.keyframe), {}, {}, {}, {}};
   posed.q = posed.key && !posed.key->q.empty() ? posed.key->q : drawnCoordinates(robot);
-  for (const auto& [joint, value] : options.start) posed.q[coordinateNamed(robot, joint)] = value;
+  std::vector<bool> held(posed.q.size(), false);
+  for (const auto& [joint, value] : options.start) {
+    const std::size_t at = coordinateNamed(robot, joint);
+    posed.q[at] = value;
+    held[at] = true;
+  }
   holdWithinLimits(robot, posed.q, notes);
+  closePose(robot, held, posed.q);
   for (const Pose& X_RB : bodyPoses(robot, posed.q)) posed.poses.push_back(options.X_WR * X_RB);
   gatherLinks(posed);
   return posed;

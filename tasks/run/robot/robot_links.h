@@ -36,8 +36,8 @@ struct PosedRobot {
   Pose poseAfter(int body_index, std::size_t joints) const;
 };
 
-// Where the options have it start. Joints that would be beyond a stop are at it, which is noted. Throws InputError: there is no such keyframe, no
-// such joint, or one without a coordinate of its own.
+// Where the options have it start. Joints that would be beyond a stop are at it, which is noted; loops and couplings are closed then (robot_closure.h).
+// Throws InputError: there is no such keyframe, no such joint, or one without a coordinate of its own; a loop stays open.
 PosedRobot poseRobot(const Robot& robot, const RobotSceneOptions& options, ImportNotes& notes);
 
 }  // namespace pincer::tasks

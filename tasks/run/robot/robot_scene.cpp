@@ -22,13 +22,13 @@ constexpr double kRoundOff = 1e-6;         // of a tick, in a duration
 
 // What a robot can say and a scene can't.
 void refuseTheRest(const Robot& robot) {
-  if (!robot.loops.empty())
-    rejectAt(robot.loops.front().place, "closes a loop of bodies, which can't be had from a file yet. Leave it out, or make it of joints.");
   for (const RobotTendon& tendon : robot.tendons) {
-    if (tendon.limits || tendon.stiffness != 0 || tendon.damping != 0 || tendon.friction != 0)
-      rejectAt(tendon.place, fmt::format("tendon \"{}\" has limits, a spring, damping or friction of its own, which can't be had yet. Give "
-                                         "them to its joints.",
-                                         tendon.name));
+    if (tendon.limits || tendon.friction != 0)
+      rejectAt(tendon.place,
+               fmt::format("tendon \"{}\" has limits or friction of its own, which can't be had. Give them to its joints.", tendon.name));
+    if (tendon.stiffness > 0 && tendon.rest && (*tendon.rest)[0] != (*tendon.rest)[1])
+      rejectAt(tendon.place,
+               fmt::format("tendon \"{}\" has a spring that is slack between two lengths. Give it one springlength.", tendon.name));
   }
   for (const RobotBody& body : robot.bodies) {
     if (body.is_driven) rejectAt(body.place, fmt::format("body \"{}\" is driven (mocap), which can't be had from a file yet.", body.name));
@@ -39,7 +39,8 @@ void noteTheRest(const Robot& robot, ImportNotes& notes) {
   for (const RobotBody& body : robot.bodies) {
     if (body.gravity_compensation != 0) notes.add("body gravcomp", "Bodies weigh what they weigh.", body.place);
     for (const RobotJoint& joint : body.joints) {
-      if (joint.drive_forces) notes.add("joint actuatorfrcrange", "Drives have force ranges of their own.", joint.place);
+      if (joint.drive_forces && !isOnlyDriveOf(robot, joint))
+        notes.add("joint actuatorfrcrange", "It holds where one drive moves the joint alone.", joint.place);
     }
     for (const RobotGeom& geom : body.geoms) {
       if (geom.priority != 0) notes.add("geom priority", "The larger of two frictions counts.", geom.place);
@@ -159,6 +160,43 @@ void writeJoint(SceneWriting& w, int index, std::size_t k, double start) {
   w.json.endObject();
 }
 
+// The link of a body, that of the world or of what stands still: -1.
+int movingLinkOf(const PosedRobot& posed, int body) {
+  if (body < 0) return -1;
+  const int link = posed.link_of[static_cast<std::size_t>(body)];
+  return posed.links[static_cast<std::size_t>(link)].is_static ? -1 : link;
+}
+
+// The body that stands still and carries a link; -1: the world.
+int baseOf(const PosedRobot& posed, int link) {
+  for (;;) {
+    const RobotLink& at = posed.links[static_cast<std::size_t>(link)];
+    const int parent = posed.body(at.body).parent;
+    if (at.is_static || parent < 0) return at.is_static ? at.body : -1;
+    link = posed.link_of[static_cast<std::size_t>(parent)];
+  }
+}
+
+void writeLoop(SceneWriting& w, const RobotLoop& loop, std::size_t number) {
+  const int a = movingLinkOf(w.posed, loop.a), b = movingLinkOf(w.posed, loop.b);
+  if (a == b) {
+    w.notes.add(loop.is_weld ? "weld" : "connect", "It holds together what one link is already.", loop.place);
+    return;
+  }
+  const int first = a < 0 ? b : a, second = a < 0 ? -1 : b;
+  const int to = second >= 0 ? w.posed.links[static_cast<std::size_t>(second)].body : baseOf(w.posed, first);
+  const Pose X_WA = loop.a < 0 ? w.posed.X_WR : w.posed.pose(loop.a);
+  w.json.beginObject()
+      .key("name")
+      .value(w.names.of("loop", fmt::format("loop{}", number)))
+      .key("type")
+      .value(loop.is_weld ? "weld" : "ball");
+  w.json.key("body").value(w.bodyName(w.posed.links[static_cast<std::size_t>(first)].body));
+  if (to >= 0) w.json.key("to").value(w.bodyName(to));
+  if (!loop.is_weld) w.json.key("point").value(Vec3(X_WA * loop.p_A));
+  w.json.endObject();
+}
+
 void writeJoints(SceneWriting& w) {
   w.json.key("joints").beginArray();
   for (const RobotLink& link : w.posed.links) {
@@ -169,6 +207,7 @@ void writeJoints(SceneWriting& w) {
       q += coordinateCount(joints[k].kind);
     }
   }
+  for (std::size_t i = 0; i < w.posed.robot.loops.size(); ++i) writeLoop(w, w.posed.robot.loops[i], i);
   w.json.endArray();
 }
 

@@ -1,8 +1,8 @@
 // robot_scene: a robot as a scene file (docs/scenes.md): links, joints, couplings, tendons, drives, frames.
 //
 // Bodies that no joint lets move are part of the one that carries them, and their names become frames; what hangs on nothing stands still. A body of
-// several joints gets bodies between them that weigh a microgram. Joints that don't let anything touch between their two bodies, meshes by their
-// hulls. Names keep letters, digits, - and _; others become _.
+// several joints gets bodies between them that weigh a microgram. Loops become balls and welds. Joints that don't let anything touch between their two
+// bodies, meshes by their hulls. Names keep letters, digits, - and _; others become _.
 #pragma once
 #include <string>
 #include <utility>
@@ -21,7 +21,7 @@ struct RobotSceneOptions {
   std::vector<std::pair<std::string, double>> start;  // joints and their coordinates, in place of the keyframe's [rad, m]
 };
 
-// The scene's text (JSON). Throws InputError at the robot's file and line: what a scene can't say (a loop of bodies, a spring along a tendon), an
+// The scene's text (JSON). Throws InputError at the robot's file and line: what a scene can't say (a spring along a tendon), an
 // unknown keyframe. Adds to the notes what is left out.
 std::string sceneOfRobot(const Robot& robot, const RobotSceneOptions& options, ImportNotes& notes);
 

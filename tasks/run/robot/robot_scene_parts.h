@@ -19,6 +19,9 @@ struct SceneWriting {
 // Throws InputError "place: problem".
 [[noreturn]] void rejectAt(const Place& place, std::string_view problem);
 
+// True if a drive moves this joint alone, and nothing else drives it: then the joint's range of forces is the drive's.
+bool isOnlyDriveOf(const Robot& robot, const RobotJoint& joint);
+
 // "couplings", "tendons", "drives".
 void writeTies(SceneWriting& writing);
 

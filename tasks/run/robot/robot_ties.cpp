@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "pincer/contact/error.h"
 #include "pincer/tasks/run/robot/robot_pose.h"
@@ -66,8 +67,16 @@ const std::string& tendonName(SceneWriting& w, const RobotDrive& drive) {
   return w.names.of("tendon", drive.name + "_" + (drive.joint.empty() ? drive.tendon : drive.joint));
 }
 
+bool hasSpring(const RobotTendon& tendon) { return tendon.stiffness > 0 || tendon.damping > 0; }
+
 void writeTendons(SceneWriting& w) {
   w.json.key("tendons").beginArray();
+  for (const RobotTendon& tendon : w.posed.robot.tendons) {
+    if (!hasSpring(tendon)) continue;
+    w.json.beginObject().key("name").value(w.names.of("sprung tendon", tendon.name)).key("joints").beginObject();
+    for (const auto& [joint, factor] : tendon.joints) w.json.key(w.names.of("joint", joint)).value(factor);
+    w.json.endObject().endObject();
+  }
   for (const RobotDrive& drive : w.posed.robot.drives) {
     if (isOfOneJoint(drive)) continue;
     w.json.beginObject().key("name").value(tendonName(w, drive)).key("joints").beginObject();
@@ -94,6 +103,44 @@ double feltInertia(const Robot& robot, const RobotDrive& drive) {
   return sum;
 }
 
+// Where the joints' own springs are slack, as long as the file doesn't say another length.
+double slackLength(const Robot& robot, const RobotTendon& tendon) {
+  if (tendon.rest) return (*tendon.rest)[0];
+  double length = 0;
+  for (const RobotBody& body : robot.bodies) {
+    for (const RobotJoint& joint : body.joints) {
+      for (const auto& [name, factor] : tendon.joints) length += name == joint.name ? factor * joint.spring_rest : 0;
+    }
+  }
+  return length;
+}
+
+// A spring and damper along a tendon: a drive that is told nothing.
+void writeTendonSprings(SceneWriting& w) {
+  for (const RobotTendon& tendon : w.posed.robot.tendons) {
+    if (!hasSpring(tendon)) continue;
+    w.json.beginObject().key("name").value(w.names.of("tendon's spring", tendon.name + "_spring"));
+    w.json.key("tendon").value(w.names.of("sprung tendon", tendon.name)).key("type").value("affine").key("gain").value(0);
+    w.json.key("offset").value(tendon.stiffness * slackLength(w.posed.robot, tendon)).key("stiffness").value(tendon.stiffness);
+    w.json.key("damping").value(tendon.damping).endObject();
+  }
+}
+
+// Range of all drives of a joint together: of its only one, where it drives that joint alone.
+std::optional<Vec2> forcesOf(const Robot& robot, const RobotDrive& drive) {
+  std::optional<Vec2> forces = drive.forces;
+  if (drive.joint.empty()) return forces;
+  for (const RobotBody& body : robot.bodies) {
+    for (const RobotJoint& joint : body.joints) {
+      if (joint.name != drive.joint || !joint.drive_forces || !isOnlyDriveOf(robot, joint)) continue;
+      Vec2 range = *joint.drive_forces / drive.gear;
+      if (drive.gear < 0) std::swap(range[0], range[1]);
+      forces = forces ? Vec2(std::max((*forces)[0], range[0]), std::min((*forces)[1], range[1])) : range;
+    }
+  }
+  return forces;
+}
+
 void writeLaw(SceneWriting& w, const RobotDrive& drive) {
   const double damping =
       drive.damping_ratio > 0 ? 2 * drive.damping_ratio * std::sqrt(drive.gain * feltInertia(w.posed.robot, drive)) : -drive.bias[2];
@@ -104,7 +151,9 @@ void writeLaw(SceneWriting& w, const RobotDrive& drive) {
   }
   w.json.key("type").value("affine").key("gain").value(drive.gain).key("offset").value(drive.bias[0]);
   w.json.key("stiffness").value(0 - drive.bias[1]).key("damping").value(damping);
-  if (drive.forces) w.json.key("force").beginArray().value((*drive.forces)[0]).value((*drive.forces)[1]).endArray();
+  if (drive.controls) w.json.key("control").beginArray().value((*drive.controls)[0]).value((*drive.controls)[1]).endArray();
+  if (const auto forces = forcesOf(w.posed.robot, drive))
+    w.json.key("force").beginArray().value((*forces)[0]).value((*forces)[1]).endArray();
 }
 
 void writeDrives(SceneWriting& w) {
@@ -119,10 +168,23 @@ void writeDrives(SceneWriting& w) {
     const double control = w.posed.key && !w.posed.key->controls.empty() ? w.posed.key->controls[i] : 0;
     w.json.key("target").value(drive.controls ? std::clamp(control, (*drive.controls)[0], (*drive.controls)[1]) : control).endObject();
   }
+  writeTendonSprings(w);
   w.json.endArray();
 }
 
 }  // namespace
+
+bool isOnlyDriveOf(const Robot& robot, const RobotJoint& joint) {
+  int of_it = 0, over_tendons = 0;
+  for (const RobotDrive& drive : robot.drives) {
+    of_it += drive.joint == joint.name;
+    for (const RobotTendon& tendon : robot.tendons) {
+      if (drive.tendon != tendon.name) continue;
+      for (const auto& [name, factor] : tendon.joints) over_tendons += name == joint.name;
+    }
+  }
+  return of_it == 1 && over_tendons == 0;
+}
 
 void writeTies(SceneWriting& writing) {
   writeCouplings(writing);

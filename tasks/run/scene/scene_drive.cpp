@@ -55,6 +55,13 @@ void readForceRange(const JsonValue& json, engine::DriveModel& drive) {
   if (!(drive.lower_force < drive.upper_force)) json.reject("is no range: the first must be less than the second.");
 }
 
+void readControlRange(const JsonValue& json, engine::DriveModel& drive) {
+  if (json.array().size() != 2) json.reject("must be [least, largest], as \"target\" is given.");
+  drive.lower_control = json.array()[0].number(ranges::kDriveControl);
+  drive.upper_control = json.array()[1].number(ranges::kDriveControl);
+  if (!(drive.lower_control <= drive.upper_control)) json.reject("is no range: the first is more than the second.");
+}
+
 // What each type takes besides its control.
 void readLaw(const JsonValue& json, engine::DriveModel& drive) {
   using Control = engine::DriveModel::Control;
@@ -122,6 +129,7 @@ SceneDrive readDrive(const JsonValue& json, const std::vector<SceneTendon>& tend
   drive.model.terms = readWhatItMoves(json, tendons, scene);
   readLaw(json, drive.model);
   if (const JsonValue* v = json.find("force")) readForceRange(*v, drive.model);
+  if (const JsonValue* v = json.find("control")) readControlRange(*v, drive.model);
   const JsonValue* const target = json.find("target");
   const JsonValue* const trajectory = json.find("trajectory");
   if (target && trajectory) target->reject("says again what \"trajectory\" says. Keep one of the two.");

@@ -27,8 +27,8 @@ inline constexpr std::array<Word, 14> kJoint = {"name",        "type",      "bod
                                                 "restitution", "stiffness", "rest", "damping", "friction", "armature", "start"};
 inline constexpr std::array<Word, 3> kCoupling = {"joint", "follows", "polynomial"};
 inline constexpr std::array<Word, 2> kTendon = {"name", "joints"};
-inline constexpr std::array<Word, 11> kDrive = {"name", "joint",  "tendon", "type",   "stiffness", "damping",
-                                                "gain", "offset", "force",  "target", "trajectory"};
+inline constexpr std::array<Word, 12> kDrive = {"name", "joint",  "tendon", "type",    "stiffness", "damping",
+                                                "gain", "offset", "force",  "control", "target",    "trajectory"};
 inline constexpr std::array<Word, 4> kDriveTypes = {"position", "velocity", "motor", "affine"};
 inline constexpr std::array<Word, 1> kDriveTrajectory = {"keyframes"};
 inline constexpr std::array<Word, 2> kDriveKeyframe = {"time", "value"};

@@ -1,0 +1,23 @@
+// A robot's model by MuJoCo (npm's @mujoco/mujoco), with the files of its folder: load(module, file) gives {mujoco, model, data, nameAt}.
+import fs from 'node:fs';
+import path from 'node:path';
+
+export async function load(module, file) {
+  const mujoco = await (await import(module)).default();
+  function copy(from, to) {
+    mujoco.FS.mkdir(to);
+    for (const entry of fs.readdirSync(from, {withFileTypes: true})) {
+      const inner = path.join(from, entry.name);
+      if (entry.isDirectory()) copy(inner, `${to}/${entry.name}`);
+      else mujoco.FS.writeFile(`${to}/${entry.name}`, new Uint8Array(fs.readFileSync(inner)));
+    }
+  }
+  copy(path.dirname(file), '/robot');
+  const model = mujoco.MjModel.from_xml_path(`/robot/${path.basename(file)}`);
+  const nameAt = (address) => {
+    let end = address;
+    while (model.names[end] !== 0) ++end;
+    return String.fromCharCode(...model.names.slice(address, end));
+  };
+  return {mujoco, model, data: new mujoco.MjData(model), nameAt};
+}

@@ -1,0 +1,129 @@
+// Robots as scenes: loops, ranges, springs of tendons, and that all ways to run one give the same bits.
+#include "pincer/tasks/run/robot/robot_scene.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "pincer/tasks/run/robot/mjcf.h"
+#include "pincer/tasks/run/scene/scene_robot.h"
+#include "pincer/tasks/run/simulation.h"
+#include "pincer/tests/support/error_of.h"
+#include "pincer/tests/support/temporary_directory.h"
+
+namespace pincer::tasks {
+namespace {
+
+// Four bars in the plane of x and z: a crank of 60 mm, a coupler, a rocker, all drawn upright; the coupler's end is tied to the rocker's.
+const std::string kFourBar = R"(<mujoco model="bars"><compiler angle="radian"/><option gravity="0 0 -9.81" timestep="0.001"/>
+  <default><joint axis="0 1 0" damping="1e-3"/><geom contype="0" conaffinity="0" type="capsule" size=".004"/></default>
+  <worldbody><body name="frame"><geom type="box" size=".01 .01 .01"/>
+    <body name="crank"><joint name="crank_turn" range="-3 3"/><geom fromto="0 0 0 0 0 .06"/>
+      <body name="coupler" pos="0 0 .06"><joint name="elbow"/><geom fromto="0 0 0 .18 0 .09"/></body></body>
+    <body name="rocker" pos=".18 0 0"><joint name="rocker_turn"/><geom fromto="0 0 0 0 0 .15"/></body></body></worldbody>
+  <equality><connect body1="coupler" body2="rocker" anchor=".18 0 .09"/></equality>
+  <actuator><position name="hold" joint="crank_turn" kp="5" kv=".1" ctrlrange="-.5 .5"/></actuator>
+  <keyframe><key name="turned" qpos=".3 0 0" ctrl=".3"/></keyframe></mujoco>)";
+
+class RobotScenes : public ::testing::Test {
+ protected:
+  std::string write(const std::string& name, const std::string& text) {
+    std::ofstream(folder_ / name) << text;
+    return folder_ / name;
+  }
+  Scene sceneOfText(const std::string& xml, const RobotSceneOptions& options = {}) {
+    RobotImport import = readMjcf(write("robot.xml", xml));
+    return parseScene(sceneOfRobot(import.robot, options, import.notes), folder_ / "robot.json");
+  }
+  static double measured(const Simulation& sim, const std::string& quantity) {
+    return quantityOf(quantity, sim.scene()).measure(sim.moment());
+  }
+  static void run(Simulation& sim, int ticks) {
+    for (int n = 0; n < ticks; ++n) ASSERT_EQ(sim.tick().status, engine::kStepOk);
+  }
+  // Where the coupler's end is off the rocker's [m].
+  static double gap(const Simulation& sim) {
+    const auto bodyNamed = [&](const std::string& name) {
+      int i = 0;
+      while (sim.scene().bodies[static_cast<std::size_t>(i)].name != name) ++i;
+      return sim.bodyPose(i);
+    };
+    return (bodyNamed("coupler") * Vec3(.18, 0, .09) - bodyNamed("rocker") * Vec3(0, 0, .15)).norm();
+  }
+
+  tests::TemporaryDirectory folder_;
+};
+
+TEST_F(RobotScenes, AConnectClosesALoop) {
+  Simulation sim(sceneOfText(kFourBar, {.keyframe = "turned"}));
+  const double start = measured(sim, "rocker_turn.position");
+  double worst = 0;
+  for (int n = 0; n < 2000; ++n) {
+    ASSERT_EQ(sim.tick().status, engine::kStepOk);
+    worst = std::max(worst, gap(sim));
+  }
+  EXPECT_LT(worst, 1e-15);
+  EXPECT_GT(std::abs(measured(sim, "rocker_turn.position") - start), 1e-3);  // it sags on its drive
+}
+
+TEST_F(RobotScenes, AKeyframeThatLeavesALoopOpenIsClosed) {
+  Simulation sim(sceneOfText(kFourBar, {.keyframe = "turned"}));
+  EXPECT_LT(gap(sim), 1e-12);
+  EXPECT_GT(std::abs(measured(sim, "crank_turn.position")), 0.01);
+}
+
+TEST_F(RobotScenes, AJointThatIsGivenStaysWhereALoopIsClosed) {
+  const Simulation sim(sceneOfText(kFourBar, {.start = {{"crank_turn", 0.4}}}));
+  EXPECT_NEAR(measured(sim, "crank_turn.position"), 0.4, 1e-15);
+  EXPECT_LT(gap(sim), 1e-12);
+}
+
+TEST_F(RobotScenes, ALoopThatCantBeClosedIsASentence) {
+  const std::string message = tests::errorOf([&] { sceneOfText(kFourBar, {.start = {{"crank_turn", 0.4}, {"rocker_turn", -1.5}}}); });
+  EXPECT_NE(message.find("robot.xml:7: can't be closed from this pose"), std::string::npos) << message;
+}
+
+TEST_F(RobotScenes, ImportedRunAndNamedInASceneARobotGivesTheSameBits) {
+  const std::string path = write("robot.xml", kFourBar);
+  std::string remarks;
+  Simulation as_it_is(parseScene(robotSceneText(path, remarks), folder_ / "robot.xml"));
+  Simulation imported(sceneOfText(kFourBar));
+  Simulation named(parseScene(R"({"version": 1, "duration": 1, "tick": 0.001, "combination": "maximum",
+    "bodies": [], "robots": [{"name": "it", "file": "robot.xml"}]})",
+                              folder_ / "scene.json"));
+  for (Simulation* sim : {&as_it_is, &imported, &named}) run(*sim, 500);
+  EXPECT_EQ(engine::hashOf(as_it_is.state().world), engine::hashOf(imported.state().world));
+  EXPECT_EQ(engine::hashOf(as_it_is.state().world), engine::hashOf(named.state().world));
+}
+
+TEST_F(RobotScenes, AControlIsCutOffAtTheEndsOfItsRange) {
+  const auto crankAfter = [&](double told) {
+    Scene scene = sceneOfText(kFourBar);
+    scene.drives[0].control = Trajectory::throughKeyframes({{0, {told, 0, 0}, Vec3::Zero()}});
+    Simulation sim(std::move(scene));
+    run(sim, 1000);
+    return measured(sim, "crank_turn.position");
+  };
+  EXPECT_EQ(crankAfter(0.5), crankAfter(7));
+  EXPECT_NE(crankAfter(0.5), crankAfter(0.4));
+}
+
+// Two carriages of 1 kg on one rail, tied by a spring of 50 N/m along q_1 + q_2 that is slack at 0.1 m; a motor pushes the first with 2 N.
+TEST_F(RobotScenes, ATendonsSpringPullsAndAJointsRangeOfForcesHolds) {
+  Simulation sim(sceneOfText(R"(<mujoco><option gravity="0 0 0" timestep="0.001"/>
+    <worldbody><body name="a"><joint name="slide_a" type="slide" axis="1 0 0" damping="20" actuatorfrcrange="-2 2"/><geom size=".01" mass="1"/></body>
+      <body name="b" pos="0 1 0"><joint name="slide_b" type="slide" axis="1 0 0" damping="20"/><geom size=".01" mass="1"/></body></worldbody>
+    <tendon><fixed name="t" stiffness="50" damping="3" springlength=".1"><joint joint="slide_a" coef="1"/><joint joint="slide_b" coef="1"/></fixed></tendon>
+    <actuator><motor name="push" joint="slide_a" ctrlrange="-9 9"/></actuator><keyframe><key name="on" ctrl="7"/></keyframe></mujoco>)",
+                             {.keyframe = "on"}));
+  run(sim, 5000);
+  // Both go apart, each braked by 20 N s/m, when the spring has 1 N; what is off that falls as exp(-4.7 t).
+  EXPECT_NEAR(measured(sim, "push.force"), 2, 1e-12);
+  EXPECT_NEAR(measured(sim, "slide_a.velocity"), 0.05, 1e-9);
+  EXPECT_NEAR(measured(sim, "slide_b.velocity"), -0.05, 1e-9);
+  EXPECT_NEAR(measured(sim, "slide_a.position") + measured(sim, "slide_b.position"), 0.1 + 1 / 50.0, 1e-9);
+}
+
+}  // namespace
+}  // namespace pincer::tasks
