@@ -24,7 +24,7 @@ struct TreeScratch {
   std::vector<char> locked, pressed;
   bool has_locked = false;
   std::vector<double> held;
-  bool rests = false;                     // nothing of it changed in this part of the tick
+  bool rests = false;  // nothing of it changed in this part of the tick
   // Between uses.
   std::vector<double> row, q;
 };
