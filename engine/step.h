@@ -65,6 +65,8 @@ enum StepStatus : std::uint32_t {
   kToleranceNotMet = 1u << 5,  // max_parts were too few for position_tolerance. Raise it, or the tolerance
   // solver.budget ran out: the tick isn't cut any more, impulses are the best iterate. Raise it, or simplify the scene
   kBudgetSpent = 1u << 6,
+  // A joint of a tree turns by more than half a radian in a 64th of the tick: its energy is bounded, its course isn't exact. Shorten the tick
+  kTurnsTooFar = 1u << 7,
 };
 
 struct StepReport {
@@ -115,6 +117,11 @@ struct JointReport {
   double friction_force = 0;  // of its dry friction
   bool at_lower = false, at_upper = false;
 };
+// All that a joint passes on to its body a: stops, drives, friction, and what it blocks.
+struct JointLoad {
+  Vec3 f_J = Vec3::Zero();       // [N], in the axes of its frame J on a
+  Vec3 moment_J = Vec3::Zero();  // about J [N m]
+};
 struct DriveReport {
   double force = 0;  // along l
   bool saturated = false;
@@ -122,6 +129,10 @@ struct DriveReport {
 // `joint` and `drive` as the builder numbered them.
 JointReport jointAt(const WorldModel& model, const WorldScratch& scratch, int joint);
 DriveReport driveAt(const WorldScratch& scratch, int drive);
+// Its mean over the last part of the last tick, after which `state` is; `applied`: the forces of that tick, as given to step. Not a number of a joint that is
+// part of a loop, whose share nothing tells.
+JointLoad jointLoadAt(const WorldModel& model, const WorldState& state, const WorldScratch& scratch, int joint,
+                      const AppliedForces& applied = {});
 
 // Contacts of the last tick, sorted by id but for those of what sleeps, which come last.
 int contactCount(const WorldScratch& scratch);

@@ -14,8 +14,33 @@ void addSquare(const TreeModel& tree, std::span<const ColumnShare> c, double wei
   }
 }
 
-bool factorise(const TreeModel& tree, TreeFactor& factor) {
+namespace {
+
+// Unties locked columns from all others.
+void untie(const TreeModel& tree, std::span<const char> locked, std::vector<double>& M) {
+  for (int i = 0; i < tree.columnCount(); ++i) {
+    for (int j = tree.before[slot(i)]; j >= 0; j = tree.before[slot(j)]) {
+      if (locked[slot(i)] || locked[slot(j)]) M[entryOf(tree, i, j)] = 0;
+    }
+    if (locked[slot(i)]) M[entryOf(tree, i, i)] = 1;
+  }
+}
+
+}  // namespace
+
+void multiply(const TreeModel& tree, std::span<const double> M, std::span<const double> x, std::span<double> out) {
+  for (int i = 0; i < tree.columnCount(); ++i) {
+    out[slot(i)] = M[entryOf(tree, i, i)] * x[slot(i)];
+    for (int j = tree.before[slot(i)]; j >= 0; j = tree.before[slot(j)]) {
+      out[slot(i)] += M[entryOf(tree, i, j)] * x[slot(j)];
+      out[slot(j)] += M[entryOf(tree, i, j)] * x[slot(i)];
+    }
+  }
+}
+
+bool factorise(const TreeModel& tree, TreeFactor& factor, std::span<const char> locked) {
   std::vector<double>& M = factor.entries;
+  if (!locked.empty()) untie(tree, locked, M);
   bool positive = true;
   for (int k = tree.columnCount() - 1; k >= 0; --k) {
     const double diagonal = M[entryOf(tree, k, k)];
@@ -28,6 +53,9 @@ bool factorise(const TreeModel& tree, TreeFactor& factor) {
       for (int j = i; j >= 0; j = tree.before[slot(j)]) M[entryOf(tree, i, j)] -= share * M[entryOf(tree, k, j)];
       entry = share;
     }
+  }
+  for (std::size_t i = 0; i < locked.size(); ++i) {
+    if (locked[i]) factor.root_inverse[i] = 0;
   }
   return positive;
 }

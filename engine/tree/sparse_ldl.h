@@ -37,8 +37,12 @@ inline std::size_t entryOf(const TreeModel& tree, int i, int j) {
 // M += weight c c^T, where all columns of c lie on one path.
 void addSquare(const TreeModel& tree, std::span<const ColumnShare> c, double weight, std::span<double> M);
 
-// Factorises in place. False: M isn't positive definite, some column moves no mass.
-bool factorise(const TreeModel& tree, TreeFactor& factor);
+// Factorises in place. False: M isn't positive definite, some column moves no mass. `locked`: true for columns that don't move, or empty; those have
+// no share in what the factor gives.
+bool factorise(const TreeModel& tree, TreeFactor& factor, std::span<const char> locked = {});
+
+// out = M x, of the packed M before it is factorised.
+void multiply(const TreeModel& tree, std::span<const double> M, std::span<const double> x, std::span<double> out);
 
 // x <- M^-1 x
 void solve(const TreeModel& tree, const TreeFactor& factor, std::span<double> x);

@@ -4,6 +4,7 @@
 
 #include "pincer/contact/assert.h"
 #include "pincer/engine/tree/slot.h"
+#include "pincer/engine/tree/tree_elements.h"
 
 namespace pincer::engine {
 namespace {
@@ -12,50 +13,6 @@ constexpr int kLoopPasses = 3;  // Newton's method from a tick's error: 1e-6, 1e
 
 void addTimes(double factor, const std::vector<double>& x, std::vector<double>& sum) {
   for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += factor * x[i];
-}
-
-// What a spring, a damper or a drive is at one place of the tree.
-struct Element {
-  std::span<const ColumnShare> c;  // how its length changes with the columns
-  double l = 0;
-  const DriveTick& law;
-};
-
-// f(element, course) of each spring and damper of a joint, then of each drive, but of those that are a constant force at most.
-template <class F>
-void forEachElement(const TreeModel& tree, const TreePush& push, const TreePlace& place, std::span<const double> q, TreeCourse& course,
-                    F f) {
-  for (std::size_t i = 0; i < tree.coordinates.size(); ++i) {
-    const TreeCoordinate& own = tree.coordinates[i];
-    if (!(own.damping > 0 || own.traits.stiffness > 0)) continue;
-    const ColumnShare share{own.column, place.coordinates[i].share};
-    const DriveTick law{.stiffness = own.traits.stiffness, .damping = own.damping, .target = own.traits.rest};
-    f(Element{std::span(&share, 1), own.q < 0 ? 0 : q[slot(own.q)], law}, course.springs[i]);
-  }
-  for (std::size_t d = 0; d < tree.drives.size(); ++d) {
-    if (!(push.drives[d].stiffness > 0 || push.drives[d].damping > 0)) continue;
-    columnShares(tree, place, tree.drives[d], course.shares);
-    f(Element{course.shares, lengthOf(tree, tree.drives[d], q), push.drives[d]}, course.drives[d]);
-  }
-}
-
-// The forces that stay, by columns: they need no law.
-void fillConstantForces(const TreeModel& tree, const TreePush& push, const TreePlace& place, TreeCourse& course,
-                        std::vector<double>& force) {
-  std::fill(force.begin(), force.end(), 0.0);
-  for (std::size_t i = 0; i < push.constant.size(); ++i)
-    force[slot(tree.coordinates[i].column)] += place.coordinates[i].share * push.constant[i];
-  for (std::size_t d = 0; d < tree.drives.size(); ++d) {
-    if (push.drives[d].force == 0) continue;
-    columnShares(tree, place, tree.drives[d], course.shares);
-    for (const ColumnShare& c : course.shares) force[slot(c.column)] += c.share * push.drives[d].force;
-  }
-}
-
-double along(std::span<const ColumnShare> c, std::span<const double> u) {
-  double rate = 0;
-  for (const ColumnShare& share : c) rate += share.share * u[slot(share.column)];
-  return rate;
 }
 
 // 1 / (c^T M^-1 c), of the factor of M in course.stage_factor.
@@ -95,16 +52,29 @@ bool fillMiddle(const TreeModel& tree, const TreeBase& base, const TreePush& pus
     addSquare(tree, element.c, out.implied.mass, course.factor.entries);
     for (const ColumnShare& c : element.c) course.step[slot(c.column)] += c.share * out.implied.impulse;
   });
-  course.sound = factoriseClosed(tree, course.loop_rows, course.factor);
+  if (!push.locked.empty()) course.inertia = course.factor.entries;
+  course.sound = tree.loops.empty() ? factorise(tree, course.factor, push.locked) : factoriseClosed(tree, course.loop_rows, course.factor);
   return are_soft;
+}
+
+// Stops the locked columns: the others feel that they do.
+void solveLocked(const TreeModel& tree, const TreePush& push, std::span<const double> u, TreeCourse& course, std::vector<double>& change) {
+  course.asked = change;
+  for (std::size_t c = 0; c < u.size(); ++c) course.force[c] = push.locked[c] ? -u[c] : 0;
+  multiply(tree, course.inertia, course.force, course.C);
+  for (std::size_t c = 0; c < u.size(); ++c) change[c] -= course.C[c];
+  solve(tree, course.factor, change);
+  for (std::size_t c = 0; c < u.size(); ++c) change[c] += course.force[c];
 }
 
 // Du = M^^-1 (h (tau - C(q_m, course.u)) + p) of what goes by u at the start; into `change`.
 void respond(const TreeModel& tree, const BaseCourse& base, const TreePush& push, std::span<const double> u, double h, TreeCourse& course,
              std::vector<double>& change) {
   moveLinks(tree, base.mid, course.q, course.u, course.mid);
+  fillConstantForces(tree, push, course.mid, course, course.force);
   fillBias(tree, course.mid, base.mid, push.gravity_W, push.forces, course.u, course.biases, course.C);
   for (std::size_t c = 0; c < change.size(); ++c) change[c] = h * (course.force[c] - course.C[c]) + course.step[c];
+  if (!push.locked.empty()) return solveLocked(tree, push, u, course, change);
   solve(tree, course.factor, change);
   if (tree.loops.empty()) return;
   wantNoOpening(u, course.loop_rows);
@@ -114,7 +84,6 @@ void respond(const TreeModel& tree, const BaseCourse& base, const TreePush& push
 
 void goByTheMiddle(const TreeModel& tree, const BaseCourse& base, const TreePush& push, std::span<const double> u, double h,
                    TreeCourse& course) {
-  fillConstantForces(tree, push, course.mid, course, course.force);
   std::copy(u.begin(), u.end(), course.u.begin());
   respond(tree, base, push, u, h, course, course.slope);
   addTimes(0.5, course.slope, course.u);
@@ -123,6 +92,7 @@ void goByTheMiddle(const TreeModel& tree, const BaseCourse& base, const TreePush
   for (std::size_t c = 0; c < u.size(); ++c) {
     course.u_free[c] = u[c] + course.slope[c];
     course.way_free[c] = h * (u[c] + 0.5 * course.slope[c]);
+    if (!push.locked.empty() && push.locked[c]) course.way_free[c] = 0;
   }
 }
 
@@ -172,27 +142,47 @@ void stepRates(const TreeModel& tree, std::span<const double> step, std::span<co
   }
 }
 
-void goByRungeKutta(const TreeModel& tree, const BaseCourse& base, const TreePush& push, std::span<const double> q,
-                    std::span<const double> u, double h, TreeCourse& course) {
+// Steps of the free course that show how it turns. The base's middle is known, no other places between its start and end.
+int fineSteps(const BaseCourse& base, double h, const TreeCourse& course) {
+  constexpr int kMostSteps = 4;
+  const auto stands = [](const Motion& m) { return m.v_W.isZero(0) && m.w_W.isZero(0); };
+  if (!stands(base.start.motion) || !stands(base.end.motion)) return 1;
+  double rate2 = 0;
+  for (const LinkPlace& link : course.mid.links) rate2 = std::max(rate2, link.motion.w_W.squaredNorm());
+  int steps = 1;
+  while (steps < kMostSteps && h * h * rate2 > steps * steps * kFineTurn * kFineTurn) steps *= 2;
+  return steps;
+}
+
+// One of `steps`, from what is in course.way_free and u_free on.
+void stepByRungeKutta(const TreeModel& tree, const BaseCourse& base, const TreePush& push, std::span<const double> q, double h, int step,
+                      int steps, TreeCourse& course) {
   const std::array<const TreeBase*, 4> bases{&base.start, &base.mid, &base.mid, &base.end};
   constexpr std::array kShares{0.0, 0.5, 0.5, 1.0};
   constexpr std::array kWeights{1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6};
-  std::fill(course.step.begin(), course.step.end(), 0.0);
-  std::fill(course.way_free.begin(), course.way_free.end(), 0.0);
-  std::copy(u.begin(), u.end(), course.u.begin());
-  std::copy(u.begin(), u.end(), course.u_free.begin());
+  const double part = h / steps;
+  course.old_step = course.step = course.way_free;
+  course.old_u = course.u = course.u_free;
   for (std::size_t k = 0; k < kShares.size(); ++k) {
     growCoordinates(tree, q, course.step, course.q);
-    lookAt(tree, *bases[k], push, kShares[k], h, course);
+    lookAt(tree, *bases[k], push, (step + kShares[k]) / steps, h, course);
     stepRates(tree, course.step, course.u, course.force);
-    addTimes(h * kWeights[k], course.force, course.way_free);
-    addTimes(h * kWeights[k], course.slope, course.u_free);
+    addTimes(part * kWeights[k], course.force, course.way_free);
+    addTimes(part * kWeights[k], course.slope, course.u_free);
     if (k + 1 == kShares.size()) break;
-    for (std::size_t c = 0; c < u.size(); ++c) {
-      course.step[c] = h * kShares[k + 1] * course.force[c];
-      course.u[c] = u[c] + h * kShares[k + 1] * course.slope[c];
+    for (std::size_t c = 0; c < course.u.size(); ++c) {
+      course.step[c] = course.old_step[c] + part * kShares[k + 1] * course.force[c];
+      course.u[c] = course.old_u[c] + part * kShares[k + 1] * course.slope[c];
     }
   }
+}
+
+void goByRungeKutta(const TreeModel& tree, const BaseCourse& base, const TreePush& push, std::span<const double> q,
+                    std::span<const double> u, double h, TreeCourse& course) {
+  std::fill(course.way_free.begin(), course.way_free.end(), 0.0);
+  std::copy(u.begin(), u.end(), course.u_free.begin());
+  const int steps = fineSteps(base, h, course);
+  for (int step = 0; step < steps; ++step) stepByRungeKutta(tree, base, push, q, h, step, steps, course);
 }
 
 }  // namespace
@@ -200,6 +190,8 @@ void goByRungeKutta(const TreeModel& tree, const BaseCourse& base, const TreePus
 TreeCourse::TreeCourse(const TreeModel& tree)
     : mid(tree),
       factor(tree),
+      inertia(slot(tree.entries)),
+      asked(tree.before.size()),
       springs(tree.coordinates.size()),
       drives(tree.drives.size()),
       u_free(tree.before.size()),
@@ -216,10 +208,12 @@ TreeCourse::TreeCourse(const TreeModel& tree)
       u(tree.before.size()),
       step(tree.before.size()),
       force(tree.before.size()),
-      slope(tree.before.size()) {
-  std::size_t most = 1;
-  for (const TreeDrive& drive : tree.drives) most = std::max(most, drive.terms.size());
-  shares.reserve(most);
+      slope(tree.before.size()),
+      old_u(tree.before.size()),
+      old_step(tree.before.size()) {
+  std::size_t longest = 1;
+  for (const TreeDrive& drive : tree.drives) longest = std::max(longest, drive.terms.size());
+  shares.reserve(longest);
 }
 
 void predictTree(const TreeModel& tree, const BaseCourse& base, const TreePush& push, std::span<const double> q, std::span<const double> u,
@@ -262,6 +256,13 @@ void advanceTree(const TreeModel& tree, const TreeBase& base, const TreeGain& ga
   } else {
     closeLoops(tree, base, course.factor, kLoopPasses, course.loop_rows, course.end_loops, q_out, u_out, course.end);
   }
+}
+
+void holdingImpulses(const TreeModel& tree, const TreeCourse& course, std::span<const double> u, std::span<const double> gained,
+                     std::span<const double> impulse, std::vector<double>& change, std::vector<double>& out) {
+  for (std::size_t c = 0; c < u.size(); ++c) change[c] = course.u_free[c] + gained[c] - u[c];
+  multiply(tree, course.inertia, change, out);
+  for (std::size_t c = 0; c < u.size(); ++c) out[c] -= course.asked[c] + impulse[c];
 }
 
 double lengthOf(const TreeModel& tree, const TreeDrive& drive, std::span<const double> q) {

@@ -7,7 +7,7 @@
 // Loops are closed in all of these (loop_closure.h).
 //
 // A tree that nothing else can push goes by Runge and Kutta's method of 4th order where all of those are soft (balls by exponentials: H. Munthe-Kaas,
-// Appl. Numer. Math. 29 (1999) 115-127).
+// Appl. Numer. Math. 29 (1999) 115-127); on a base at rest in up to four steps, if a link turns by more than kFineTurn in one.
 #pragma once
 #include <span>
 #include <vector>
@@ -26,6 +26,8 @@ struct DriveTick {
   double target = 0, way = 0, start_rate = 0, end_rate = 0;  // at the start; how far it goes, and how fast
 };
 
+constexpr double kFineTurn = 0.01;  // [rad]: the error goes with the fifth power
+
 // What pushes a tree.
 struct TreePush {
   Vec3 gravity_W = Vec3::Zero();
@@ -33,6 +35,7 @@ struct TreePush {
   std::span<const DriveTick> drives{};  // one per drive of the tree
   std::span<const double> constant{};   // forces that stay all through the tick, by coordinates, or none
   bool may_be_fine = true;              // the free course by Runge and Kutta, if all is soft
+  std::span<const char> locked{};       // true for columns that stop and stay; empty if none do
 };
 
 // The base at the start, the middle and the end of the tick.
@@ -53,8 +56,11 @@ struct TreeCourse {
 
   bool sound = true;                           // M^ was positive definite
   bool fine = false;                           // by Runge and Kutta
+  bool rough = false;                          // the middle doesn't show how it turns: speed_limit.h
+  double most = 0;                             // N^2 there
   TreePlace mid;                               // at q_m, with the motion of u there
   TreeFactor factor;                           // of M^ there
+  std::vector<double> inertia, asked;          // M^, and h (tau - C) + p, where columns are locked
   std::vector<ElementCourse> springs, drives;  // of coordinates; of drives
   std::vector<double> u_free, way_free;        // by columns: rates at the end, steps until then
   TreePlace end;                               // as placeFreeEnd or advanceTree left it
@@ -65,7 +71,7 @@ struct TreeCourse {
   TreeFactor stage_factor;
   LoopRows loop_rows;
   LoopBasis end_loops;
-  std::vector<double> C, q, u, step, force, slope;
+  std::vector<double> C, q, u, step, force, slope, old_u, old_step;
   std::vector<ColumnShare> shares;
 };
 
@@ -97,6 +103,11 @@ void advanceTree(const TreeModel& tree, const TreeBase& base, const TreeGain& ga
 inline double impulseOf(const ElementCourse& element, double rate_end) {
   return element.implied.impulse - element.implied.mass * (rate_end - element.rate);
 }
+
+// Impulses that hold the locked columns, by columns, where contacts and joints' rows gave `impulse` and changed the rates by `gained`:
+// M^ Du - h (tau - C) - p - J^T r.
+void holdingImpulses(const TreeModel& tree, const TreeCourse& course, std::span<const double> u, std::span<const double> gained,
+                     std::span<const double> impulse, std::vector<double>& change, std::vector<double>& out);
 
 // Length of a drive at q.
 double lengthOf(const TreeModel& tree, const TreeDrive& drive, std::span<const double> q);

@@ -88,10 +88,10 @@ void predictHeldBody(const WorldModel& model, const WorldState& state, const Joi
   const OneFreedomCourse end = followFreedom(law, held.start_rate, scratch.h);
   held.free_way = end.way;
   held.free_rate = end.rate;
-  if (!g.may_touch) return;
   // As of free bodies without the force of this part of the tick: what rests must be found where it is.
   out.X_WI_mid = placeAt(model, g, held, s.X_WI, 0.5 * scratch.h * held.start_rate);
   out.start = motionAt(model, g, held, s.X_WI, held.start_rate);
+  if (!g.may_touch) return;
   out.free = motionAt(model, g, held, placeAt(model, g, held, s.X_WI, end.way), end.rate);
   out.end = out.free;
   held.inverse_inertia = dampedShare(law.c, scratch.h) / g.inertia;

@@ -88,6 +88,47 @@ void putFriction(const WorldModel& model, const WorldState& state, int slot, Joi
   addRow(0, slot, row, scratch);
 }
 
+// The stops of a coordinate are out of reach.
+bool isAwayFromStops(const WorldState& state, const TreeModel& tree, const TreeCoordinate& own) {
+  constexpr double kAway = 1e-9;  // [rad, m]
+  const double q = state.tree_q[tree.first_q + own.q];
+  return q > own.traits.lower + kAway && q < own.traits.upper - kAway;
+}
+
+void unlock(const TreeModel& tree, TreeScratch& s, WorldScratch& scratch) {
+  for (int i = 0; i < tree.coordinateCount(); ++i) {
+    JointRowScratch& row = scratch.joint_rows[slotOf(tree, i, JointRowKind::kFriction)];
+    row.wanted = row.wanted || row.locked;
+    row.locked = false;
+  }
+  std::fill(s.locked.begin(), s.locked.end(), char{0});
+  s.has_locked = false;
+}
+
+// Finds what holds the locked joints of a tree; unlocks them all if one is pushed, or would have to give more than it has.
+bool reviseLocked(const WorldState& state, const TreeModel& tree, TreeScratch& s, WorldScratch& scratch) {
+  if (!s.has_locked) return false;
+  holdingImpulses(tree, s.course, treeRates(tree, state), s.gained, s.impulse, s.row, s.held);
+  for (int i = 0; i < tree.coordinateCount(); ++i) {
+    JointRowScratch& row = scratch.joint_rows[slotOf(tree, i, JointRowKind::kFriction)];
+    if (!row.locked) continue;
+    const int column = tree.coordinates[i].column;
+    row.impulse_W = Vec3(s.held[column], 0, 0);
+    if (!s.pressed[column] && std::abs(s.held[column]) <= scratch.h * tree.coordinates[i].traits.friction) continue;
+    unlock(tree, s, scratch);
+    return true;
+  }
+  return false;
+}
+
+// A brake that holds, and needs no row to do so.
+bool mayLock(const WorldState& state, const TreeModel& tree, const TreeScratch& s, const JointRowScratch& row, double rate) {
+  constexpr double kShare = 0.5, kSlow = 1e-8;  // of its force; [rad/s, m/s]
+  const TreeCoordinate& own = tree.coordinates[row.element];
+  return !tree.has_couplings && std::abs(row.impulse_W.x()) <= kShare * row.limit && std::abs(rate) <= kSlow && !s.pressed[own.column] &&
+         isAwayFromStops(state, tree, own);
+}
+
 // A joint that was to go on in one direction turned round, or stopped.
 bool reviseFriction(const WorldModel& model, JointRowScratch& row, WorldScratch& scratch) {
   TreeScratch& s = scratch.trees[row.tree];
@@ -156,12 +197,13 @@ void sizeJointRows(const WorldModel& model, WorldScratch& scratch) {
 
 void startJointRows(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
   for (JointRowScratch& row : scratch.joint_rows) {
-    row.wanted = false;
+    row.wanted = row.locked = false;
     row.hit = JointRowScratch::Hit::kNone;
   }
   for (std::size_t t = 0; t < model.trees.size(); ++t) {
     const TreeModel& tree = model.trees[t];
     TreeScratch& s = scratch.trees[t];
+    unlock(tree, s, scratch);
     for (std::size_t d = 0; d < tree.drives.size(); ++d) startDrive(model, state, tree.drives[d], scratch, s.drives[d]);
     for (int i = 0; i < tree.coordinateCount(); ++i) {
       const double friction = tree.coordinates[i].traits.friction, u = state.tree_v[tree.first_v + tree.coordinates[i].column];
@@ -170,7 +212,11 @@ void startJointRows(const WorldModel& model, const WorldState& state, WorldScrat
       const BrakeMemory memory = state.brakes[tree.first_coordinate + i];
       if (memory == BrakeMemory::kForward && u != 0) s.constant[i] = -friction;
       if (memory == BrakeMemory::kBackward && u != 0) s.constant[i] = friction;
-      scratch.joint_rows[slotOf(tree, i, JointRowKind::kFriction)].wanted = s.constant[i] == 0 && scratch.h > 0;
+      JointRowScratch& row = scratch.joint_rows[slotOf(tree, i, JointRowKind::kFriction)];
+      row.locked = memory == BrakeMemory::kLocks && tree.loops.empty() && isAwayFromStops(state, tree, tree.coordinates[i]);
+      row.wanted = !row.locked && s.constant[i] == 0 && scratch.h > 0;
+      s.locked[tree.coordinates[i].column] = row.locked ? 1 : 0;
+      s.has_locked = s.has_locked || row.locked;
     }
   }
 }
@@ -221,10 +267,14 @@ double timeOfStop(const WorldModel& model, const WorldState& state, const WorldS
 
 bool reviseJointRows(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
   bool is_wrong = false;
+  for (std::size_t t = 0; t < model.trees.size(); ++t)
+    is_wrong = reviseLocked(state, model.trees[t], scratch.trees[t], scratch) || is_wrong;
   for (JointRowScratch& row : scratch.joint_rows) {
     if (row.tree < 0) continue;
     if (row.kind == JointRowKind::kDrive) {
-      is_wrong = reviseDrive(model, state, row, scratch) || is_wrong;
+      if (!reviseDrive(model, state, row, scratch)) continue;
+      unlock(treeOf(model, row), scratch.trees[row.tree], scratch);
+      is_wrong = true;
     } else if (row.kind == JointRowKind::kFriction) {
       is_wrong = reviseFriction(model, row, scratch) || is_wrong;
     } else if (!row.wanted && row.hit == JointRowScratch::Hit::kNone && hasStop(treeOf(model, row).coordinates[row.element], row.kind) &&
@@ -272,11 +322,12 @@ void rememberJointRows(const WorldModel& model, WorldState& state, WorldScratch&
     const TreeScratch& s = scratch.trees[row.tree];
     const double rate = s.rests ? 0 : endRate(tree, s, row.element);
     row.end.v_W = row.kind == JointRowKind::kFriction ? Vec3(rate, 0, 0) : Vec3(0, 0, row.kind == JointRowKind::kUpper ? -rate : rate);
-    if (row.kind != JointRowKind::kFriction) continue;
+    if (row.kind != JointRowKind::kFriction || row.locked) continue;
     const double r = row.touched ? row.impulse_W.x() : 0;
     const bool slips = row.wanted ? std::abs(r) >= (1 - kBrakeRoundOff) * row.limit && rate * r < 0 : s.constant[row.element] != 0;
     BrakeMemory& memory = state.brakes[tree.first_coordinate + row.element];
-    memory = !slips ? BrakeMemory::kHolds : rate > 0 ? BrakeMemory::kForward : BrakeMemory::kBackward;
+    const bool locks = !slips && row.wanted && row.touched && mayLock(state, tree, s, row, rate);
+    memory = locks ? BrakeMemory::kLocks : !slips ? BrakeMemory::kHolds : rate > 0 ? BrakeMemory::kForward : BrakeMemory::kBackward;
   }
 }
 
@@ -287,7 +338,7 @@ JointReport jointAt(const WorldModel& model, const WorldScratch& scratch, int jo
   const TreeModel& tree = model.trees[place.tree];
   const auto forceOf = [&](JointRowKind kind) {
     const JointRowScratch& row = scratch.joint_rows[slotOf(tree, place.coordinate, kind)];
-    return row.wanted && row.touched ? (row.isBrake() ? row.impulse_W.x() : row.impulse_W.z()) / scratch.h : 0.0;
+    return row.locked || (row.wanted && row.touched) ? (row.isBrake() ? row.impulse_W.x() : row.impulse_W.z()) / scratch.h : 0.0;
   };
   const double lower = forceOf(JointRowKind::kLower), upper = forceOf(JointRowKind::kUpper);
   report.stop_force = lower - upper;

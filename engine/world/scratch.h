@@ -107,6 +107,7 @@ struct JointRowScratch : MoverScratch {
   int tree = -1;          // -1: what doesn't move, the other side of all of them
   int element = 0;        // coordinate, or drive, of the tree
   bool wanted = false;    // in this part of the tick
+  bool locked = false;    // dry friction that holds without a row; its impulse is impulse_W.x
   double mobility = 0;    // of the coordinate to impulses along it [1/kg ..]
   double limit = 0;       // of a brake: the most that it gives [N s]
   double grip = 0;        // of a brake: W_nn of its own mover

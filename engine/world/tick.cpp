@@ -240,8 +240,7 @@ class Tick {
       s.flung = way;
       flings = true;
     }
-    scratch_.flings = flings;
-    return flings;
+    return scratch_.flings = flings;
   }
 
   void forgetFlung() {
@@ -254,6 +253,7 @@ class Tick {
     note();
     const bool is_rough = isSpent() || turns_far_ || impacts_ == kMostImpacts;
     const double energy = is_rough ? energyOf(model_, state_, scratch_.gravity_W) : 0;
+    if (turns_far_ && treesTurnFar(model_, state_, scratch_)) report_.status |= kTurnsTooFar;
     advance(model_, state_, scratch_);
     pushOut(model_, state_, scratch_);
     if (is_rough) limitEnergy(model_, scratch_, energy, state_);

@@ -9,6 +9,7 @@
 #include "pincer/contact/functions/invariants.h"
 #include "pincer/engine/motion/driven_motion.h"
 #include "pincer/engine/motion/free_motion.h"
+#include "pincer/engine/tree/speed_limit.h"
 #include "pincer/engine/world/joint_rows.h"
 #include "pincer/engine/world/rest.h"
 
@@ -103,6 +104,37 @@ bool movesAlone(const TreeModel& tree) {
   });
 }
 
+// True if a hinge, a ball or a link turns so far in this part of the tick that its middle doesn't show how it goes.
+bool turnsFar(const TreeModel& tree, const TreeScratch& s, std::span<const double> u, double h) {
+  constexpr double kFar = 0.5;  // [rad]
+  for (const TreeCoordinate& own : tree.coordinates) {
+    if (tree.links[own.link].kind == JointKind::kSlider) continue;
+    const double start = u[own.column], end = s.course.u_free[own.column] + s.gained[own.column];
+    if (!(h * std::max(std::abs(start), std::abs(end)) <= kFar)) return true;
+  }
+  const double most2 = kFar * kFar / (h * h);
+  return std::any_of(s.course.mid.links.begin(), s.course.mid.links.end(),
+                     [most2](const LinkPlace& link) { return link.motion.w_W.squaredNorm() > most2; });
+}
+
+// The most that drives at their limits add to a tree's speed in the metric of M.
+double givenByDrives(const WorldScratch& scratch, int tree) {
+  double sum = 0;
+  for (const JointRowScratch& row : scratch.joint_rows) {
+    if (row.tree == tree && row.kind == JointRowKind::kDrive && row.wanted) sum += row.limit * std::sqrt(row.mobility);
+  }
+  return sum;
+}
+
+TreePush pushOn(const WorldScratch& scratch, const TreeModel& tree, const TreeScratch& s) {
+  return {.gravity_W = scratch.gravity_W,
+          .forces = scratch.forces.empty() ? std::span<const LinkForce>{} : std::span<const LinkForce>(s.forces),
+          .drives = s.drives,
+          .constant = s.constant,
+          .may_be_fine = movesAlone(tree),
+          .locked = s.has_locked ? std::span<const char>(s.locked) : std::span<const char>{}};
+}
+
 bool isSlow(const Motion& m, double reach, double limit) {
   return m.v_W.squaredNorm() <= limit * limit && reach * reach * m.w_W.squaredNorm() <= limit * limit;
 }
@@ -126,7 +158,8 @@ bool comesToRest(const WorldModel& model, const WorldScratch& scratch, const Tre
 
 TreeScratch::TreeScratch(const TreeModel& tree)
     : drives(tree.drives.size()), forces(tree.links.size()), constant(tree.coordinates.size()), course(tree) {
-  for (std::vector<double>* columns : {&impulse, &gained, &row}) columns->resize(static_cast<std::size_t>(tree.columnCount()));
+  for (std::vector<double>* columns : {&impulse, &gained, &row, &held}) columns->resize(static_cast<std::size_t>(tree.columnCount()));
+  for (std::vector<char>* columns : {&locked, &pressed}) columns->resize(static_cast<std::size_t>(tree.columnCount()));
   q.resize(static_cast<std::size_t>(tree.q_count));
 }
 
@@ -135,17 +168,15 @@ void predictTrees(const WorldModel& model, const WorldState& state, WorldScratch
     const TreeModel& tree = model.trees[t];
     TreeScratch& s = scratch.trees[t];
     s.base = baseCourse(model, state, scratch, tree);
-    const bool is_pushed = !scratch.forces.empty();
-    if (is_pushed) takeForces(scratch, tree, s);
-    const TreePush push{.gravity_W = scratch.gravity_W,
-                        .forces = is_pushed ? std::span<const LinkForce>(s.forces) : std::span<const LinkForce>{},
-                        .drives = s.drives,
-                        .constant = s.constant,
-                        .may_be_fine = movesAlone(tree)};
-    predictTree(tree, s.base, push, treeCoordinates(tree, state), treeRates(tree, state), scratch.h, s.course);
+    if (!scratch.forces.empty()) takeForces(scratch, tree, s);
+    const TreePush push = pushOn(scratch, tree, s);
+    const std::span<const double> q = treeCoordinates(tree, state), u = treeRates(tree, state);
+    predictTree(tree, s.base, push, q, u, scratch.h, s.course);
     std::fill(s.gained.begin(), s.gained.end(), 0.0);
+    s.course.rough = turnsFar(tree, s, u, scratch.h);
+    if (s.course.rough) limitFreeCourse(tree, s.base, push, q, u, scratch.h, s.course);
     s.touched = s.closing = false;
-    if (tree.may_touch) placeFreeEnd(tree, s.base, treeCoordinates(tree, state), s.course);
+    if (tree.may_touch) placeFreeEnd(tree, s.base, q, s.course);
     for (int l = 0; l < static_cast<int>(tree.links.size()); ++l) showLink(model, state, tree, l, s, scratch.bodies[tree.links[l].body]);
   }
 }
@@ -180,6 +211,7 @@ void gatherTrees(const WorldModel& model, WorldScratch& scratch) {
       gatherMover(body, s);
       if (body.touched) addWrench(model.trees[t], s.course.mid, static_cast<int>(l), body.impulse_W, body.angular_impulse_W, s.impulse);
     }
+    std::transform(s.impulse.begin(), s.impulse.end(), s.pressed.begin(), [](double r) { return static_cast<char>(r != 0); });
   }
   for (const JointRowScratch& row : scratch.joint_rows) {
     if (!row.touched || row.tree < 0) continue;
@@ -201,7 +233,10 @@ void advanceTrees(const WorldModel& model, WorldState& state, WorldScratch& scra
     const TreeModel& tree = model.trees[t];
     TreeScratch& s = scratch.trees[t];
     const std::span<double> q = treeCoordinates(tree, state), u = treeRates(tree, state);
+    const double given = s.course.rough ? givenByDrives(scratch, static_cast<int>(t)) : 0;
+    if (s.course.rough) limitGained(tree, given, s.course, s.gained);
     advanceTree(tree, s.base.end, {s.gained, scratch.h, s.closing}, scratch.h, q, u, s.course, s.q, s.row);
+    if (s.course.rough) limitRates(tree, s.base.end, pushOn(scratch, tree, s), s.q, given, s.course, s.row);
     s.rests = comesToRest(model, scratch, tree, s);
     if (s.rests) {
       std::fill(u.begin(), u.end(), 0.0);
@@ -225,16 +260,8 @@ void advanceTrees(const WorldModel& model, WorldState& state, WorldScratch& scra
 }
 
 bool treesTurnFar(const WorldModel& model, const WorldState& state, const WorldScratch& scratch) {
-  constexpr double kFar = 0.5;  // [rad]
   for (std::size_t t = 0; t < model.trees.size(); ++t) {
-    const TreeModel& tree = model.trees[t];
-    const TreeScratch& s = scratch.trees[t];
-    const std::span<const double> u = treeRates(tree, state);
-    for (const TreeCoordinate& own : tree.coordinates) {
-      if (tree.links[own.link].kind == JointKind::kSlider) continue;
-      const double start = u[own.column], end = s.course.u_free[own.column] + s.gained[own.column];
-      if (scratch.h * std::max(std::abs(start), std::abs(end)) > kFar) return true;
-    }
+    if (turnsFar(model.trees[t], scratch.trees[t], treeRates(model.trees[t], state), scratch.h)) return true;
   }
   return false;
 }
@@ -245,7 +272,9 @@ void strikeTrees(const WorldModel& model, WorldState& state, WorldScratch& scrat
     TreeScratch& s = scratch.trees[t];
     if (!s.touched) continue;
     const std::span<double> u = treeRates(tree, state);
+    std::copy(u.begin(), u.end(), s.row.begin());
     for (std::size_t c = 0; c < u.size(); ++c) u[c] += s.gained[c];
+    if (s.course.rough) limitStruck(tree, s.row, s.course, u);
     moveLinks(tree, s.base.start, treeCoordinates(tree, state), u, s.course.mid);
     for (int l = 0; l < static_cast<int>(tree.links.size()); ++l) {
       BodyState& body = state.bodies[tree.links[l].body];

@@ -22,7 +22,7 @@ void gatherTrees(const WorldModel& model, WorldScratch& scratch);
 // To the end of this part of the tick.
 void advanceTrees(const WorldModel& model, WorldState& state, WorldScratch& scratch);
 
-// True if a hinge or ball turns so far in this part of the tick that its middle doesn't show how it goes. After gatherTrees.
+// True if something of a tree turns so far in this part of the tick that its middle doesn't show how it goes. After gatherTrees.
 bool treesTurnFar(const WorldModel& model, const WorldState& state, const WorldScratch& scratch);
 
 // After an impact: the velocities of what was struck.

@@ -20,7 +20,11 @@ struct TreeScratch {
   std::vector<double> impulse, gained;
   bool touched = false, closing = false;  // some contact pushes on a link or a joint; one of those closes in this tick
   double rest_speed = 0;                  // see MoverScratch
-  bool rests = false;                     // nothing of it changed in this part of the tick
+  // Columns that dry friction holds without a row (joint_rows.h), and if there are any; columns that bodies' contacts push; impulses that hold.
+  std::vector<char> locked, pressed;
+  bool has_locked = false;
+  std::vector<double> held;
+  bool rests = false;  // nothing of it changed in this part of the tick
   // Between uses.
   std::vector<double> row, q;
 };

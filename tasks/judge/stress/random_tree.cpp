@@ -102,7 +102,7 @@ class TreeDraft {
     drive.gain = heavy;
     drive.control = static_cast<engine::DriveModel::Control>(random_.below(3));
     if (drive.control == engine::DriveModel::Control::kPosition) drive.stiffness = heavy * between(random_, 1e-1, 1e4);
-    drive.damping = heavy * between(random_, 1e-2, 10);  // motors have a fastest speed
+    drive.damping = oneIn(random_, 2) ? 0 : heavy * between(random_, 1e-2, 10);
     if (!oneIn(random_, 3)) {
       drive.upper_force = heavy * between(random_, 1e-2, 20);
       drive.lower_force = -drive.upper_force;

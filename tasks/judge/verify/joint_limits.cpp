@@ -3,7 +3,11 @@
 //   stop       s = F t^2/2m until the stop; e^2n of the height after n bounces; e = 0 rests at the stop to the bit
 //   friction   holds at .999 of its limit, slides with (F - f)/m at 1.001; runs out after v^2 m/2f
 //   limit      a drive gives its limit, and reaches its target
+//   two-stops  two sliders, one on the other askew, get to their stops at once: each bounces by its own e
+//   ticks      stop, dry friction and drive with ticks of 0.1 to 4 ms
 //   pinch      s4_pinch by two sliders of 50 g that motors of 2 N push: the equations of s4_pinch
+#include <array>
+
 #include "pincer/contact/elementary.h"
 #include "pincer/tasks/judge/verify/linkage.h"
 #include "pincer/tasks/judge/verify/verify.h"
@@ -14,8 +18,8 @@ namespace {
 using engine::JointKind;
 
 // A slider of 1 kg that a motor pushes to its stop 0.1 m ahead.
-Linkage towardsStop(double force, double restitution) {
-  Linkage world(1e-3, Vec3::Zero());
+Linkage towardsStop(double force, double restitution, double h = 1e-3) {
+  Linkage world(h, Vec3::Zero());
   engine::JointModel joint =
       jointAlong(JointKind::kSlider, Vec3::UnitX(), world.ball(1, 1e-3, Vec3::Zero()), Vec3::Zero(), -1, Vec3::Zero());
   joint.traits.upper = 0.1;
@@ -56,6 +60,45 @@ std::vector<Record> stops(MeasureContext&) {
           unflagged(landing)};
 }
 
+// A slider of 1 kg, and on it one of 0.5 kg that slides askew: M = (1.5, .5 c; .5 c, .5), c the cosine between the two. Constant forces give each its own
+// constant acceleration, so that both stops are hit at the same moment; then each goes back by its own e, however the two pull at each other.
+std::vector<Record> twoStops(MeasureContext&) {
+  constexpr double kFirst = 1, kSecond = 0.5, kWay = 0.1, kCosine = 0.6;
+  constexpr std::array<double, 2> kFaster{2, 3}, kRestitution{0.5, 0.8};  // accelerations [m/s^2]
+  Linkage world(1e-3, Vec3::Zero());
+  const int first = world.ball(kFirst, 1e-3, Vec3::Zero()), second = world.ball(kSecond, 1e-3, {0, 0, 0.1});
+  const Vec3 askew(kCosine, std::sqrt(1 - kCosine * kCosine), 0);
+  engine::JointModel outer = jointAlong(JointKind::kSlider, Vec3::UnitX(), first, Vec3::Zero(), -1, Vec3::Zero());
+  engine::JointModel inner = jointAlong(JointKind::kSlider, askew, second, Vec3::Zero(), first, {0, 0, 0.1});
+  outer.traits.upper = kWay;
+  outer.traits.restitution = kRestitution[0];
+  inner.traits.upper = kWay * kFaster[1] / kFaster[0];
+  inner.traits.restitution = kRestitution[1];
+  for (const engine::JointModel& joint : {outer, inner}) world.drive(motorOn(world.joint(joint)));
+  world.build();
+  const double tied = kSecond * kCosine;
+  world.controls[0].value = (kFirst + kSecond) * kFaster[0] + tied * kFaster[1];
+  world.controls[1].value = tied * kFaster[0] + kSecond * kFaster[1];
+  const double hit = std::sqrt(2 * kWay / kFaster[0]);
+  world.run(0.35);
+  double worst = 0;
+  for (int j = 0; j < 2; ++j) {
+    const auto i = static_cast<std::size_t>(j);
+    const double since = world.time() - hit, back = -kRestitution[i] * kFaster[i] * hit;
+    const double limit = kWay * kFaster[i] / kFaster[0];
+    worst = std::max(worst, std::abs(world.position(j) - limit - back * since - 0.5 * kFaster[i] * since * since));
+    worst = std::max(worst, std::abs(world.velocity(j) - back - kFaster[i] * since));
+  }
+  world.run(8);
+  const std::array<double, 2> rest{world.position(0), world.position(1)};
+  world.run(2);
+  return {atMost("places and speeds 34 ms after both are hit, error", worst, "m, m/s", 1e-10),
+          atMost("at rest beyond the stops", std::max(std::abs(rest[0] - kWay), std::abs(rest[1] - kWay * kFaster[1] / kFaster[0])), "m",
+                 1e-10),
+          exactly("moved in 2 s after that", std::abs(world.position(0) - rest[0]) + std::abs(world.position(1) - rest[1]), "m", 0),
+          unflagged(world)};
+}
+
 // A pendulum let go at the height of its pivot falls to its stop straight below: omega^2 = 2 m g d/I there, after a quarter of its period.
 std::vector<Record> pendulumAndStop(MeasureContext&) {
   constexpr double kLever = 0.3, kMass = 0.4, kInertia = 1e-3, kRestitution = 0.8;
@@ -79,8 +122,8 @@ std::vector<Record> pendulumAndStop(MeasureContext&) {
 
 // A slider of 1 kg with dry friction of 3 N, pushed by `ratio` of it.
 constexpr double kDry = 3;
-Linkage dry(double ratio) {
-  Linkage world(1e-3, Vec3::Zero());
+Linkage dry(double ratio, double h = 1e-3) {
+  Linkage world(h, Vec3::Zero());
   engine::JointModel joint =
       jointAlong(JointKind::kSlider, Vec3::UnitX(), world.ball(1, 1e-3, Vec3::Zero()), Vec3::Zero(), -1, Vec3::Zero());
   joint.traits.friction = kDry;
@@ -116,6 +159,31 @@ std::vector<Record> dryFriction(MeasureContext& context) {
           unflagged(held),
           unflagged(slides),
           unflagged(runs)};
+}
+
+std::vector<Record> tickSizes(MeasureContext& context) {
+  double time = 0, rest = 0, held = 0, slides = 0, flagged = 0;
+  int done = 0;
+  for (const double h : {1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 4e-3}) {
+    constexpr double kForce = 2, kRestitution = 0.5;
+    const double hit = std::sqrt(2 * 0.1 / kForce);
+    Linkage bounces = towardsStop(kForce, kRestitution, h), lands = towardsStop(kForce, 0, h);
+    bounces.run(0.4);
+    time = std::max(time, std::abs(bounces.time() - (bounces.velocity(0) / kForce + kRestitution * hit) - hit));
+    lands.run(1);
+    rest = std::max(rest, std::abs(lands.position(0) - 0.1));
+    Linkage still = dry(0.999, h), slow = dry(1.001, h);
+    still.run(4);
+    slow.run(1);
+    held = std::max(held, std::abs(still.position(0)));
+    slides = std::max(slides, std::abs(slow.position(0) / (0.5 * 0.001 * kDry) - 1));
+    flagged += bounces.flagged + lands.flagged + still.flagged + slow.flagged;
+    context.progress(++done / 6.0);
+  }
+  return {atMost("time of a hit, ticks of 0.1 to 4 ms, largest error", time, "s", 1e-12),
+          atMost("at rest beyond the stop, likewise", rest, "m", 1e-12),
+          atMost("moved in 4 s at .999 of dry friction, likewise", held, "m", 1e-15),
+          atMost("way in 1 s at 1.001, likewise, relative error", slides, "-", 1e-9), exactly("flagged ticks", flagged, "-", 0)};
 }
 
 // What a drive gives at its limit.
@@ -180,6 +248,8 @@ std::vector<Record> pinch(MeasureContext&) {
 
 std::vector<Measurement> verifyJointLimits() {
   return {{"tree/stop", stops},
+          {"tree/two-stops", twoStops},
+          {"tree/tick-sizes", tickSizes},
           {"tree/pendulum-stop", pendulumAndStop},
           {"tree/dry-friction", dryFriction},
           {"tree/limited-drive", limitedDrive},

@@ -14,6 +14,12 @@ const engine::WorldScratch& world(M m) { return grasp::worldOf(m.scratch); }
 double position(M m, I i) { return engine::jointPosition(m.model.world, m.state.world, static_cast<int>(i)); }
 double velocity(M m, I i) { return engine::jointVelocity(m.model.world, m.state.world, static_cast<int>(i)); }
 engine::JointReport joint(M m, I i) { return engine::jointAt(m.model.world, world(m), static_cast<int>(i)); }
+engine::JointLoad load(M m, I i) { return engine::jointLoadAt(m.model.world, m.state.world, world(m), static_cast<int>(i)); }
+// The share of the load along or about the joint's axis.
+double force(M m, I i) {
+  const engine::JointLoad all = load(m, i);
+  return m.model.world.joints[static_cast<I>(m.model.world.joint_places[i].joint)].kind == engine::JointKind::kSlider ? all.f_J.z() : all.moment_J.z();
+}
 engine::DriveReport drive(M m, I i) { return engine::driveAt(world(m), static_cast<int>(i)); }
 
 // Pose of a frame, and the velocity of its origin.
@@ -57,6 +63,13 @@ constexpr std::array kJoint = {
     QuantityKind{"velocity", "rad/s or m/s", velocity},
     QuantityKind{"stop_force", "N m or N", [](M m, I i) { return joint(m, i).stop_force; }},
     QuantityKind{"friction_force", "N m or N", [](M m, I i) { return joint(m, i).friction_force; }},
+    QuantityKind{"force", "N m or N", force},
+    QuantityKind{"load_x", "N", [](M m, I i) { return load(m, i).f_J.x(); }},
+    QuantityKind{"load_y", "N", [](M m, I i) { return load(m, i).f_J.y(); }},
+    QuantityKind{"load_z", "N", [](M m, I i) { return load(m, i).f_J.z(); }},
+    QuantityKind{"moment_x", "N m", [](M m, I i) { return load(m, i).moment_J.x(); }},
+    QuantityKind{"moment_y", "N m", [](M m, I i) { return load(m, i).moment_J.y(); }},
+    QuantityKind{"moment_z", "N m", [](M m, I i) { return load(m, i).moment_J.z(); }},
 };
 
 constexpr std::array kDrive = {

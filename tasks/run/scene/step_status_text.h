@@ -15,7 +15,7 @@ struct StatusKind {
   const char* sentence;  // what happened, and what to change
 };
 
-constexpr std::array<StatusKind, 7> kStatusKinds = {{
+constexpr std::array<StatusKind, 8> kStatusKinds = {{
     {engine::kSolverNotConverged, "solver_not_converged",
      "the contact solver stopped before its tolerance; its impulses are safe, but not exact. Loosen solver.tolerance, or look for contacts "
      "that "
@@ -30,6 +30,8 @@ constexpr std::array<StatusKind, 7> kStatusKinds = {{
      "the solver's budget ran out: the best iterate counts. Raise solver.budget, or simplify the scene."},
     {engine::kToleranceNotMet, "tolerance_not_met",
      "solver.max_parts were too few for solver.position_tolerance. Raise max_parts, or the tolerance."},
+    {engine::kTurnsTooFar, "turns_too_far",
+     "a joint turned by more than half a radian in a 64th of a tick; its course isn't exact. Shorten the tick, or damp the joint."},
 }};
 
 class StatusCounts {
