@@ -33,6 +33,8 @@ constexpr int kSweepsAtATime = 8;                                              /
 constexpr std::int64_t kPerContactLooked = 150;         // multiplications
 constexpr std::int64_t kFewestOperations = 60'000'000;  // of a search: some 80 ms
 constexpr int kMostFactorisations = 160;                // and their steps: beyond, the best iterate counts
+constexpr double kHitSpeed = 3e6;                       // of the accuracy: problems of such speeds are hits
+constexpr int kHitSolves = 4;                           // that share what a tick's hits may take
 constexpr int kPolishRounds = 3;
 constexpr double kPolishEpsilon = 1e-4;
 constexpr double kQuiet = 1e-3;  // of the problem's speeds: what slips less is about to rest
@@ -69,6 +71,11 @@ class Search {
  private:
   int rows() const { return problem_.rowCount(); }
   int times() const { return scratch_.is_patient ? kPatient : 1; }
+  // At most so many, as far as the operations go; one at least.
+  int stepsOf(int most) const {
+    const std::int64_t left = (scratch_.operations_left - std::max<std::int64_t>(0, last_operation_)) / step_cost_;
+    return static_cast<int>(std::clamp<std::int64_t>(left, 1, most));
+  }
   bool isSpent() const { return scratch_.operations_left < std::max<std::int64_t>(0, last_operation_); }
   bool isWithinTolerance() const { return error_.residual <= options_.tolerance; }
   // As good as what rests asks for.
@@ -104,8 +111,21 @@ class Search {
     if (!problem_.round.empty() || scratch_.operations_left < 0) return sweep();
     MoverMatrix matrix(problem_, scratch_);
     if (!matrix.fits()) return sweep();
-    const std::int64_t operations = std::max(kFewestOperations, kMostFactorisations * matrix.costOfFactorisation());
-    last_operation_ = scratch_.operations_left - operations * times() / scratch_.haste;
+    const std::int64_t before = scratch_.operations_left;
+    last_operation_ = before - mostOperations(matrix);
+    step_cost_ = matrix.costOfFactorisation();
+    searchWith(matrix);
+    if (isHit()) scratch_.hit_operations -= before - scratch_.operations_left;
+  }
+
+  // Bodies that move so fast as in a hit aren't worth the same share of their speed: a tick's work follows from its contacts.
+  bool isHit() const { return options_.accuracy > 0 && referenceSpeed(problem_) > kHitSpeed * options_.accuracy; }
+  std::int64_t mostOperations(const MoverMatrix& matrix) const {
+    const std::int64_t most = times() * std::max(kFewestOperations, kMostFactorisations * matrix.costOfFactorisation());
+    return (isHit() ? std::min(most, scratch_.hit_operations / kHitSolves) : most) / scratch_.haste;
+  }
+
+  void searchWith(MoverMatrix& matrix) {
     ProximalRound round(problem_, matrix, scratch_);
     if (isEnough()) return polish(round);
     approach(round);
@@ -121,7 +141,7 @@ class Search {
     const double tolerance = kStrictness * options_.tolerance;
     for (int n = 0; n < kPolishRounds && best_.residual > tolerance && !isSpent(); ++n) {
       const double before = best_.residual;
-      if (!round.solve(Shift::kFollows, {kPolishEpsilon, left(), kMostRoundSteps}, result_.iterations)) break;
+      if (!round.solve(Shift::kFollows, {kPolishEpsilon, left(), stepsOf(kMostRoundSteps)}, result_.iterations)) break;
       recentre();
       if (!(best_.residual < 0.5 * before)) break;
     }
@@ -153,7 +173,7 @@ class Search {
     for (int n = 0; n < kDescents && !isEnough() && !isSpent(); ++n) {
       restart();
       const double before = best_.speed, least = std::max(left(), kRough * best_.speed);
-      const bool is_done = round.solve(Shift::kFrozen, {epsilon, least, kMostDescentSteps}, result_.iterations);
+      const bool is_done = round.solve(Shift::kFrozen, {epsilon, least, stepsOf(kMostDescentSteps)}, result_.iterations);
       const double give = noteGive(epsilon);
       recentre();
       const bool is_soft = give > kMostlyGive * error_.speed;
@@ -186,7 +206,7 @@ class Search {
     int patience = longest, failures = 0;
     while (!isEnough() && !isSpent()) {
       const int before = result_.iterations;
-      if (!round.solve(Shift::kFollows, {epsilon, left(), kMostRoundSteps}, result_.iterations)) {
+      if (!round.solve(Shift::kFollows, {epsilon, left(), stepsOf(kMostRoundSteps)}, result_.iterations)) {
         epsilon = std::min(kMostEpsilon, kHarder * epsilon);
         if (++failures > kMostFailures * times()) return;
         goAround(round, std::min(epsilon, kFirstDescent), failures);
@@ -310,7 +330,7 @@ class Search {
   const ContactProblem& problem_;
   const SolverOptions& options_;
   SolverScratch& scratch_;
-  std::int64_t last_operation_ = 0;
+  std::int64_t last_operation_ = 0, step_cost_ = 1;
   ContactError error_, best_;
   double slip_ = 0;
   SolveResult result_;

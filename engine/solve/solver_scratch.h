@@ -43,6 +43,7 @@ struct SolverScratch {
   SolverScratch(int max_contacts, int max_movers);
 
   std::int64_t operations_left = kNoLimit;  // of the budget; less than 0: spent
+  std::int64_t hit_operations = kNoLimit;   // of them, those that solves of what is hit may still take in this tick
   int haste = 1;                            // a search takes so many times fewer operations
   std::vector<double> weight;               // w_i, mean of W_ii's diagonal, per contact [1/kg]
   std::vector<double> frozen;               // shifts, per contact [m/s]; proximal_round.h

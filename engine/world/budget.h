@@ -13,6 +13,13 @@ inline void charge(std::int64_t operations, WorldScratch& scratch) {
   if (isLimited(scratch)) scratch.operations_left -= operations;
 }
 
+// What solves of what is hit may take in a tick, per contact: some 100 sweeps. Beyond, no further hit cuts the tick, and each of four solves ends
+// with a quarter of it: the best iterate counts, flagged.
+constexpr std::int64_t kHitOperations = 24'000;
+inline bool haveHitsSpent(const WorldScratch& scratch) {
+  return scratch.hit_operations > kHitOperations * static_cast<std::int64_t>(scratch.contacts.size());
+}
+
 // For a query of where two shapes touch: solids' facets are laid over each other, spheres need little.
 void chargeQuery(const ColliderModel& a, const ColliderModel& b, WorldScratch& scratch);
 

@@ -364,6 +364,7 @@ void solveIslands(const WorldModel& model, WorldScratch& scratch) {
     scatter(s, island, model.options.solver, scratch);
     addResult(island.result, scratch.solve);
     operations += island.operations;
+    scratch.hit_operations += island.hit_operations;
   }
   if (scratch.operations_left < kNoLimit) scratch.operations_left -= operations;  // below 0 if one of them ran out
 }

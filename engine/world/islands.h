@@ -28,7 +28,8 @@ struct Island {
   int rows;
   int* first_row;
   double *mu, *q, *r, *u;
-  std::int64_t operations;  // that its solution took (solve/solver_scratch.h)
+  std::int64_t operations;      // that its solution took (solve/solver_scratch.h)
+  std::int64_t hit_operations;  // of them, where it was hit
   SolveResult result;
 
   Island() {}  // NOLINT(modernize-use-equals-default): a defaulted one would clear all

@@ -10,7 +10,7 @@
 //
 // Left out where certain: a stop that the coordinate doesn't reach; the friction of a joint that goes on in one direction, a constant force; a drive that stays
 // within its limits (it is in M^), or beyond them (a constant force); the friction of a joint that held with half of it to spare, and on whose links nothing
-// pushed: its column is locked, for rigid bodies that touch and stuck joints would ask for more than forces can tell. All of that is looked at after the solve, and where it was wrong the row is put in and
+// pushed (not in a tree with loops): its column is locked, for rigid bodies that touch and stuck joints would ask for more than forces can tell. All of that is looked at after the solve, and where it was wrong the row is put in and
 // all is solved again. In an impact there are stops only: friction and drives give nothing in no time.
 #pragma once
 #include "pincer/engine/state.h"

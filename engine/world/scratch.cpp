@@ -55,6 +55,7 @@ WorldScratch::WorldScratch(const WorldModel& model) : h(model.options.h), patche
   points.resize(model.points.size());
   for (PointScratch& point : points) point.has_hollows = model.has_hollows;
   contacts.reserve(contact_count);
+  tried.reserve(contact_count);
   fast_pairs.reserve(contact_count);
   pushed_pairs.reserve(contact_count);
   impact_pairs.reserve(3 * contact_count);

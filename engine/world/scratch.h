@@ -146,10 +146,19 @@ struct KeptMemory {
   ContactMemory memory;
 };
 
+// Of a contact, what an attempt at the tick found (tried_impulses.h).
+struct TriedImpulse {
+  std::uint64_t id;
+  double per_time;  // 1 over the attempt's length [1/s]; 0: a hit, whose impulse doesn't grow with it
+  Vec3 impulse_W;
+  ContactVector r;
+};
+
 struct WorldScratch {
   explicit WorldScratch(const WorldModel& model);
 
   std::int64_t operations_left = kNoLimit;  // of the solver's budget for this tick (solve/solver_scratch.h)
+  std::int64_t hit_operations = 0;          // that solves of what is hit have taken in this tick (budget.h)
   int solves = 0;                           // in this tick
   double h;                                 // length of this part of the tick [s]; 0 in an impact, which takes no time
   Vec3 gravity_W;                           // of this tick [m/s^2]
@@ -173,6 +182,7 @@ struct WorldScratch {
   std::vector<bool> pushed;                                      // per body: it is deep in another, or was pushed out of one (push_out.h)
   std::vector<PushedContact> pushed_contacts;                    // as `contacts`
   std::vector<KeptMemory> kept;                                  // of contacts that stand still
+  std::vector<TriedImpulse> tried;                               // by id; capacity as contacts
   int still_bodies = 0;                                          // awake ones that could sleep: nothing of their state changed in this tick
   WorldState before, coarse;                                     // the tick's start, and its end in half as many parts
   double bounce = 1;                       // share of the restitution that acts in an impact: less where all of it would add energy

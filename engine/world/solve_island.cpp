@@ -6,6 +6,7 @@
 #include "pincer/engine/solve/few_contacts.h"
 #include "pincer/engine/solve/round_contact.h"
 #include "pincer/engine/solve/sweeps.h"
+#include "pincer/engine/world/budget.h"
 #include "pincer/engine/world/contact_rows.h"
 #include "pincer/engine/world/island_bias.h"
 #include "pincer/engine/world/scratch.h"
@@ -38,6 +39,8 @@ class IslandSolve {
     const std::int64_t reserve = is_limited ? reserveForStops() : 0;
     memory_.operations_left = share - reserve;
     memory_.haste = hasteAfter(scratch_.solves);
+    memory_.hit_operations = kHitOperations * island_.contacts;
+    island_.hit_operations = 0;
     if (island_.contacts > kFewContacts) findRoundContacts(memory_.round, problem_);
     if (restsAsItIs(problem_, options_, memory_, island_.r, island_.u, island_.result)) {
       island_.operations = 0;
@@ -49,6 +52,7 @@ class IslandSolve {
       std::fill(island_.r, island_.r + island_.rows, 0.0);  // or the squeeze would stay
       solveAgain(options_);
     }
+    island_.hit_operations = kHitOperations * island_.contacts - memory_.hit_operations;
     if (island_.result.give > 0) giveWay(scratch_.h, offsetRate(), problem_, memory_.give.data(), island_.q, order_, scratch_.contacts);
     std::int64_t spent = share - reserve - memory_.operations_left;
     if (isLost()) spent += stopOnly(reserve + std::max<std::int64_t>(memory_.operations_left, 0));

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "pincer/contact/functions/invariants.h"
-#include "pincer/engine/motion/driven_motion.h"
 #include "pincer/engine/motion/free_motion.h"
 #include "pincer/engine/world/budget.h"
 #include "pincer/engine/world/drive_rows.h"
@@ -12,11 +11,13 @@
 #include "pincer/engine/world/impact.h"
 #include "pincer/engine/world/island_sleep.h"
 #include "pincer/engine/world/joint_rows.h"
+#include "pincer/engine/world/part_inputs.h"
 #include "pincer/engine/world/push_out.h"
 #include "pincer/engine/world/rest.h"
 #include "pincer/engine/world/stages.h"
 #include "pincer/engine/world/state_checks.h"
 #include "pincer/engine/world/tree_motion.h"
+#include "pincer/engine/world/tried_impulses.h"
 
 namespace pincer::engine {
 namespace {
@@ -40,6 +41,7 @@ class Tick {
     applyForces();
     scratch_.contacts_dropped = false;
     scratch_.solves = 0;
+    scratch_.hit_operations = 0;
     const double budget = model_.options.solver.budget;
     scratch_.operations_left = budget > 0 ? static_cast<std::int64_t>(budget * kOperationsPerSecond) : kNoLimit;
     if (isSomethingAsleep(scratch_)) wakeChanged(model_, state_, inputs_, scratch_);
@@ -126,6 +128,8 @@ class Tick {
     impacts_ = landings_ = 0;
     last_hit_ = {-1, -1};
     scratch_.pushed_pairs.clear();
+    scratch_.tried.clear();
+    is_tried_ = false;
     report_ = {};
     report_.parts = 0;
     if (!forces_ok_) report_.status |= kInputNotFinite;
@@ -164,6 +168,8 @@ class Tick {
     const double energy = isLimited(scratch_) ? energyOf(model_, state_, scratch_.gravity_W) : 0;
     const bool is_heap = scratch_.contacts.size() > kHeap;
     wakeAll(scratch_);
+    if (is_tried_) keepTried(scratch_);
+    is_tried_ = false;
     applyImpacts(model_, state_, scratch_, source_);
     chargeSurroundings();
     if (isSpent()) limitEnergy(model_, scratch_, energy, state_);
@@ -251,10 +257,12 @@ class Tick {
   // Where contacts sweep under a body that turns so far, or hits are left out, its answer could bring in energy.
   void conclude() {
     note();
-    const bool is_rough = isSpent() || turns_far_ || impacts_ == kMostImpacts;
+    const bool is_rough = isSpent() || turns_far_ || impacts_ == kMostImpacts || haveHitsSpent(scratch_);
     const double energy = is_rough ? energyOf(model_, state_, scratch_.gravity_W) : 0;
     if (turns_far_ && treesTurnFar(model_, state_, scratch_)) report_.status |= kTurnsTooFar;
     advance(model_, state_, scratch_);
+    is_tried_ = false;
+    scratch_.tried.clear();
     pushOut(model_, state_, scratch_);
     if (is_rough) limitEnergy(model_, scratch_, energy, state_);
     ++report_.parts;
@@ -264,8 +272,10 @@ class Tick {
   // `landings`: what lands is held back.
   void attempt(double h, bool landings = true) {
     PINCER_ASSERT(h > 0 && h <= model_.options.h);
+    if (is_tried_) keepTried(scratch_);
+    is_tried_ = true;
     scratch_.h = h;
-    setInputs(h);
+    report_.status |= setPartInputs(model_, inputs_, h, left_, state_, scratch_);
     if (isSomethingAsleep(scratch_) && h != model_.options.h) wakeAll(scratch_);
     if (!model_.trees.empty()) startTrees(landings);
     do {
@@ -300,6 +310,7 @@ class Tick {
 
   void solveAttempt() {
     prepareContacts(model_, state_, scratch_);
+    startFromTried(scratch_);
     do {
       solveContacts(model_, scratch_);
       gatherImpulses(model_, scratch_);
@@ -313,50 +324,9 @@ class Tick {
   }
 
   bool isSpent() const { return engine::isSpent(scratch_); }
-  bool mayHit() const { return impacts_ < kMostImpacts && !isSpent(); }
+  bool mayHit() const { return impacts_ < kMostImpacts && !isSpent() && !haveHitsSpent(scratch_); }
   void note() {
     if (!scratch_.solve.converged) report_.status |= kSolverNotConverged;
-  }
-
-  // Targets at the end of a part of length h: the state holds those at its start, the inputs those at the tick's end.
-  void setInputs(double h) {
-    const double share = h < left_ ? h / left_ : 1;
-    for (std::size_t i = 0; i < scratch_.point_inputs.size(); ++i)
-      setPoint(state_.points[i], inputs_.points[i], share, scratch_.points[i], scratch_.point_inputs[i]);
-    for (std::size_t d = 0; d < scratch_.drives.size(); ++d) setControl(d, share);
-    for (std::size_t i = 0; i < model_.bodies.size() && model_.driven_count > 0; ++i) {
-      if (model_.bodies[i].driven) setMotion(static_cast<std::size_t>(model_.bodies[i].motion), state_.bodies[i], share);
-    }
-  }
-
-  void setPoint(const PointState& now, const PointInput& end, double share, PointScratch& point, PointInput& out) {
-    out = end;
-    point.input_ok = isFinite(end);
-    if (!point.input_ok) report_.status |= kInputNotFinite;
-    if (share < 1)
-      out.p_target_W = cubicBetween(now.p_target_W, now.v_target_W, end.p_target_W, end.v_target_W, left_, share, out.v_target_W);
-  }
-
-  void setControl(std::size_t d, double share) {
-    DriveInput end{state_.controls[d].value, state_.controls[d].rate, false};
-    const bool is_given = d < inputs_.controls.size(), is_finite = is_given && isFinite(inputs_.controls[d]);
-    if (is_finite) end = withinControls(model_.drives[d], inputs_.controls[d]);
-    if (is_given && !is_finite) report_.status |= kInputNotFinite;
-    if (state_.h_last == 0) state_.controls[d] = {end.value - left_ * end.rate, end.rate, end.moves};  // it has come from somewhere
-    scratch_.drives[d].input = controlAt(state_.controls[d], end, left_, share);
-  }
-
-  void setMotion(std::size_t i, const BodyState& now, double share) {
-    MotionInput& out = scratch_.motion_inputs[i];
-    out = {now.X_WI, {}};
-    if (i >= inputs_.motions.size()) return;
-    if (!isFinite(inputs_.motions[i])) {
-      report_.status |= kInputNotFinite;
-      return;
-    }
-    out = inputs_.motions[i];
-    PINCER_ASSERT(isUnit(out.X_WB.q));
-    if (share < 1) out = drivenPlace({now.X_WI, {now.v_W, state_.driven_w_W[i]}}, inputs_.motions[i], left_, share);
   }
 
   const WorldModel& model_;
@@ -367,6 +337,7 @@ class Tick {
   double left_;             // of the tick [s]
   double part_ = 0;         // length of the last part, before a hit cut it [s]
   double stop_ = 0;         // what is left of the tick at the end of this part [s]
+  bool is_tried_ = false;   // the contacts are those of an attempt that isn't concluded
   bool forces_ok_ = true;   // those applied are finite
   bool turns_far_ = false;  // something does in this part, and it can't be cut any more
   int impacts_ = 0;         // in this tick

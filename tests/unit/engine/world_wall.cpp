@@ -1,9 +1,13 @@
 // Walls of bricks: many contacts, redundant and interlocked.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <iterator>
 
 #include "pincer/engine/step.h"
+#include "pincer/engine/world/budget.h"
 
 namespace pincer::engine {
 namespace {
@@ -18,6 +22,7 @@ struct Wall {
     double jitter = 0;
     int deep = 1;           // walls one behind the other, which touch
     double mass_ratio = 1;  // of the heaviest brick to the lightest, at most
+    double hit_speed = 0;   // of a ball of 10 kg that flies at its middle [m/s]
   };
 
   Wall(const Spec& spec, const WorldOptions& options) {
@@ -32,6 +37,11 @@ struct Wall {
       const Vec3 off = spec.jitter * Vec3(std::sin(3 * n), std::sin(5 * n), std::sin(7 * n));
       const double x = column * (kLength + kApart) + row % 2 * 0.25 * kLength;
       starts.push_back({{Quat::Identity(), Vec3(x, layer * kHeight, (row + 0.5) * kHeight) + off}});
+    }
+    if (spec.hit_speed > 0) {
+      builder.addBody({"ball", contact::Sphere{0.05}, true, 10, {}});
+      const Vec3 p(0.5 * spec.columns * (kLength + kApart), -0.08, std::max(0.05, 0.5 * spec.rows * kHeight));
+      starts.push_back({{Quat::Identity(), p}, Vec3(0, spec.hit_speed, 0), Vec3::Zero()});
     }
     model = builder.build();
     state = makeState(model, starts, {});
@@ -95,6 +105,24 @@ TEST(Wall, ThatTouchesAnotherComesToRest) {
   EXPECT_EQ(run.flagged, 0);
   EXPECT_TRUE(run.asleep);
   EXPECT_LT(run.moved, 1e-9);
+}
+
+// A tick in which a wall was hit took three hundred times as long as the others: each of up to twenty solves went on until it was exact. What a tick may take
+// follows from its contacts: four solves with a quarter of it each, halves of that from the fourth on, and a step more of each.
+TEST(Wall, ThatIsHitTakesNoMoreThanItsShareOfWork) {
+  for (const double speed : {5., 10., 20.}) {
+    Wall wall({.columns = 6, .rows = 6, .hit_speed = speed}, {});
+    const ScratchHandle scratch = makeScratch(wall.model);
+    const double start = kineticEnergy(wall.model, wall.state) + potentialEnergy(wall.model, wall.state);
+    std::int64_t most = 0;
+    for (int n = 0; n < 60; ++n) {
+      step(wall.model, wall.state, *scratch);
+      most = std::max(most, scratch->hit_operations / std::max<std::int64_t>(1, std::ssize(scratch->contacts)));
+    }
+    EXPECT_GT(most, 0) << speed;
+    EXPECT_LT(most, 2 * kHitOperations) << speed;
+    EXPECT_LT(kineticEnergy(wall.model, wall.state) + potentialEnergy(wall.model, wall.state), start) << speed;
+  }
 }
 
 // The same bits whatever the threads.
