@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pincer/contact/io/printable.h"
 #include "pincer/contact/mesh/mesh_builder.h"
 #include "pincer/contact/mesh/ply_header.h"
 
@@ -22,7 +23,8 @@ class AsciiValues {
   std::int32_t place() const { return lines_.line(); }
   void begin(const PlyElement& element, std::size_t number) {
     next_ = 0;
-    if (!lines_.next()) lines_.fail(fmt::format("entry {} of {} \"{}\" is missing. {}", number, element.count, element.name, kCutOff));
+    if (!lines_.next())
+      lines_.fail(fmt::format("entry {} of {} {} is missing. {}", number, element.count, inQuotes(element.name), kCutOff));
   }
   double scalar(const PlyProperty& p) { return lines_.number(word(p), p.name); }
   std::int64_t index(const PlyProperty& p) { return lines_.integer(word(p), p.name); }
@@ -34,7 +36,8 @@ class AsciiValues {
   void end(const PlyElement& element) const {
     const std::size_t words = lines_.words().size();
     if (next_ != words) {
-      lines_.fail(fmt::format("the line has {} values, but a \"{}\" has only {} here. Export the mesh again.", words, element.name, next_));
+      lines_.fail(
+          fmt::format("the line has {} values, but a {} has only {} here. Export the mesh again.", words, inQuotes(element.name), next_));
     }
   }
   void requireEnd() const {
@@ -47,7 +50,8 @@ class AsciiValues {
     return lines_.words()[next_++];
   }
   [[noreturn]] void fail(const PlyProperty& p) const {
-    lines_.fail(fmt::format("the line has {} values, which aren't enough for \"{}\". {}", lines_.words().size(), p.name, kCutOffOrJoined));
+    lines_.fail(
+        fmt::format("the line has {} values, which aren't enough for {}. {}", lines_.words().size(), inQuotes(p.name), kCutOffOrJoined));
   }
 
   TextLines& lines_;
@@ -69,8 +73,9 @@ class BinaryValues {
                          : p.type == PlyType::float32 ? static_cast<double>(readNumber<float>(bytes, order_))
                                                       : static_cast<double>(integer(bytes, p.type));
     if (!std::isfinite(value)) {
-      file_.failAt(place() - static_cast<std::int32_t>(bytes.size()),
-                   fmt::format("{} = {} must be finite. Export the mesh again; its program had no valid value here.", p.name, value));
+      file_.failAt(
+          place() - static_cast<std::int32_t>(bytes.size()),
+          fmt::format("{} = {} must be finite. Export the mesh again; its program had no valid value here.", printable(p.name), value));
     }
     return value;
   }
@@ -93,7 +98,7 @@ class BinaryValues {
     return file_.bytes().substr(at_ - bytes, bytes);
   }
   [[noreturn]] void fail(const PlyProperty& p) const {
-    file_.failAt(place(), fmt::format("the file ends within \"{}\". {}", p.name, kCutOff));
+    file_.failAt(place(), fmt::format("the file ends within {}. {}", inQuotes(p.name), kCutOff));
   }
   std::int64_t integer(std::string_view bytes, PlyType type) const {
     switch (type) {
@@ -276,7 +281,7 @@ class PlyParser {
 
   void requireNotNegative(std::int64_t items, const PlyProperty& p, std::int32_t place) const {
     if (items >= 0) return;
-    file_.failAt(place, fmt::format("list \"{}\" has the count {}, which can't be negative. Export the mesh again.", p.name, items));
+    file_.failAt(place, fmt::format("list {} has the count {}, which can't be negative. Export the mesh again.", inQuotes(p.name), items));
   }
 
   MeshFile& file_;

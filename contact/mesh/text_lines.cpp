@@ -6,6 +6,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "pincer/contact/io/printable.h"
+
 namespace pincer::contact {
 
 namespace {
@@ -82,12 +84,13 @@ void TextLines::fail(const std::string& message) const {
 }
 
 void TextLines::failAsNumber(std::string_view word, std::string_view what, bool out_of_range) const {
-  if (out_of_range) fail(fmt::format("{} = {} is beyond the range of numbers here. Export the mesh again.", what, inQuotes(word)));
+  if (out_of_range)
+    fail(fmt::format("{} = {} is beyond the range of numbers here. Export the mesh again.", printable(what), inQuotes(word)));
   if (!isAscii(word)) {
-    fail(fmt::format("{} = {} holds bytes that aren't ASCII text. The file is damaged or isn't a text file; export it again.", what,
-                     inQuotes(word)));
+    fail(fmt::format("{} = {} holds bytes that aren't ASCII text. The file is damaged or isn't a text file; export it again.",
+                     printable(what), inQuotes(word)));
   }
-  fail(fmt::format("{} = {} is not a number. Numbers are written like -0.25 or 3e-2, with a point.", what, inQuotes(word)));
+  fail(fmt::format("{} = {} is not a number. Numbers are written like -0.25 or 3e-2, with a point.", printable(what), inQuotes(word)));
 }
 
 double TextLines::number(std::string_view word, std::string_view what) const {
@@ -96,7 +99,8 @@ double TextLines::number(std::string_view word, std::string_view what) const {
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   if (error != std::errc() || end != digits.data() + digits.size()) failAsNumber(word, what, error == std::errc::result_out_of_range);
   if (!std::isfinite(value)) {
-    fail(fmt::format("{} = {} must be finite. Export the mesh again; its program had no valid value here.", what, inQuotes(word)));
+    fail(fmt::format("{} = {} must be finite. Export the mesh again; its program had no valid value here.", printable(what),
+                     inQuotes(word)));
   }
   return value;
 }
@@ -105,9 +109,10 @@ std::int64_t TextLines::integer(std::string_view word, std::string_view what) co
   const std::string_view digits = withoutPlus(word);
   std::int64_t value = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (error == std::errc::result_out_of_range) fail(fmt::format("{} {} is out of range; no file has that many.", what, inQuotes(word)));
+  if (error == std::errc::result_out_of_range)
+    fail(fmt::format("{} {} is out of range; no file has that many.", printable(what), inQuotes(word)));
   if (error != std::errc() || end != digits.data() + digits.size()) {
-    fail(fmt::format("{} {} is not a whole number. Export the mesh again.", what, inQuotes(word)));
+    fail(fmt::format("{} {} is not a whole number. Export the mesh again.", printable(what), inQuotes(word)));
   }
   return value;
 }

@@ -1,6 +1,8 @@
 #include "pincer/tasks/app/interrupt.h"
 
 #include <csignal>
+#include <cstdint>
+#include <ctime>
 
 namespace pincer::tasks {
 namespace {
@@ -9,11 +11,28 @@ namespace {
 std::atomic<bool> g_interrupted{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may take no lock");
 
+std::atomic<std::int64_t> g_first_ns{0};  // when the first came; 0: none has
+static_assert(std::atomic<std::int64_t>::is_always_lock_free);
+
 constexpr int kEnding[] = {SIGINT, SIGTERM, SIGHUP};
 
-extern "C" void pincerOnInterrupt(int) {
+// Signals that come so soon after the first are the same wish [ns]: `timeout` and shells signal a program and its group. Nobody presses a key
+// twice on purpose as fast.
+constexpr std::int64_t kSameWish = 200'000'000;
+
+std::int64_t monotonicNow() {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return now.tv_sec * std::int64_t{1'000'000'000} + now.tv_nsec;
+}
+
+extern "C" void pincerOnInterrupt(int signal) {
   g_interrupted.store(true);
-  for (const int signal : kEnding) std::signal(signal, SIG_DFL);
+  const std::int64_t now = monotonicNow();
+  std::int64_t first = 0;
+  if (g_first_ns.compare_exchange_strong(first, now) || now - first < kSameWish) return;
+  std::signal(signal, SIG_DFL);
+  std::raise(signal);  // kept back until this returns
 }
 
 bool isIgnored(int signal) {

@@ -1,4 +1,4 @@
-// One policy for signals (tasks/app/interrupt.h): the first ends the command cleanly with exit code 5, the second at once.
+// One policy for signals (tasks/app/interrupt.h): the first ends the command cleanly with exit code 5, a later one at once.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -81,19 +81,38 @@ TEST_P(EndingSignal, LeavesNothingOfAReportBehind) {
 
 INSTANTIATE_TEST_SUITE_P(InterruptTerminateHangUp, EndingSignal, testing::Values(SIGINT, SIGTERM, SIGHUP));
 
+// Stopped meanwhile, so that it can't end in between.
 TEST(SecondSignal, EndsTheProgramAtOnce) {
   const TemporaryDirectory directory;
-  const std::string fifo = directory / "pid";
   const Spawned ended = spawnPincer({"run", "sphere-pickup", "--repetitions", "50", "--no-report", "--out", directory.path()},
                                     {.meanwhile = [&](pid_t child) {
                                       awaitThat([&] { return holdsATrial(directory / "session.db"); });
-                                      ::kill(child, SIGSTOP);  // so that it can't end in between
+                                      ::kill(child, SIGSTOP);
                                       ::kill(child, SIGINT);
                                       ::kill(child, SIGCONT);
                                       std::this_thread::sleep_for(1ms);
+                                      ::kill(child, SIGSTOP);
+                                      std::this_thread::sleep_for(300ms);
                                       ::kill(child, SIGTERM);
+                                      ::kill(child, SIGCONT);
                                     }});
   EXPECT_TRUE(ended.signal == SIGTERM || ended.exit_code == 5);
+}
+
+// As `timeout` sends them, to the program and to its group: once left sessions "running".
+TEST(SecondSignal, IsTheSameWishWhereItComesAtOnce) {
+  const TemporaryDirectory directory;
+  const Spawned ended = spawnPincer({"run", "sphere-pickup", "--repetitions", "50", "--no-report", "--out", directory.path()},
+                                    {.meanwhile = [&](pid_t child) {
+                                      awaitThat([&] { return holdsATrial(directory / "session.db"); });
+                                      ::kill(child, SIGSTOP);  // both are there when it goes on, whatever this machine does
+                                      ::kill(child, SIGINT);
+                                      ::kill(child, SIGTERM);
+                                      ::kill(child, SIGCONT);
+                                    }});
+  EXPECT_EQ(ended.signal, 0);
+  EXPECT_EQ(ended.exit_code, 5);
+  EXPECT_EQ(SessionReader(directory / "session.db").state(), "aborted: interrupted by the user");
 }
 
 // nohup

@@ -19,7 +19,7 @@ namespace {
   throw InputError(
       fmt::format("--vary {}: {} Write PATH=FROM:TO:N, PATH=FROM:TO:N:log or PATH=A,B,C; for example "
                   "sphere.material.mu_s=0.1:0.5:9",
-                  text, why));
+                  printable(text), why));
 }
 
 std::vector<std::string> partsOf(const std::string& text, char separator) {
@@ -33,7 +33,7 @@ std::vector<std::string> partsOf(const std::string& text, char separator) {
 double valueIn(const std::string& text, const std::string& word) {
   char* end = nullptr;
   const double value = std::strtod(word.c_str(), &end);
-  if (word.empty() || *end != '\0' || !std::isfinite(value)) refuseVariation(text, fmt::format("\"{}\" isn't a number.", word));
+  if (word.empty() || *end != '\0' || !std::isfinite(value)) refuseVariation(text, fmt::format("\"{}\" isn't a number.", printable(word)));
   return value;
 }
 
@@ -66,7 +66,7 @@ void checkPaths(const std::vector<std::string>& paths) {
     if (std::find(paths.begin(), paths.begin() + static_cast<std::ptrdiff_t>(i), paths[i]) ==
         paths.begin() + static_cast<std::ptrdiff_t>(i))
       continue;
-    throw InputError(fmt::format("sweep: {} is given twice. Name two numbers, or give all values at once: A,B,C", paths[i]));
+    throw InputError(fmt::format("sweep: {} is given twice. Name two numbers, or give all values at once: A,B,C", printable(paths[i])));
   }
 }
 
@@ -145,7 +145,7 @@ SweepGrid zipped(const std::vector<Variation>& variations, std::size_t most) {
   for (const Variation& variation : variations) {
     if (variation.values.size() == cases || variation.values.size() == 1) continue;
     throw InputError(fmt::format("sweep: --zip takes lists of one length, and {} has {} values beside {}. Give as many, or one for all.",
-                                 variation.path, variation.values.size(), cases));
+                                 printable(variation.path), variation.values.size(), cases));
   }
   for (std::size_t i = 0; i < cases; ++i) {
     grid.points.emplace_back();

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "pincer/contact/io/input_file.h"
+#include "pincer/contact/io/printable.h"
 #include "pincer/tasks/run/robot/xml_tree.h"
 
 namespace pincer::tasks {
@@ -37,8 +38,8 @@ class TreeBuilder {
       if (const auto* inner = child->ToElement()) {
         element.children.push_back(build(*inner, depth + 1));
       } else if (child->ToText()) {
-        element.reject(
-            fmt::format("holds the text \"{:.40}\" between its elements. A robot's numbers stand in attributes.", child->Value()));
+        element.reject(fmt::format("holds the text \"{}\" between its elements. A robot's numbers stand in attributes.",
+                                   printable(child->Value(), 40)));
       }
     }
   }
@@ -66,7 +67,7 @@ XmlElement parseXml(std::string_view text, const std::string& name) {
   }
   const tinyxml2::XMLElement* root = document.RootElement();
   if (!root) throw InputError(fmt::format("{}: has no element.", name));
-  return TreeBuilder(name).build(*root, 0);
+  return TreeBuilder(name).build(*root, 1);
 }
 
 XmlElement readXml(const std::string& path) { return parseXml(readInputFile(path, kXmlFile), path); }

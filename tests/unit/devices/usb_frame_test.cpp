@@ -38,6 +38,15 @@ TEST(UsbFrame, ReadsTheExampleOfTheDocumentation) {
   EXPECT_EQ(encode(frame), bytes);
 }
 
+TEST(UsbFrame, TakesEveryTypeThatThereIs) {
+  for (const int type : {0x01, 0x02, 0x03, 0x04, 0x05, 0x06, 0x81, 0x82, 0x83, 0x84, 0x85, 0x86, 0x87}) {
+    Frame frame, sent;
+    sent.type = static_cast<FrameType>(type);
+    EXPECT_EQ(decode(encode(sent), frame), FrameError::kNone) << type;
+    EXPECT_EQ(frame.type, sent.type);
+  }
+}
+
 TEST(UsbFrame, NamesWhyBytesAreNoFrame) {
   Frame frame;
   const FrameBytes good = encode(frame);
