@@ -238,13 +238,12 @@ void facet(const Convex& c, const Vec3& d, Facet& f) {
   constexpr double kAcross = 1e-6;  // cosine
   const Polytope& hull = *c.hull;
   const int vertex = hull.extremeVertex(d);
-  const double length2 = d.squaredNorm(), length = std::sqrt(length2);
+  const double length = d.norm();
   const std::span<const int> edges_here = hull.edgesAt(vertex);
   const auto edgeOf = [&](int e) -> const Polytope::Edge& { return hull.edges()[static_cast<std::size_t>(e)]; };
   const auto isAcross = [&](const Polytope::Edge& edge) {
     const Vec3 along = vertexOf(c, edge.to) - vertexOf(c, edge.from);
-    const double rise = d.dot(along);
-    return rise * rise < kAcross * kAcross * length2 * along.squaredNorm();
+    return std::abs(d.dot(along)) < kAcross * length * along.norm();
   };
   constexpr std::size_t kMostKnown = 8;  // of edges at a vertex; asked again beyond
   std::array<bool, kMostKnown> across{};
@@ -275,12 +274,12 @@ void facet(const Convex& c, const Vec3& d, Facet& f) {
 }
 
 // Faces and edges around the extreme vertex.
-void strata(const Convex& c, const Vec3& d, bool with_edges, Strata& s) {
+void strata(const Convex& c, const Vec3& d, Strata& s) {
   const Polytope& hull = *c.hull;
   const int vertex = hull.extremeVertex(d);
   for (const int e : hull.edgesAt(vertex)) {
     const Polytope::Edge& edge = hull.edges()[static_cast<std::size_t>(e)];
-    if (with_edges) s.addEdge((vertexOf(c, edge.to) - vertexOf(c, edge.from)).normalized());
+    if (s.with_edges) s.addEdge((vertexOf(c, edge.to) - vertexOf(c, edge.from)).normalized());
     const bool leaves = edge.from == vertex;  // each face around the vertex once: the left one of the edges that leave it
     s.addNormal(hull.faces()[static_cast<std::size_t>(leaves ? edge.left : edge.right)].n);
   }
@@ -385,14 +384,9 @@ double reachOf(const Shape& shape, const Vec3& p, const Vec3& d) {
   PINCER_ASSERT(isUnitIfFinite(d));
   return onConvex(shape, [&](const auto& s) -> double { return reach(s, p, d); });
 }
-void strataOf(const Shape& shape, const Vec3& d, bool with_edges, Strata& found) {
+void strataOf(const Shape& shape, const Vec3& d, Strata& found) {
   found.normal_count = found.edge_count = 0;
-  onConvex(shape, [&](const auto& s) -> void {
-    if constexpr (std::is_same_v<std::decay_t<decltype(s)>, Convex>)
-      strata(s, d, with_edges, found);
-    else
-      strata(s, d, found);
-  });
+  onConvex(shape, [&](const auto& s) -> void { strata(s, d, found); });
 }
 Mat3 bendOf(const Shape& shape, const Vec3& d) {
   PINCER_ASSERT(isUnitIfFinite(d));

@@ -52,6 +52,7 @@ struct Strata {
   static constexpr int kMost = 8;
   std::array<Vec3, kMost> normals, edges;  // unit
   int normal_count = 0, edge_count = 0;
+  bool with_edges = true;  // set before: false leaves out those of hulls, which cost a root each
 
   void addNormal(const Vec3& n) {
     if (normal_count < kMost) normals[static_cast<std::size_t>(normal_count++)] = n;
@@ -72,8 +73,7 @@ void addRimCorner(const Vec2& towards, Facet& facet);
 // How far the ray from `p` along the unit vector `d` runs until it leaves a capsule or cylinder [m]; where it misses the wall, until it is
 // nearest to the axis. Of other solids, until the plane across d through their furthest point.
 double reachOf(const Shape& shape, const Vec3& p, const Vec3& d);
-// `with_edges`: or those of a hull are left out, which cost a root each.
-void strataOf(const Shape& shape, const Vec3& d, bool with_edges, Strata& strata);
+void strataOf(const Shape& shape, const Vec3& d, Strata& strata);
 Mat3 bendOf(const Shape& shape, const Vec3& d);
 bool isRound(const Shape& shape);  // bendOf isn't always zero
 

@@ -238,8 +238,9 @@ class Search {
   Kinks kinksNear(const Vec3& n, double to_normal, double to_circle) const {
     Kinks kinks;
     Strata strata;
+    strata.with_edges = to_circle > 0;
     const auto collect = [&](const PosedSolid& solid, double sign, std::array<Vec3, Strata::kMost>& edges, int& edge_count) {
-      strataOf(solid.shape, solid.inwards(sign * n), to_circle > 0, strata);
+      strataOf(solid.shape, solid.inwards(sign * n), strata);
       for (int i = 0; i < strata.normal_count; ++i) {
         const Vec3 normal = sign * solid.outwards(strata.normals[static_cast<std::size_t>(i)]);
         if ((normal - n).squaredNorm() < to_normal * to_normal) kinks.normals[static_cast<std::size_t>(kinks.normal_count++)] = normal;

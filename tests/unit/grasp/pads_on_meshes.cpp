@@ -105,6 +105,13 @@ TEST(PadOnMesh, KeepsItsPointsWhileItSlidesAndTilts) {
   }
 }
 
+// The ball's triangles are far from the pad's edges, each of which would take six queries.
+TEST(PadOnMesh, AsksNoEdgeThatIsFarFromABall) {
+  const FingerContacts found = padOnTop(smooth(geodesicSphere(0.015, 8)), 0.015, 0.3, 1e-3);
+  EXPECT_EQ(found.count, 1);
+  EXPECT_LT(found.queries, 50);  // of the descents from nowhere and from four corners
+}
+
 }  // namespace
 }  // namespace pincer::contact
 
