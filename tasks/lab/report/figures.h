@@ -35,6 +35,13 @@ Figure tactorFigure(const TrialTrace& trace);
 // "trial 7 (participant 0, µₛ 0.45)".
 std::string trialWords(const TrialRecord& trial);
 
+// Each participant in both conditions, joined by a line: squeezes and time per sphere, error and time of alignment. Nothing with fewer than
+// two participants in both.
+std::optional<Figure> peopleFigure(const SessionSummary& summary);
+
+// True unless all tactors were parked throughout the trial.
+bool isShownByTactors(const TrialTrace& trace);
+
 // Error and time of alignment, each trial as a dot, one column per condition, means beside them.
 Figure alignmentFigure(const SessionSummary& summary, const std::vector<TrialRecord>& trials);
 
@@ -52,10 +59,13 @@ constexpr const char *kBlue = "#0072B2", *kVermillion = "#D55E00", *kGreen = "#0
                      *kInk = "#222222", *kGrey = "#999999";
 }  // namespace palette
 
+// One colour for one meaning in all figures: conditions blue, vermillion ...; fingers green and purple.
+const char* conditionColour(std::size_t condition);
+
 struct FingerStyle {
   const char *name, *colour;
 };
-constexpr std::array<FingerStyle, kRecordedFingers> kFingers{{{"index finger", palette::kBlue}, {"thumb", palette::kVermillion}}};
+constexpr std::array<FingerStyle, kRecordedFingers> kFingers{{{"index finger", palette::kGreen}, {"thumb", palette::kPurple}}};
 
 // Lines and letters that all figures share; `data` is then the figure's table, <name>.csv.
 std::string figurePrelude(const std::string& name);

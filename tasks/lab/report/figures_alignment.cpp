@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <numbers>
 
 #include "pincer/contact/elementary.h"
@@ -14,6 +15,9 @@ namespace {
 
 constexpr double kInDegrees = 180 / std::numbers::pi;
 constexpr double kTarget = 0.5 * std::numbers::pi;  // of the flat: towards the monitor, W's +y
+
+// A colour '#rrggbb' as gnuplot counts it, half transparent.
+unsigned long colourNumber(const char* colour) { return 0x70000000UL + std::strtoul(colour + 1, nullptr, 16); }
 
 // From the flat's normal, B's x axis, to the target [deg].
 double flatErrorOf(const SampleRecord& s) {
@@ -30,8 +34,8 @@ Figure alignmentFigure(const SessionSummary& summary, const std::vector<TrialRec
   figure.title = "Alignment: error and time per condition";
   figure.caption =
       "Each dot a trial: left, how far from the monitor the flat was when the participant answered; right, the time until then. "
-      "Bars: means over all trials. Open circles: time-outs.";
-  PlotTable table{"trial", "participant", "condition", "position", "error_deg", "time_s", "timeout"},
+      "Bars: means over all trials. Open circles: time-outs. To see: few large errors make the mean; most answers lie closer.";
+  PlotTable table{"trial", "participant", "condition", "position", "error_deg", "time_s", "timeout", "colour"},
       means{"position", "error_deg", "time_s"};
   std::string tics;
   for (std::size_t c = 0; c < summary.conditions.size(); ++c) {
@@ -43,7 +47,7 @@ Figure alignmentFigure(const SessionSummary& summary, const std::vector<TrialRec
       const bool timeout = t.outcome == "timeout";
       const double aside = 0.5 * std::fmod(0.618 * static_cast<double>(t.trial), 1.0) - 0.25;  // so that dots don't hide each other
       table.row(t.trial + 1, t.participant + 1, t.condition, static_cast<double>(c) + aside, kInDegrees * t.error, t.duration,
-                timeout ? 1 : 0);
+                timeout ? 1 : 0, colourNumber(conditionColour(c)));
       time += t.duration;
       ++n;
       if (timeout) continue;
@@ -56,10 +60,10 @@ Figure alignmentFigure(const SessionSummary& summary, const std::vector<TrialRec
   const auto panel = [&](const char* place, const char* label, const char* value, const char* mean, const char* range) {
     return fmt::format(
         "{}\nset ylabel '{}'\n{}\nset xtics ({}) scale 0\nset xrange [-0.5:{}.5]\n"
-        "plot data skip 1 using 4:($7==0 ? {} : NaN) with points pt 7 ps 1.1 lc rgb '#700072B2' notitle, "
-        "'' skip 1 using 4:($7==1 ? {} : NaN) with points pt 6 ps 1.4 lc rgb '{}' notitle, "
+        "plot data skip 1 using 4:($7==0 ? {} : NaN):8 with points pt 7 ps 1.1 lc rgb variable notitle, "
+        "'' skip 1 using 4:($7==1 ? {} : NaN):8 with points pt 6 ps 1.4 lc rgb variable notitle, "
         "'alignment_means.csv' skip 1 using 1:{}:(0.35) with xerrorbars pt 0 lw 3 lc rgb '{}' notitle\n",
-        place, label, range, tics, summary.conditions.size() - 1, value, value, palette::kOrange, mean, palette::kVermillion);
+        place, label, range, tics, summary.conditions.size() - 1, value, value, mean, palette::kInk);
   };
   figure.script = figurePrelude("alignment") + "set multiplot layout 1,2\n" +
                   panel("set lmargin 9", "size of the error [deg]", "abs($5)", "2", "set yrange [0:*]") +

@@ -32,9 +32,10 @@ std::string meansCsv(const SessionSummary& s, std::size_t m) {
   for (const CellSummary& c : s.cells) {
     if (c.allFrictions()) continue;
     const Estimate& e = c.measures[m];
-    const double half = e.n < 2 ? 0 : e.half_width;
+    const Interval interval = intervalOf(e, Averaged::kPositive);
     const std::size_t k = placeOf(s, c.condition);
-    table.row(c.condition, k, c.mu_s, positionOf(s, c.mu_s, k), c.trials, e.mean, e.mean - half, e.mean + half, c.timeouts > 0 ? 1 : 0);
+    table.row(c.condition, k, c.mu_s, positionOf(s, c.mu_s, k), c.trials, e.mean, interval.low, c.timeouts > 0 ? e.mean : interval.high,
+              c.timeouts > 0 ? 1 : 0);
   }
   return table.take();
 }
@@ -63,10 +64,9 @@ std::string frictionTics(const SessionSummary& s) {
 
 // Open circles are drawn over the means that are lower bounds.
 std::string conditionPlots(const SessionSummary& s, const std::string& name) {
-  constexpr std::array<const char*, 4> kColours{palette::kBlue, palette::kVermillion, palette::kGreen, palette::kPurple};
   std::string plots;
   for (std::size_t k = 0; k < s.conditions.size(); ++k) {
-    const char* colour = kColours[k % kColours.size()];
+    const char* colour = conditionColour(k);
     plots += fmt::format("{} '{}_trials.csv' skip 1 using ($4=={} ? $6 : NaN):8 with points pt 7 ps 1.6 lc rgb '#90{}' notitle",
                          k ? "," : "plot", name, k, colour + 1);
     plots += fmt::format(", data skip 1 using ($2=={} ? $4 : NaN):6:7:8 with yerrorbars pt {} ps 2.6 lw 2 lc rgb '{}' title {}", k,
@@ -76,7 +76,25 @@ std::string conditionPlots(const SessionSummary& s, const std::string& name) {
   return plots + "\n";
 }
 
+// At how many frictions the last condition's mean is the smaller.
+std::string orderWords(const SessionSummary& s, std::size_t m) {
+  if (s.conditions.size() != 2) return "how the means rise or fall with friction";
+  std::map<double, std::array<double, 2>> means;
+  for (const CellSummary& c : s.cells) {
+    if (!c.allFrictions())
+      means.try_emplace(c.mu_s, std::array<double, 2>{NAN, NAN}).first->second[placeOf(s, c.condition)] = c.measures[m].mean;
+  }
+  const auto lower = std::count_if(means.begin(), means.end(), [](const auto& at) { return at.second[1] < at.second[0]; });
+  return fmt::format("the mean of {} lies below that of {} at {} of {} frictions", conditionLabel(s.conditions[1]),
+                     conditionLabel(s.conditions[0]), lower, means.size());
+}
+
 }  // namespace
+
+const char* conditionColour(std::size_t condition) {
+  constexpr std::array<const char*, 4> kColours{palette::kBlue, palette::kVermillion, palette::kOrange, palette::kInk};
+  return kColours[condition % kColours.size()];
+}
 
 std::string figurePrelude(const std::string& name) {
   return fmt::format(
@@ -101,10 +119,10 @@ Figure measureFigure(const SessionSummary& s, const std::vector<TrialRecord>& tr
   figure.name = is_time ? "time" : kMeasures[m].key;
   figure.title = fmt::format("{} per condition and friction", is_time ? "Time" : "Squeezes");
   figure.caption = fmt::format(
-      "Small dots: single trials. Large marks: means with their 95 % confidence intervals (Student t). A white centre marks a lower bound: "
-      "a "
-      "trial of the cell timed out.{}",
-      is_time ? "" : " A squeeze is counted when both normal forces exceed 0.2 N with the intent to lift.");
+      "To see: {}. Small dots: single trials. Large marks: means with their 95 % confidence intervals (Student t, of the logarithm). A "
+      "white "
+      "centre marks a lower bound, without an upper end: a trial of the cell timed out.{}",
+      orderWords(s, m), is_time ? "" : " A squeeze is counted when both normal forces exceed 0.2 N with the intent to lift.");
   figure.data = {{figure.name + ".csv", meansCsv(s, m)}, {figure.name + "_trials.csv", trialsCsv(s, trials, m)}};
   figure.script = figurePrelude(figure.name) + frictionTics(s) +
                   "set xlabel 'friction coefficient µₛ [-]'\nset yrange [0:*]\nset offsets 0, 0, graph 0.03, 0\n" +

@@ -61,9 +61,6 @@ std::string caption(const TrialTrace& trace) {
   std::string text =
       fmt::format("The same {}. Where each tactor was told to be on its fingerpad, and where it was; the fingertip is at the top.",
                   trialWords(trace.trial));
-  if (inEverySample(trace, [](const FingerRecord& f) { return (f.flags & kParked) != 0; })) {
-    text += " Both tactors were parked throughout, as the condition asks.";
-  }
   if (inEverySample(trace, [](const FingerRecord& f) { return !std::isfinite(f.place_shown_L[0]); })) {
     text += " The devices didn't measure the tactors' places.";
   }
@@ -83,6 +80,10 @@ std::string padPanel(std::size_t finger, double half, std::size_t last) {
 }
 
 }  // namespace
+
+bool isShownByTactors(const TrialTrace& trace) {
+  return !inEverySample(trace, [](const FingerRecord& f) { return (f.flags & kParked) != 0; });
+}
 
 Figure tactorFigure(const TrialTrace& trace) {
   PINCER_ASSERT(!trace.samples.empty());

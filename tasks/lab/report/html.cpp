@@ -27,16 +27,17 @@ std::string facts(const SessionSummary& s) {
 std::string cellTable(const SessionSummary& s) {
   if (s.cells.empty()) return s.trials > 0 ? "" : "<p>No trial was finished.</p>\n";
   std::string html = "<div class=\"wide\"><table>\n" + htmlRow(tableHeads(), "th");
-  for (const CellSummary& cell : s.cells) html += htmlRow(tableRow(cell), "td", cell.allFrictions() ? " class=\"all\"" : "");
+  for (const CellSummary& cell : s.cells) html += htmlRowOfIntervals(tableRow(cell), cell.allFrictions() ? " class=\"all\"" : "");
   return fmt::format("{}</table></div>\n<p class=\"note\">{}</p>\n", html, escaped(tableNote(s)));
 }
 
 std::string pairTable(const SessionSummary& s) {
   if (s.pairs.empty()) return "";
   std::string html = "<h2>The conditions compared</h2>\n<div class=\"wide\"><table>\n" + htmlRow(pairHeads(), "th");
-  for (const PairedRow& row : s.pairs) html += htmlRow(pairTexts(row), "td");
+  for (const PairedRow& row : s.pairs) html += htmlRowOfIntervals(pairTexts(row));
   return html +
-         "</table></div>\n<p class=\"note\">Means over the participants with their 95 % intervals (Student t); difference: CLD + force "
+         "</table></div>\n<p class=\"note\">Means over the participants with their 95 % intervals (Student t; of the logarithm, of shares "
+         "the logit); difference: CLD + force "
          "minus force "
          "only; d_z: mean over standard deviation of the participants' differences; paired t-test and Wilcoxon's signed ranks (exact). "
          "Time-outs are censored: counts and times are per success.</p>\n";

@@ -7,22 +7,32 @@ namespace pincer::tasks {
 namespace {
 
 constexpr const char* kStyle = R"(
-body { margin: 2rem auto; max-width: 60rem; padding: 0 1rem; }
-body { background: #fff; color: #222; font: 16px/1.5 "DejaVu Sans", Verdana, sans-serif; }
+:root { color-scheme: light dark; --paper: #fff; --ink: #222; --dim: #555; --line: #e2e2e2; --mark: #0072B2; --tint: #eef5fa;
+  --warn: #D55E00; --warn-tint: #fdf1e9; --code: #f6f6f6; --target: #fff3cd; }
+@media (prefers-color-scheme: dark) { :root { --paper: #16181c; --ink: #e6e6e6; --dim: #a8acb3; --line: #343a42; --mark: #56B4E9;
+  --tint: #1b2733; --warn: #E69F00; --warn-tint: #332a17; --code: #20242a; --target: #4a421d; } }
+body { margin: 2rem auto; max-width: 64rem; padding: 0 1rem; }
+body { background: var(--paper); color: var(--ink); font: 16px/1.5 "DejaVu Sans", Verdana, sans-serif; }
 h1 { font-size: 1.6rem; } h2 { font-size: 1.2rem; margin-top: 2.5rem; }
 table { border-collapse: collapse; font-size: 0.8rem; font-variant-numeric: tabular-nums; }
-td, th { padding: 0.25rem 0.55rem; text-align: right; border-bottom: 1px solid #e2e2e2; white-space: nowrap; }
-td:first-child, th:first-child { text-align: left; }
-tr.all td { font-weight: bold; border-bottom: 2px solid #999; }
-tr:target td { background: #fff3cd; }
-.facts th { text-align: left; font-weight: normal; color: #666; }
+td, th { padding: 0.25rem 0.45rem; text-align: right; vertical-align: top; border-bottom: 1px solid var(--line); white-space: nowrap; }
+th { white-space: normal; vertical-align: bottom; } td small { color: var(--dim); }
+td:first-child, th:first-child { text-align: left; position: sticky; left: 0; background: var(--paper); }
+tr.all td { font-weight: bold; border-bottom: 2px solid var(--dim); } tr.all small { font-weight: normal; }
+tr:target td { background: var(--target); }
+.facts th { text-align: left; font-weight: normal; color: var(--dim); }
 .facts td { text-align: left; white-space: normal; overflow-wrap: anywhere; }
-.wide { overflow-x: auto; }
-.finding { font-size: 1.1rem; border-left: 0.4rem solid #0072B2; background: #eef5fa; padding: 0.6rem 1rem; }
-figure { margin: 1rem 0; } img { width: 100%; height: auto; } figcaption, .note { font-size: 0.85rem; color: #444; }
-.warning { border-left: 0.4rem solid #D55E00; background: #fdf1e9; padding: 0.6rem 1rem; }
-pre { background: #f6f6f6; padding: 0.6rem; overflow-x: auto; font-size: 0.8rem; }
-a { color: #0072B2; }
+.wide { overflow-x: auto; border-right: 1px dashed var(--line); max-width: 100%; }
+.finding { font-size: 1.1rem; border-left: 0.4rem solid var(--mark); background: var(--tint); padding: 0.6rem 1rem; }
+figure { margin: 1rem 0; } img { width: 100%; height: auto; border-radius: 4px; background: #fff; }
+figcaption, .note { font-size: 0.85rem; color: var(--dim); }
+.warning { border-left: 0.4rem solid var(--warn); background: var(--warn-tint); padding: 0.6rem 1rem; }
+pre { background: var(--code); padding: 0.6rem; overflow-x: auto; font-size: 0.8rem; }
+a { color: var(--mark); }
+@media (max-width: 40rem) { body { font-size: 15px; margin: 1rem auto; } h1 { font-size: 1.3rem; } td:first-child { white-space: normal; } }
+@media print { @page { size: A4; margin: 15mm; } body { max-width: none; margin: 0; padding: 0; font-size: 10pt; }
+  figure, tr { break-inside: avoid; } h2 { break-after: avoid; } .wide { overflow: visible; } table { font-size: 6.5pt; }
+  td, th { padding: 0.15rem 0.2rem; white-space: normal; } details { display: none; } }
 )";
 
 // RFC 4648, section 4.
@@ -73,6 +83,19 @@ std::string htmlRow(const std::vector<std::string>& fields, const char* tag, con
   return html + "</tr>\n";
 }
 
+std::string htmlRowOfIntervals(const std::vector<std::string>& fields, const std::string& attributes) {
+  std::string html = fmt::format("<tr{}>", attributes);
+  for (const std::string& field : fields) {
+    const std::size_t bracket = field.rfind(" (");
+    if (bracket == std::string::npos || field.find(" to ", bracket) == std::string::npos) {
+      html += fmt::format("<td>{}</td>", escaped(field));
+    } else {
+      html += fmt::format("<td>{}<br><small>{}</small></td>", escaped(field.substr(0, bracket)), escaped(field.substr(bracket + 1)));
+    }
+  }
+  return html + "</tr>\n";
+}
+
 std::string htmlFacts(const std::vector<std::pair<std::string, std::string>>& rows) {
   std::string html = "<table class=\"facts\">\n";
   for (const auto& [name, value] : rows) html += fmt::format("<tr><th>{}</th><td>{}</td></tr>\n", escaped(name), escaped(value));
@@ -111,7 +134,7 @@ std::string htmlDetails(const char* title, const std::string& json) {
 std::string htmlHead(const std::string& title, const std::string& warning) {
   std::string html = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
-      "content=\"width=device-width\">\n<title>{0}</title>\n<style>{1}</style>\n</head>\n<body>\n<h1>{0}</h1>\n",
+      "content=\"width=device-width, initial-scale=1\">\n<title>{0}</title>\n<style>{1}</style>\n</head>\n<body>\n<h1>{0}</h1>\n",
       escaped(title), kStyle);
   if (!warning.empty()) html += fmt::format("<p class=\"warning\">{}</p>\n", escaped(warning));
   return html;

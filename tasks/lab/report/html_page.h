@@ -13,6 +13,9 @@ std::string escaped(const std::string& text);
 // A table row of cells `tag` ("td", "th"); `attributes` stand in the row's own tag, with a blank before.
 std::string htmlRow(const std::vector<std::string>& fields, const char* tag, const std::string& attributes = "");
 
+// The same; of a cell "1.40 (1.10 to 1.78)" the interval stands in a line of its own, smaller.
+std::string htmlRowOfIntervals(const std::vector<std::string>& fields, const std::string& attributes = "");
+
 // A table of names and values.
 std::string htmlFacts(const std::vector<std::pair<std::string, std::string>>& rows);
 

@@ -10,6 +10,8 @@
 namespace pincer::tasks {
 namespace {
 
+constexpr double kEqualBut = 1e-12;  // of differences that are equal but for it
+
 // Ranks of the sizes, doubled so that the mean rank of ties is whole.
 std::vector<int> doubledRanks(const std::vector<double>& values) {
   std::vector<std::size_t> order(values.size());
@@ -65,7 +67,10 @@ PairedTest comparePairs(const std::vector<double>& a, const std::vector<double>&
   for (const double x : d) squares += (x - test.difference.mean) * (x - test.difference.mean);
   const double sd = std::sqrt(squares / (test.n - 1));
   test.p_wilcoxon = wilcoxonSignedRank(d);
-  if (!(sd > 0)) return test;
+  if (!(sd > kEqualBut * std::abs(test.difference.mean))) {
+    if (test.difference.mean != 0) test.p_t = std::numeric_limits<double>::quiet_NaN();  // t is infinite: it knows nothing of their spread
+    return test;
+  }
   test.effect = test.difference.mean / sd;
   test.p_t = 1 - studentTwoSided(std::abs(test.effect) * std::sqrt(test.n), test.n - 1);
   return test;

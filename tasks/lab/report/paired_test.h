@@ -19,7 +19,7 @@ struct PairedTest {
   int higher = 0;         // those with b > a
   Estimate difference;    // b - a
   double effect = 0;      // d_z; NaN if n < 2 or nothing varies
-  double p_t = 1;         // 1 where it can't be told
+  double p_t = 1;         // 1 where it can't be told; NaN where all differ by the same
   double p_wilcoxon = 1;  // likewise
 };
 

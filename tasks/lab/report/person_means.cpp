@@ -49,9 +49,9 @@ const std::vector<FindingMeasure>& findingMeasures() {
       {"tries", "squeezes per sphere picked up", "", "significantly fewer with the CLD", PublishedEffect::kLess, true},
       {"lifts", "lifts per sphere picked up", "", "(not published apart from tries)", PublishedEffect::kNone, true},
       {"pickup_time", "time per sphere picked up", "s", "no change", PublishedEffect::kSame, true},
-      {"picked_up", "spheres picked up within the time", "%", "(not published)", PublishedEffect::kNone, true},
+      {"picked_up", "spheres picked up within the time", "%", "(not published)", PublishedEffect::kNone, true, Averaged::kPercent},
       {"alignment_error", "mean absolute alignment error", "deg", "no change", PublishedEffect::kSame, false},
-      {"alignment_bias", "mean signed alignment error", "deg", "(not published)", PublishedEffect::kNone, false},
+      {"alignment_bias", "mean signed alignment error", "deg", "(not published)", PublishedEffect::kNone, false, Averaged::kAny},
       {"alignment_time", "time per alignment answered", "s", "7 s more with the CLD", PublishedEffect::kMore, false},
       {"regrasps", "regrasps per alignment", "", "(not published)", PublishedEffect::kNone, false},
   };
@@ -83,7 +83,7 @@ std::vector<PairedRow> pairedRows(const std::vector<TrialRecord>& trials) {
       std::copy_if(values.begin(), values.end(), std::back_inserter(kept), [](double x) { return std::isfinite(x); });
       return estimateMean(kept);
     };
-    const PairedRow row{m, known(force), known(cld), comparePairs(force, cld)};
+    const PairedRow row{m, known(force), known(cld), comparePairs(force, cld), force, cld};
     if (row.force.n + row.cld.n > 0) rows.push_back(row);
   }
   return rows;

@@ -17,6 +17,7 @@ struct FindingMeasure {
   const char *key, *label, *unit, *published;
   PublishedEffect expected;
   bool of_pickup;
+  Averaged averaged = Averaged::kPositive;
 };
 const std::vector<FindingMeasure>& findingMeasures();
 
@@ -31,6 +32,7 @@ struct PairedRow {
   std::size_t measure = 0;  // place in findingMeasures()
   Estimate force, cld;
   PairedTest test;
+  std::vector<double> force_of, cld_of;  // each participant's, in the order of their numbers; NaN: none
 };
 // Of the measures that somebody has.
 std::vector<PairedRow> pairedRows(const std::vector<TrialRecord>& trials);

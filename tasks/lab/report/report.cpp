@@ -17,6 +17,7 @@ std::vector<Picture> wantedPictures(const SessionReader& session, const SessionS
   for (const TrialRecord& t : trials) {
     if (t.training == 0) (t.task == "cylinder-alignment" ? alignments : pickups).push_back(t);
   }
+  if (auto people = peopleFigure(summary)) pictures.push_back({*std::move(people), "", ""});
   if (!alignments.empty()) pictures.push_back({alignmentFigure(summary, alignments), "", ""});
   if (!pickups.empty()) {
     pictures.push_back({measureFigure(summary, pickups, kSqueezes), "", ""});
@@ -33,7 +34,7 @@ std::vector<Picture> wantedPictures(const SessionReader& session, const SessionS
     const TrialTrace trace = traceOf(session, *trial);
     if (trace.samples.empty()) continue;  // recorded without samples
     pictures.push_back({trialFigure(trace), "", std::to_string(trial->trial + 1)});
-    pictures.push_back({tactorFigure(trace), "", std::to_string(trial->trial + 1)});
+    if (isShownByTactors(trace)) pictures.push_back({tactorFigure(trace), "", std::to_string(trial->trial + 1)});
   }
   if (auto ticks = tickFigure(session)) pictures.push_back({*std::move(ticks), "", ""});
   return pictures;

@@ -54,6 +54,20 @@ Estimate estimateMean(const std::vector<double>& values) {
   return {n, mean, studentQuantile(0.95, n - 1) * std::sqrt(squares / (n - 1) / n)};
 }
 
+Interval intervalOf(const Estimate& e, Averaged averaged) {
+  if (e.n < 2 || !(e.half_width > 0)) return {e.mean, e.mean};
+  const double whole = averaged == Averaged::kPercent ? 100 : 1, share = e.mean / whole;
+  if (averaged == Averaged::kAny) return {e.mean - e.half_width, e.mean + e.half_width};
+  if (averaged == Averaged::kPositive) {
+    if (!(e.mean > 0)) return {e.mean, e.mean};
+    const double factor = math::exp(e.half_width / e.mean);
+    return {e.mean / factor, e.mean * factor};
+  }
+  if (!(share > 0 && share < 1)) return {e.mean, e.mean};
+  const double odds = share / (1 - share), factor = math::exp(e.half_width / whole / (share * (1 - share)));
+  return {whole * odds / (odds + factor), whole * odds * factor / (1 + odds * factor)};
+}
+
 double percentile(std::vector<double> values, double p) {
   PINCER_ASSERT(0 <= p && p <= 1);
   if (values.empty()) return kNaN;

@@ -5,6 +5,7 @@
 // Source of the distribution: M. Abramowitz, I. A. Stegun, Handbook of Mathematical Functions, 1964, equations 26.7.3 (odd) and 26.7.4
 // (even degrees of freedom): finite sums, exact. t follows by bisection, to round-off.
 #pragma once
+#include <cstdint>
 #include <vector>
 
 namespace pincer::tasks {
@@ -20,6 +21,17 @@ double studentTwoSided(double t, int dof);
 
 // The t with P(|T| < t) = `probability` in (0, 1).
 double studentQuantile(double probability, int dof);
+
+struct Interval {
+  double low = 0, high = 0;
+};
+
+// The values that the mean of a few numbers lies between, 95 %, by what is averaged; both ends the mean if n < 2.
+//   kAny       differences, signed errors: mean +- h
+//   kPositive  counts, times, thresholds: Student's t for the mean's logarithm (delta method), mean exp(+-h / mean): never below zero
+//   kShare     of 1, and kPercent of 100: likewise for the logit, never below none nor above all
+enum class Averaged : std::uint8_t { kAny, kPositive, kShare, kPercent };
+Interval intervalOf(const Estimate& estimate, Averaged averaged);
 
 Estimate estimateMean(const std::vector<double>& values);
 

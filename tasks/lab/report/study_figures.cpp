@@ -22,15 +22,13 @@ std::string conditionTics(const StudySummary& s) {
   return fmt::format("set xtics ({}) scale 0\nset xrange [-0.6:{}]\n", tics, static_cast<double>(s.conditions.size()) - 0.4);
 }
 
-double halfOf(const Estimate& e) { return e.n < 2 ? 0 : e.half_width; }
-
 struct SpeedKind {
   const char *name, *colour;
   Estimate StudyCondition::*of;
   double published_low, published_high;  // [mm/s]
 };
-constexpr std::array<SpeedKind, 2> kSpeeds{{{"finger", palette::kBlue, &StudyCondition::finger_speed, 32, 74},
-                                            {"tactor", palette::kVermillion, &StudyCondition::tactor_speed, 5, 19}}};
+constexpr std::array<SpeedKind, 2> kSpeeds{{{"finger", palette::kGreen, &StudyCondition::finger_speed, 32, 74},
+                                            {"tactor", palette::kPurple, &StudyCondition::tactor_speed, 5, 19}}};
 
 }  // namespace
 
@@ -39,29 +37,40 @@ Figure headlineFigure(const StudySummary& s) {
   PlotTable people{"condition", "participant", "position", "value"};
   for (std::size_t k = 0; k < s.conditions.size(); ++k) {
     const StudyCondition& c = s.conditions[k];
-    const double x = static_cast<double>(k), scale = s.headline.scale, half = halfOf(c.headline);
-    means.row(c.name, x, scale * c.headline.mean, scale * (c.headline.mean - half), scale * (c.headline.mean + half), scale * c.published);
-    for (std::size_t i = 0; i < c.people.size(); ++i) {
-      const double share = c.people.size() < 2 ? 0.5 : static_cast<double>(i) / static_cast<double>(c.people.size() - 1);
-      people.row(c.name, c.people[i].participant + 1, x + kDotsLeft + kDotsWidth * (share - 0.5), scale * c.people[i].headline);
+    const double x = static_cast<double>(k), scale = s.headline.scale;
+    const Interval interval = intervalOf(c.headline, s.headline.averaged);
+    means.row(c.name, x, scale * c.headline.mean, scale * interval.low, scale * interval.high, scale * c.published);
+  }
+  std::map<std::int64_t, std::vector<std::pair<std::size_t, double>>> of_person;
+  for (std::size_t k = 0; k < s.conditions.size(); ++k) {
+    for (const StudyPerson& person : s.conditions[k].people) of_person[person.participant].push_back({k, person.headline});
+  }
+  for (const auto& [person, values] : of_person) {
+    const double share = of_person.size() < 2 ? 0.5
+                                              : static_cast<double>(std::distance(of_person.begin(), of_person.find(person))) /
+                                                    static_cast<double>(of_person.size() - 1);
+    for (const auto& [k, value] : values) {
+      people.row(s.conditions[k].name, person + 1, static_cast<double>(k) + kDotsLeft + kDotsWidth * (share - 0.5),
+                 s.headline.scale * value);
     }
+    people.endRow();  // an empty line breaks gnuplot's from one participant to the next
   }
   Figure figure;
   figure.name = "headline";
   figure.title = fmt::format("{}{} per condition", static_cast<char>(std::toupper(s.headline.name[0])), s.headline.name.substr(1));
   figure.caption =
-      "Small dots: participants. Large marks: their mean with its 95 % confidence interval (Student t). Diamonds: the figure published by "
-      "Doxon (2014), with people.";
+      "Small dots: participants, a line joins one's. Large marks: their mean with its 95 % confidence interval. Diamonds: the figure "
+      "published by Doxon (2014), with people. To see: which intervals reach the diamond beside them.";
   figure.data = {{"headline.csv", means.take()}, {"headline_people.csv", people.take()}};
   const bool wide_range = s.info.task == "smoothness-discrimination";
   figure.script = figurePrelude(figure.name) + conditionTics(s) +
                   (wide_range ? "set logscale y\nset yrange [1:5000]\n" : "set yrange [0:*]\nset offsets 0, 0, graph 0.05, 0\n") +
                   fmt::format("set ylabel {}\n", gnuplotString(fmt::format("{} [{}]", s.headline.name, s.headline.unit))) +
                   fmt::format(
-                      "plot 'headline_people.csv' skip 1 using 3:4 with points pt 7 ps 1.4 lc rgb '#90{}' title 'participant', "
+                      "plot 'headline_people.csv' skip 1 using 3:4 with linespoints pt 7 ps 1.4 lw 0.6 lc rgb '#90{}' title 'participant', "
                       "data skip 1 using 2:3:4:5 with yerrorbars pt 7 ps 2.4 lw 2 lc rgb '{}' title 'mean of pincer''s participants', "
                       "data skip 1 using ($2+{}):6 with points pt 13 ps 3 lc rgb '{}' title 'published'\n",
-                      palette::kBlue + 1, palette::kBlue, kPublishedAside, palette::kVermillion);
+                      palette::kBlue + 1, palette::kBlue, kPublishedAside, palette::kOrange);
   return figure;
 }
 
@@ -102,7 +111,7 @@ Figure staircaseFigure(const StudySummary& s, const std::vector<ResponseRecord>&
     if (c.headline.n > 0)
       figure.script += fmt::format(", {} with lines dt 2 lw 1.2 lc rgb '{}'", levelShown(s, c.headline.mean), palette::kInk);
     if (std::isfinite(c.published))
-      figure.script += fmt::format(", {} with lines dt 3 lw 1.6 lc rgb '{}'", levelShown(s, c.published), palette::kVermillion);
+      figure.script += fmt::format(", {} with lines dt 3 lw 1.6 lc rgb '{}'", levelShown(s, c.published), palette::kOrange);
     figure.script += "\n";
   }
   figure.script += "unset multiplot\n";
@@ -127,7 +136,8 @@ Figure placesFigure(const std::vector<ResponseRecord>& responses) {
       errors.push_back(error / static_cast<double>(values.size()));
     }
     const Estimate e = estimateMean(named);
-    means.row(1e3 * place, e.mean, e.mean - halfOf(e), e.mean + halfOf(e), estimateMean(errors).mean);
+    const Interval interval = intervalOf(e, Averaged::kAny);
+    means.row(1e3 * place, e.mean, interval.low, interval.high, estimateMean(errors).mean);
   }
   Figure figure;
   figure.name = "places";
@@ -189,9 +199,9 @@ Figure speedFigure(const StudySummary& s) {
   for (std::size_t k = 0; k < s.conditions.size(); ++k) {
     for (std::size_t i = 0; i < kSpeeds.size(); ++i) {
       const Estimate& e = s.conditions[k].*kSpeeds[i].of;
-      const double mean = e.n > 0 ? 1e3 * e.mean : std::nan(""), half = 1e3 * halfOf(e);
-      table.row(s.conditions[k].name, kSpeeds[i].name, static_cast<double>(k) + 0.2 * (static_cast<double>(i) - 0.5), mean, mean - half,
-                mean + half);
+      const Interval interval = intervalOf(e, Averaged::kPositive);
+      table.row(s.conditions[k].name, kSpeeds[i].name, static_cast<double>(k) + 0.2 * (static_cast<double>(i) - 0.5), 1e3 * e.mean,
+                1e3 * interval.low, 1e3 * interval.high);
     }
   }
   Figure figure;
@@ -223,8 +233,8 @@ Figure timeFigure(const StudySummary& s) {
   PlotTable table{"condition", "position", "shown_s", "ci95_low", "ci95_high", "answer_after_s"};
   for (std::size_t k = 0; k < s.conditions.size(); ++k) {
     const StudyCondition& c = s.conditions[k];
-    const double half = halfOf(c.duration);
-    table.row(c.name, static_cast<double>(k), c.duration.mean, c.duration.mean - half, c.duration.mean + half, c.response_time.mean);
+    const Interval interval = intervalOf(c.duration, Averaged::kPositive);
+    table.row(c.name, static_cast<double>(k), c.duration.mean, interval.low, interval.high, c.response_time.mean);
   }
   Figure figure;
   figure.name = "times";

@@ -44,7 +44,7 @@ std::string studyHtml(const StudySummary& s, const std::vector<Picture>& picture
                      {"build", buildFacts(s.info)},
                      {"session file", s.path}});
   html += "<h2>Per condition</h2>\n<div class=\"wide\"><table>\n" + htmlRow(studyTableHeads(s), "th");
-  for (const StudyCondition& c : s.conditions) html += htmlRow(studyTableRow(s, c), "td");
+  for (const StudyCondition& c : s.conditions) html += htmlRowOfIntervals(studyTableRow(s, c));
   html += fmt::format("</table></div>\n<p class=\"note\">{}</p>\n", escaped(studyNote(s)));
   html += studyTestsHtml(s);
   for (const Picture& picture : pictures) html += htmlFigure(picture, figures_name);

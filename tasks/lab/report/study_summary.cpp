@@ -27,12 +27,13 @@ struct StudyKind {
   double scale;
   const char* level_unit;
   double level_scale;
+  Averaged averaged = Averaged::kPositive;
 };
 constexpr std::array<StudyKind, 5> kStudyKinds{{{kCountedInSegments, "threshold", "segments", 1, "°", 180 / M_PI},
                                                 {"backlash-discrimination", "threshold", "mm", 1e3, "mm", 1e3},
                                                 {"delay-discrimination", "threshold", "ms", 1e3, "ms", 1e3},
                                                 {"repeated-localisation", "mean absolute error", "mm", 1e3, "mm", 1e3},
-                                                {"shape-identification", "right answers", "%", 100, "%", 100}}};
+                                                {"shape-identification", "right answers", "%", 100, "%", 100, Averaged::kShare}}};
 
 const StudyKind* kindOf(const std::string& task) {
   const auto found = std::find_if(kStudyKinds.begin(), kStudyKinds.end(), [&](const StudyKind& k) { return task == k.task; });
@@ -145,16 +146,18 @@ void summarise(const std::string& task, const std::vector<ResponseRecord>& respo
   condition.tactor_speed = overPeople(people, [](const ResponseRecord& r) { return r.tactor_speed; });
 }
 
-std::string estimateText(const Estimate& e, double scale, int digits) {
+std::string estimateText(const Estimate& e, double scale, int digits, Averaged averaged = Averaged::kPositive) {
   if (e.n == 0) return "–";
   if (e.n < 2) return fmt::format("{:.{}f}", scale * e.mean, digits);
-  return fmt::format("{:.{}f} ± {:.{}f}", scale * e.mean, digits, scale * e.half_width, digits);
+  const Interval interval = intervalOf(e, averaged);
+  return fmt::format("{:.{}f} ({:.{}f} to {:.{}f})", scale * e.mean, digits, scale * interval.low, digits, scale * interval.high, digits);
 }
 
 // Whether the published figure lies in pincer's interval; where not, how far off the mean is.
-std::string followsText(const StudyCondition& c) {
+std::string followsText(const StudySummary& s, const StudyCondition& c) {
   if (std::isnan(c.published) || c.headline.n < 2 || isUnsettled(c)) return "–";
-  if (std::abs(c.headline.mean - c.published) <= c.headline.half_width) return "yes";
+  const Interval interval = intervalOf(c.headline, s.headline.averaged);
+  if (interval.low <= c.published && c.published <= interval.high) return "yes";
   return fmt::format("no, {:.2g} times", c.headline.mean / c.published);
 }
 
@@ -182,7 +185,7 @@ StudySummary summariseStudy(const SessionInfo& info, const std::string& name, co
   StudySummary s{name, info, "", "", "", info.participants_hash, 0, 0, {}, {}};
   const StudyKind* kind = kindOf(info.task);
   if (!kind) throw InputError(fmt::format("{}: a session of {}, which isn't a psychophysical study.", name, info.task));
-  s.headline = {kind->name, kind->unit, kind->scale, kind->level_unit, kind->level_scale};
+  s.headline = {kind->name, kind->unit, kind->scale, kind->level_unit, kind->level_scale, kind->averaged};
   const JsonValue protocol = parseJson(info.protocol_json, name + ": protocol");
   std::set<std::int64_t> people;
   for (const ResponseRecord& r : responses) people.insert(r.participant);
@@ -212,27 +215,28 @@ std::vector<std::string> studyTableHeads(const StudySummary& s) {
 
 std::vector<std::string> studyTableRow(const StudySummary& s, const StudyCondition& c) {
   const int digits = s.headline.unit == "ms" || s.headline.unit == "%" ? 1 : 2;
-  std::string headline = estimateText(c.headline, s.headline.scale, digits);
+  std::string headline = estimateText(c.headline, s.headline.scale, digits, s.headline.averaged);
   const bool counted = s.info.task == kCountedInSegments && c.headline.n > 0;
   if (isUnsettled(c)) headline = (counted ? "≤ " : "≥ ") + headline;
   if (counted) headline += fmt::format(" ({:.2g}°)", levelShown(s, c.headline.mean));
   return {c.name == c.label ? c.name : c.name + ": " + c.label,
           headline,
           std::isnan(c.published) ? "–" : fmt::format("{:.3g}", s.headline.scale * c.published),
-          followsText(c),
+          followsText(s, c),
           std::to_string(c.people.size()),
           std::to_string(c.trials),
-          estimateText(c.right, 100, 1),
+          estimateText(c.right, 100, 1, Averaged::kShare),
           estimateText(c.duration, 1, 1),
           estimateText(c.response_time, 1, 2),
-          estimateText(c.contact_share, 100, 1),
+          estimateText(c.contact_share, 100, 1, Averaged::kShare),
           estimateText(c.finger_speed, 1e3, 1),
           estimateText(c.tactor_speed, 1e3, 1)};
 }
 
 std::string studyNote(const StudySummary& s) {
   std::string note =
-      "± gives the 95 % confidence interval over participants (Student t). Published: A. J. Doxon, doctoral dissertation, University of "
+      "In brackets the 95 % confidence interval over participants (Student t, of the logarithm; of shares the logit). Published: A. J. "
+      "Doxon, doctoral dissertation, University of "
       "Utah, 2014, with people; here the participants are simulated, their parameters fixed before the study (fingerprint ";
   note += s.fingerprint +
           "). Follows: whether the published figure lies within the interval; where not, pincer's mean over it. No parameter was changed "

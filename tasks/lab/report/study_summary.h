@@ -22,6 +22,7 @@ struct HeadlineQuantity {
   double scale = 1;
   std::string level_unit{};  // of the staircases' levels
   double level_scale = 1;
+  Averaged averaged = Averaged::kPositive;
 };
 
 struct StudyPerson {

@@ -33,7 +33,7 @@ Compared comparedOf(const StudySummary& s) {
   return compared;
 }
 
-std::string pText(double p) { return p < 0.001 ? "< .001" : fmt::format("{:.3f}", p); }
+std::string pText(double p) { return std::isnan(p) ? "–" : p < 0.001 ? "< .001" : fmt::format("{:.3f}", p); }
 
 std::string varianceText(const char* name, const VarianceTest& test) {
   return fmt::format("{}: F({:g}, {:g}) = {:.2f}, p {}", name, test.between_dof, test.within_dof, test.f,

@@ -62,10 +62,11 @@ void sortConditions(std::vector<std::string>& conditions) {
   std::stable_partition(conditions.begin(), conditions.end(), [](const std::string& c) { return c == "force"; });
 }
 
-std::string show(const Estimate& e, bool lower_bound) {
+std::string show(const Estimate& e, Averaged averaged, bool lower_bound = false) {
   if (e.n == 0) return "–";
-  const std::string mean = fmt::format("{}{:.2f}", lower_bound ? "≥ " : "", e.mean);
-  return e.n < 2 ? mean : fmt::format("{} ± {:.2f}", mean, e.half_width);
+  if (lower_bound) return fmt::format("≥ {:.2f}", e.mean);
+  const Interval interval = intervalOf(e, averaged);
+  return e.n < 2 ? fmt::format("{:.2f}", e.mean) : fmt::format("{:.2f} ({:.2f} to {:.2f})", e.mean, interval.low, interval.high);
 }
 
 // Characters, not bytes: a UTF-8 continuation byte is 10xxxxxx.
@@ -135,12 +136,14 @@ std::vector<std::string> pairHeads() {
 
 std::vector<std::string> pairTexts(const PairedRow& row) {
   const FindingMeasure& m = findingMeasures()[row.measure];
-  const auto p_text = [&](double p) { return row.test.n < 2 ? std::string("–") : p < 1e-4 ? "< 0.0001" : fmt::format("{:.4f}", p); };
+  const auto p_text = [&](double p) {
+    return row.test.n < 2 || p != p ? std::string("–") : p < 1e-4 ? "< 0.0001" : fmt::format("{:.4f}", p);
+  };
   const bool known = row.test.n > 1 && row.test.effect == row.test.effect;
   return {fmt::format("{}{}", m.label, *m.unit ? fmt::format(" [{}]", m.unit) : ""),
-          show(row.force, false),
-          show(row.cld, false),
-          show(row.test.difference, false),
+          show(row.force, m.averaged),
+          show(row.cld, m.averaged),
+          show(row.test.difference, Averaged::kAny),
           known ? fmt::format("{:.2f}", row.test.effect) : "–",
           p_text(row.test.p_t),
           p_text(row.test.p_wilcoxon)};
@@ -148,26 +151,27 @@ std::vector<std::string> pairTexts(const PairedRow& row) {
 
 std::vector<std::string> tableHeads() {
   std::vector<std::string> heads{"condition", "µₛ", "trials"};
-  for (const Measure& m : kMeasures) heads.emplace_back(m.label);
   heads.insert(heads.end(), {"success", "time-outs", "faults"});
+  for (const Measure& m : kMeasures) heads.emplace_back(m.label);
   return heads;
 }
 
 std::vector<std::string> tableRow(const CellSummary& cell) {
   std::vector<std::string> row{conditionLabel(cell.condition), cell.allFrictions() ? "all" : fmt::format("{:.2f}", cell.mu_s),
                                fmt::format("{}", cell.trials)};
-  for (const Estimate& e : cell.measures) row.push_back(show(e, cell.timeouts > 0));
   row.push_back(fmt::format("{:.0f} %", 100 * cell.successRate()));
   row.push_back(fmt::format("{}", cell.timeouts));
   row.push_back(fmt::format("{}", cell.faults));
+  for (const Estimate& e : cell.measures) row.push_back(show(e, Averaged::kPositive, cell.timeouts > 0));
   return row;
 }
 
 std::string tableNote(const SessionSummary& s) {
-  std::string note = fmt::format("Mean ± half of the 95 % confidence interval (Student t) over {}.",
+  std::string note = fmt::format("Mean and 95 % confidence interval (Student t, of the logarithm) over {}.",
                                  s.participants > 1 ? "the participants' means" : "the trials of the one participant");
   const auto has = [&](auto of) { return std::any_of(s.cells.begin(), s.cells.end(), [of](const CellSummary& c) { return c.*of > 0; }); };
-  if (has(&CellSummary::timeouts)) note += " ≥ marks lower bounds: at least one trial of the cell timed out.";
+  if (has(&CellSummary::timeouts))
+    note += " ≥ marks lower bounds: at least one trial of the cell timed out, so that no interval can be told.";
   if (has(&CellSummary::faults)) note += " Trials that ended in a fault are left out of the means.";
   return note;
 }

@@ -15,7 +15,13 @@ Json asJson(const CellSummary& cell) {
   if (!cell.allFrictions()) json["mu_s"] = cell.mu_s;
   for (std::size_t m = 0; m < kMeasures.size(); ++m) {
     const Estimate& e = cell.measures[m];
-    json[kMeasures[m].key] = Json{{"n", e.n}, {"mean", e.mean}, {"ci95_half_width", e.half_width}, {"lower_bound", cell.timeouts > 0}};
+    const Interval interval = intervalOf(e, Averaged::kPositive);
+    json[kMeasures[m].key] = Json{{"n", e.n},
+                                  {"mean", e.mean},
+                                  {"ci95_half_width", e.half_width},
+                                  {"ci95_low", interval.low},
+                                  {"ci95_high", interval.high},
+                                  {"lower_bound", cell.timeouts > 0}};
   }
   return json;
 }

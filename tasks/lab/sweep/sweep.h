@@ -67,11 +67,13 @@ CaseResult measuredCase(const SweepJob& job, std::size_t point, const std::atomi
 std::string sweepText(const SweepTable& table);
 std::string sweepCsv(const SweepTable& table);
 std::string sweepJson(const SweepTable& table);
-// One panel per plotted measure over the first parameter, a line for each value of the second; of one or two parameters.
+// One panel per plotted measure over the first parameter, a line for each value of the second, a column for each of the third; a heat map
+// where two parameters have many values.
+bool isDrawable(const SweepTable& table);  // at most three parameters; of three, at most 6 values of the second and 4 of the third
 Figure sweepFigure(const SweepTable& table);
 
 enum class SweepFormat { kCsv, kJson, kHdf5 };
-// The table as sweep.csv, sweep.json or sweep.h5, and of one or two parameters sweep.png and sweep.svg, in `directory`, which is made if missing.
+// The table as sweep.csv, sweep.json or sweep.h5, and where it is drawable sweep.png and sweep.svg, in `directory`, which is made if missing.
 // Throws InputError. Returns their paths.
 std::vector<std::string> writeSweep(const SweepTable& table, const std::string& directory, SweepFormat format = SweepFormat::kCsv);
 // Groups /parameters and /measures with a dataset of doubles per column, /state_hash and /error, all as long as the cases that are done.

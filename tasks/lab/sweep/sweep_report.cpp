@@ -16,16 +16,6 @@ std::string rightAligned(const std::string& text, std::size_t width) {
   return std::string(width > text.size() ? width - text.size() : 0, ' ') + text;
 }
 
-// The values of the second parameter, as they come; one of none.
-std::vector<double> lineValues(const SweepTable& table) {
-  if (table.parameters.size() < 2) return {0};
-  std::vector<double> values;
-  for (const std::vector<double>& point : table.points) {
-    if (std::find(values.begin(), values.end(), point[1]) == values.end()) values.push_back(point[1]);
-  }
-  return values;
-}
-
 void addHeadings(const SweepTable& table, CsvTable& csv) {
   for (const std::string& name : table.parameters) csv.add(name);
   for (const std::string& name : table.measures) csv.add(name);
@@ -34,37 +24,6 @@ void addHeadings(const SweepTable& table, CsvTable& csv) {
 void addNumbers(const SweepTable& table, std::size_t i, CsvTable& csv) {
   for (const double value : table.points[i]) csv.add(value);
   for (const double value : table.results[i].values) csv.add(value);
-}
-
-// What gnuplot reads: numbers alone.
-std::string plottedTable(const SweepTable& table) {
-  PlotTable csv;
-  addHeadings(table, csv);
-  csv.endRow();
-  for (std::size_t i = 0; i < table.points.size(); ++i) {
-    if (!table.results[i].done) continue;
-    addNumbers(table, i, csv);
-    csv.endRow();
-  }
-  return csv.take();
-}
-
-constexpr std::array kLineColours = {palette::kBlue,   palette::kVermillion, palette::kGreen,
-                                     palette::kPurple, palette::kOrange,     palette::kInk};
-
-std::string panelScript(const SweepTable& table, std::size_t measure, bool first) {
-  const std::vector<double> lines = lineValues(table);
-  const std::size_t column = table.parameters.size() + 1 + measure;
-  std::string script =
-      fmt::format("set ylabel {}\n{}\nplot ", gnuplotString(table.measures[measure]), first ? "set key on" : "set key off");
-  for (std::size_t k = 0; k < lines.size(); ++k) {
-    const std::string x = table.parameters.size() < 2 ? "1" : fmt::format("($2 == {:.17g} ? $1 : NaN)", lines[k]);
-    const std::string title =
-        table.parameters.size() < 2 ? "notitle" : "title " + gnuplotString(fmt::format("{} = {:.6g}", table.parameters[1], lines[k]));
-    script += fmt::format("{}'sweep.csv' skip 1 using {}:{} with linespoints pt 7 ps 0.8 lw 2 lc rgb '{}' {}", k ? ", " : "", x, column,
-                          kLineColours[k % kLineColours.size()], title);
-  }
-  return script + "\n";
 }
 
 }  // namespace
@@ -124,25 +83,6 @@ std::string sweepJson(const SweepTable& table) {
   return json.endArray().endObject().text() + "\n";
 }
 
-Figure sweepFigure(const SweepTable& table) {
-  const auto panels = static_cast<int>(std::count(table.plotted.begin(), table.plotted.end(), true));
-  Figure figure;
-  figure.name = "sweep";
-  figure.title = table.what;
-  figure.height = 120 + 480 * panels;
-  figure.data = {{"sweep.csv", plottedTable(table)}};
-  figure.script = figurePrelude("sweep") + fmt::format("set multiplot layout {},1 title {}\nset grid\nset lmargin 14\nset xlabel {}\n",
-                                                       panels, gnuplotString(table.what), gnuplotString(table.parameters[0]));
-  bool first = true;
-  for (std::size_t m = 0; m < table.measures.size(); ++m) {
-    if (!table.plotted[m]) continue;
-    figure.script += panelScript(table, m, first);
-    first = false;
-  }
-  figure.script += "unset multiplot\n";
-  return figure;
-}
-
 std::vector<std::string> writeSweep(const SweepTable& table, const std::string& directory, SweepFormat format) {
   makeDirectory(directory);
   constexpr std::array kEndings = {"csv", "json", "h5"};
@@ -152,7 +92,7 @@ std::vector<std::string> writeSweep(const SweepTable& table, const std::string& 
   else
     writeAtomically(paths[0], format == SweepFormat::kJson ? sweepJson(table) : sweepCsv(table));
   const bool is_plotted = std::find(table.plotted.begin(), table.plotted.end(), true) != table.plotted.end();
-  if (table.parameters.size() > 2 || !is_plotted) return paths;
+  if (!is_plotted || !isDrawable(table)) return paths;
   Gnuplot gnuplot;
   const Figure figure = sweepFigure(table);
   for (const char* ending : {"png", "svg"}) paths.push_back(fmt::format("{}/sweep.{}", directory, ending));

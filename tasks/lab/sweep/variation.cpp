@@ -81,7 +81,7 @@ std::vector<std::string> pathsOf(const std::vector<Variation>& variations) {
   return paths;
 }
 
-std::string_view trimmed(std::string_view text) {
+std::string_view withoutBlanks(std::string_view text) {
   while (!text.empty() && (text.front() == ' ' || text.front() == '"')) text.remove_prefix(1);
   while (!text.empty() && (text.back() == ' ' || text.back() == '"')) text.remove_suffix(1);
   return text;
@@ -89,7 +89,7 @@ std::string_view trimmed(std::string_view text) {
 
 std::vector<std::string> cellsOf(std::string_view line) {
   std::vector<std::string> cells;
-  for (const std::string& cell : partsOf(std::string(line), ',')) cells.emplace_back(trimmed(cell));
+  for (const std::string& cell : partsOf(std::string(line), ',')) cells.emplace_back(withoutBlanks(cell));
   return cells;
 }
 
@@ -163,7 +163,7 @@ SweepGrid readCases(const std::string& path, std::size_t most) {
     throw InputError(fmt::format("{}:1: the first line names the numbers, as sphere.mass,duration", path));
   checkPaths(grid.paths);
   while (file.nextLine(line)) {
-    if (trimmed(line).empty()) continue;
+    if (withoutBlanks(line).empty()) continue;
     grid.points.push_back(caseOf(path, file.line(), cellsOf(line), grid.paths.size()));
     checkCount(grid.points.size(), most);
   }

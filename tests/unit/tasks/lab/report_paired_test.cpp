@@ -52,6 +52,13 @@ TEST(PairedTest, OfStudentsSleepers) {
   EXPECT_NEAR(test.p_t, 0.002833, 5e-7);
 }
 
+// Was 1 for people who all differ by the same: the opposite of what they show.
+TEST(PairedTest, CanNotTellByTHowSureIsWhatVariesInNobody) {
+  EXPECT_TRUE(std::isnan(comparePairs({60, 70, 80, 90}, {75, 85, 95, 105}).p_t));
+  EXPECT_NEAR(comparePairs({60, 70, 80, 90}, {75, 85, 95, 105}).p_wilcoxon, 0.125, 1e-12);
+  EXPECT_EQ(comparePairs({60, 70}, {60, 70}).p_t, 1);
+}
+
 TEST(PairedTest, LeavesOutPeopleWithoutANumber) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const PairedTest test = comparePairs({1, nan, 3, 4}, {2, 2, nan, 6});

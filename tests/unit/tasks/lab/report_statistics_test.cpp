@@ -71,6 +71,45 @@ TEST(EstimateMean, IsRightForFiveNumbers) {
   EXPECT_NEAR(e.half_width, 2.7764 * std::sqrt(0.5), 1e-4);
 }
 
+// Of eight waiting times, skewed to the right: symmetric intervals hold the mean in 89 % of the samples, these in 93 % (of 20,000; 4 SD are 0.8 %),
+// and none of them is below zero.
+TEST(IntervalOf, OfCountsAndTimesIsNeverBelowZeroAndHoldsTheMeanMoreOften) {
+  std::mt19937_64 random(1);
+  std::exponential_distribution<double> waiting(1.0 / 3);
+  int covered = 0, symmetric = 0;
+  for (int k = 0; k < 20'000; ++k) {
+    std::vector<double> values(8);
+    for (double& x : values) x = waiting(random);
+    const Estimate e = estimateMean(values);
+    const Interval interval = intervalOf(e, Averaged::kPositive);
+    EXPECT_GT(interval.low, 0);
+    EXPECT_NEAR(interval.low * interval.high, e.mean * e.mean, 1e-9 * e.mean * e.mean);
+    covered += interval.low < 3 && 3 < interval.high;
+    symmetric += std::abs(e.mean - 3) < e.half_width;
+  }
+  EXPECT_GT(covered, symmetric);
+  EXPECT_NEAR(covered / 20'000.0, 0.93, 0.008);
+}
+
+TEST(IntervalOf, OfSharesStaysBetweenNoneAndAll) {
+  const Interval percent = intervalOf(estimateMean({95, 100, 90, 95}), Averaged::kPercent);
+  EXPECT_GT(percent.low, 0);
+  EXPECT_LT(percent.high, 100);
+  EXPECT_LT(percent.low, 95);
+  const Interval share = intervalOf(estimateMean({0.95, 1, 0.9, 0.95}), Averaged::kShare);
+  EXPECT_NEAR(share.high, percent.high / 100, 1e-12);
+  const Interval all = intervalOf(estimateMean({1, 1, 1}), Averaged::kShare);
+  EXPECT_EQ(all.low, 1);
+  EXPECT_EQ(all.high, 1);
+}
+
+TEST(IntervalOf, OfDifferencesIsSymmetric) {
+  const Estimate e = estimateMean({-1, 2, 4});
+  const Interval interval = intervalOf(e, Averaged::kAny);
+  EXPECT_DOUBLE_EQ(interval.low + interval.high, 2 * e.mean);
+  EXPECT_LT(interval.low, 0);
+}
+
 RC_GTEST_PROP(Percentile, IsTheNearestRank, (std::vector<int> numbers)) {
   RC_PRE(!numbers.empty());
   const int hundredths = *rc::gen::inRange(0, 101);
