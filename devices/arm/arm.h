@@ -14,7 +14,7 @@ namespace pincer::devices {
 enum class DeviceState : std::uint8_t { kClosed, kConnecting, kHoming, kReady, kFaulted };
 std::string nameOf(DeviceState state);
 
-// What the device can do; constants of a type of device.
+// Abilities of a device; constants of its type.
 struct ArmCapabilities {
   double peak_force = 0;                                                // [N]
   double continuous_force = 0;                                          // [N], bearable for ever
@@ -39,7 +39,7 @@ struct ArmSample {
   std::optional<Mat3> J;                  // d p_DF / d q [m/rad], of arms whose joints are known; tau = J^T f_D
 };
 
-// Whether every number in `sample` that is there is one.
+// True if every number in `sample` that is there is one.
 bool isFinite(const ArmSample& sample);
 
 class Arm {

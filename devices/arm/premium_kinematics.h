@@ -44,7 +44,7 @@ Mat3 jacobian(const Vec3& q);
 // Signed distance from the singular postures: det J over its value at the reset place (1 there, 0 where singular) [-].
 double dexterity(const Vec3& q);
 
-// Whether `q` keeps to the stops.
+// True if `q` keeps to the stops.
 bool withinLimits(const JointLimits& limits, const Vec3& q);
 
 }  // namespace pincer::devices::premium

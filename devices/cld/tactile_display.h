@@ -24,7 +24,7 @@ struct TactileSample {
   std::optional<Vec2> place_L;  // measured tactor place [m]; absent where the device doesn't measure it
 };
 
-// What the tactor is asked to do.
+// A command to the tactor.
 struct TactileCommand {
   bool parked = false;          // true: hold still at the centre, whatever place_L says (the force-only condition)
   Vec2 place_L = Vec2::Zero();  // [m]

@@ -5,7 +5,7 @@
 //
 // All of it root mean square over the time watched [m], on the place (both axes together). The chain is that of the simulated display
 // (sim_cld.h) with the device's figures; the total is taken from the tactor itself where its place is known (`shown`), else from the chain.
-// What it is measured against: people localise a contact to 1.3 mm (mean absolute), notice a delay of 61 ms, and
+// Measured against people, who localise a contact to 1.3 mm (mean absolute), notice a delay of 61 ms, and
 // play of 0.69 mm (low curvature) or 1.16 mm (an edge): 0.46 and 0.93 mm were added to their display's own 0.23 mm, which is taken for unfelt (A. J.
 // Doxon, doctoral dissertation, University of Utah, 2014, ch. 2 to 4).
 #pragma once

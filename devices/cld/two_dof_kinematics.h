@@ -44,7 +44,7 @@ struct TwoDofGeometry {
   double carriage_max = 1.25;  // largest |b| [rad]
 };
 
-// What is wrong, as a sentence with field, value and range; absent if nothing is.
+// The mistake, as a sentence with field, value and range; absent if there is none.
 std::optional<std::string> problemWith(const TwoDofGeometry& geometry, const FingerProfile& profile);
 
 // Along the finger and round it [m, rad]: s and b. What the actuators are led by.

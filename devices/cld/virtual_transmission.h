@@ -24,7 +24,7 @@ struct VirtualTransmission {
   bool frozen = false;
 };
 
-// What is wrong with `t`, as a sentence with field, value and range; absent if nothing is.
+// The mistake in `t`, as a sentence with field, value and range; absent if there is none.
 std::optional<std::string> problemWith(const VirtualTransmission& t);
 
 // A plain value; allocates nothing.

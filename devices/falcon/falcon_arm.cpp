@@ -36,7 +36,7 @@ int FalconSession::hear(std::span<std::uint8_t> bytes) {
   return got;
 }
 
-// Whether `words` come; what else comes before them belongs to an earlier question.
+// True if `words` come; what else comes before them belongs to an earlier question.
 bool FalconSession::hears(std::span<const std::uint8_t> words) {
   std::array<std::uint8_t, 64> bytes{};
   for (int i = 0; i < kAnswerPackets; ++i) {

@@ -43,7 +43,7 @@ struct FalconPlace {
 std::vector<FalconPlace> listFalcons();
 std::unique_ptr<FalconPort> openFalconPort(const std::string& port);
 
-// What is said to a Falcon, without a thread.
+// The conversation with a Falcon, without a thread.
 class FalconSession {
  public:
   explicit FalconSession(FalconPort& port) : port_(port) {}

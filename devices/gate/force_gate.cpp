@@ -44,7 +44,7 @@ Trip findTrip(const GateLimits& limits, const GateInput& in, const GateState& st
   return Trip::kNone;
 }
 
-// What was beyond its limit.
+// The measured value that was beyond its limit.
 double measuredAt(Trip cause, const GateInput& in) {
   if (cause == Trip::kOverSpeed) return in.v_DF.norm();
   if (cause == Trip::kMissedDeadline) return in.dt;
@@ -53,7 +53,7 @@ double measuredAt(Trip cause, const GateInput& in) {
 
 double ramp(const GateLimits& limits, double armed_for) { return armed_for < limits.ramp_time ? armed_for / limits.ramp_time : 1.0; }
 
-// What the motors can bear now [N].
+// The force that the motors can bear now [N].
 double thermalForce(const GateLimits& limits, double heat) {
   const double continuous = limits.continuous_force * limits.continuous_force;
   const double excess = std::max(0.0, limits.peak_force * limits.peak_force - continuous);

@@ -38,7 +38,7 @@ struct GateLimits {
 // `limits` made narrower by what the arm can do; what it doesn't tell (0, absent) stays as it is.
 GateLimits within(GateLimits limits, const ArmCapabilities& arm);
 
-// What is wrong with `limits`, as a sentence with field, value and range; absent if nothing is.
+// The mistake in `limits`, as a sentence with field, value and range; absent if there is none.
 std::optional<std::string> problemWith(const GateLimits& limits);
 
 enum class Trip : std::uint8_t {

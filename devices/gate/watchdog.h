@@ -25,7 +25,7 @@ class Watchdog {
   void feed(std::int64_t now_ns);
   // From the second thread. True once, at the check that finds the loop silent: the caller commands zero force.
   bool check(std::int64_t now_ns);
-  // Whether the latch is set: no force but zero may be commanded.
+  // True if the latch is set: no force but zero may be commanded.
   bool expired() const { return expired_.load(std::memory_order_acquire); }
 
  private:

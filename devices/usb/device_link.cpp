@@ -133,7 +133,7 @@ void DeviceLink::answered(std::uint32_t sequence) {
   ++answers_;
 }
 
-// What was missed is not caught up: only the newest command goes out.
+// Commands that were missed are not caught up: only the newest goes out.
 bool DeviceLink::nextFrame(Frame& frame, std::int64_t now) {
   frame = Frame{};
   const auto fill = [&] {

@@ -17,7 +17,7 @@
 
 namespace pincer::devices::usb {
 
-// What came and went; read from any thread.
+// Counts of what came and went; read from any thread.
 struct LinkCounts {
   std::int64_t accepted = 0, commands = 0;         // frames from and to the device
   std::int64_t bad = 0, duplicates = 0, late = 0;  // refused frames by cause
@@ -63,7 +63,7 @@ class DeviceLink {
   virtual bool takeCapabilities(const Frame& frame) = 0;
   // The newest command, once, unless it is too old.
   virtual bool takeCommand(Frame& frame, std::int64_t now) = 0;
-  // Whether a stop is to be sent, before anything else.
+  // True if a stop is to be sent, before anything else.
   virtual bool takeStop() { return false; }
 
   double sinceEpoch(std::int64_t ns) const { return 1e-9 * static_cast<double>(ns - epoch_ns_.load(std::memory_order_relaxed)); }

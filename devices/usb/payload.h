@@ -91,7 +91,7 @@ class PayloadReader {
     return value;
   }
   void require(bool ok) { ok_ = ok_ && ok; }
-  // Whether everything was in range, and the rest of the payload is zero.
+  // True if everything was in range, and the rest of the payload is zero.
   bool complete() {
     for (; at_ < bytes_.size(); ++at_) require(bytes_[at_] == 0);
     return ok_;

@@ -16,7 +16,7 @@ namespace pincer::devices::usb {
 using Clock = std::function<std::int64_t()>;  // monotonic [ns]; called from the USB thread too
 std::int64_t monotonicNs();
 
-// What happens at the ports. Every call comes from the USB thread; `port` is a small number, used again after closed().
+// Events at the ports. Every call comes from the USB thread; `port` is a small number, used again after closed().
 class UsbPorts {
  public:
   virtual ~UsbPorts() = default;
@@ -41,7 +41,7 @@ class UsbBus {
   virtual void wake() noexcept = 0;
 };
 
-// Those of libusb. Throws std::runtime_error when libusb can't start.
+// The ports of libusb. Throws std::runtime_error when libusb can't start.
 std::unique_ptr<UsbBus> openUsbBus(UsbPorts& ports, Clock clock);
 using OpenBus = std::function<std::unique_ptr<UsbBus>(UsbPorts&, Clock)>;
 

@@ -42,7 +42,7 @@ struct PortState {
   std::array<Transfer, kInFlight> in;
   Transfer out;
   FrameBytes packet{};  // being sent
-  // Those that came back, in the order of their coming, which is that of the frames.
+  // Transfers that came back, in the order of their coming, which is that of the frames.
   std::array<Transfer*, kInFlight + 1> done{};
   std::size_t done_count = 0;
   int flying = 0;
@@ -146,7 +146,7 @@ class LibusbBus final : public UsbBus {
     }
   }
 
-  // Whether the system tells of plugs.
+  // True if the system tells of plugs.
   bool watchPlugs() {
     if (libusb_has_capability(LIBUSB_CAP_HAS_HOTPLUG) == 0) return false;
     const auto events = static_cast<libusb_hotplug_event>(LIBUSB_HOTPLUG_EVENT_DEVICE_ARRIVED | LIBUSB_HOTPLUG_EVENT_DEVICE_LEFT);
@@ -282,7 +282,7 @@ class LibusbBus final : public UsbBus {
     p.done_count = 0;
   }
 
-  // Whether the transfer brought its packet. A stalled endpoint is cleared; whatever fails too often in a row closes the port. Those that
+  // True if the transfer brought its packet. A stalled endpoint is cleared; whatever fails too often in a row closes the port. Those that
   // wait behind one that stalls come back with it: that is one failure; `failed`: it has been seen.
   bool finished(PortState& p, libusb_transfer& transfer, bool& failed) {
     switch (transfer.status) {

@@ -27,7 +27,7 @@ class UsbHost final : private UsbPorts, private UsbThread {
   // Waits until at least so many are ready, at most `timeout` [s] of the wall clock; whether they are. With nothing plugged in it returns as
   // soon as the ports have been looked at.
   bool waitFor(std::size_t arms, std::size_t displays, double timeout);
-  // Those that were ever identified, by serial number; they live as long as the host. Never in a tick.
+  // Devices that were ever identified, by serial number; they live as long as the host. Never in a tick.
   std::vector<UsbArm*> arms();
   std::vector<UsbDisplay*> displays();
   // Devices that can't be used, as sentences with the remedy.

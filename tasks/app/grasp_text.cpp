@@ -54,7 +54,7 @@ std::string weightText(const grasp::GraspQuality& q) {
   return fmt::format("squeeze {:.4g} N in all; its weight needs {:.4g} N", q.squeeze, q.least_squeeze);
 }
 
-// What the present squeeze can resist, along the world's axes.
+// The forces that the present squeeze can resist, along the world's axes.
 std::string coneText(const grasp::GraspQuality& q) {
   constexpr std::array<const char*, 6> axes = {"+x", "-x", "+y", "-y", "+z", "-z"};
   std::string pushes, turns;

@@ -115,7 +115,7 @@ std::string touchForm(const grasp::GraspModel& model, const engine::ColliderMode
   return fmt::format("{}; {}", surfaceForm(felt), frictionText(collider.material));
 }
 
-// What the coupling asks of an arm, by Colgate and Schenkel's bound, and whether its arm has it.
+// The damping that the coupling asks of an arm, by Colgate and Schenkel's bound, and whether its arm has it.
 std::string armForm(const grasp::FingerModel& f, double tick) {
   const double stiffness = f.coupling.stiffness.maxCoeff(), damping = f.coupling.damping.maxCoeff();
   const double needed = grasp::requiredDamping(stiffness, damping, tick);

@@ -18,7 +18,7 @@ void sayWhenMemoryEnds() noexcept;
 // "pincer: <what>\n" on standard error, from any state of the program: allocates nothing, throws nothing.
 void complain(std::string_view what) noexcept;
 
-// What there is to say when memory ends, and what to do.
+// The sentence for when memory ends, and what to do.
 inline constexpr std::string_view kNotEnoughMemory =
     "not enough memory. Close other programs, allow this one more (ulimit -v), or give it less at once. Of a session that ran, finished "
     "trials "

@@ -83,7 +83,7 @@ class Reference {
     for (const auto& [title, object] : inner) section(title, *object);
   }
 
-  // What must be there together.
+  // Keys that must be there together.
   static std::string demands(const JsonValue& schema) {
     const JsonValue* choice = schema.find("oneOf");
     if (!choice) return "";

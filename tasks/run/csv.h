@@ -55,7 +55,7 @@ class CsvTable {
   }
 
   const std::string& text() const { return text_; }
-  // What has come since the last take(), for streaming.
+  // The text since the last take(), for streaming.
   std::string take() {
     std::string taken;
     taken.swap(text_);

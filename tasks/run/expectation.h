@@ -32,7 +32,7 @@ struct Expectation {
   double excess(double measured) const;
 };
 
-// What came of one expectation.
+// Outcome of one expectation.
 struct Outcome {
   bool reached = false;  // the run came as far as its time
   double measured = 0;   // at its time; of "always", the worst one

@@ -47,7 +47,7 @@ struct EventRecord {
   std::string detail;  // one line, may be empty
 };
 
-// What a trial was given by whoever's hands did it, before its first tick: all that a tick depends on besides its inputs and the protocol.
+// Settings that a trial was given by whoever's hands did it, before its first tick: all that a tick depends on besides its inputs and the protocol.
 struct HandsRecord {
   static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   struct Finger {
@@ -64,7 +64,7 @@ struct HandsRecord {
   std::int64_t passive = 0;      // 1: the fingers were kept passive (grasp/passivity)
 };
 
-// What one finger's devices said to one tick (devices/arm/arm.h), and what they were told. All bits are kept; what a device doesn't measure
+// Samples of one finger's devices at one tick (devices/arm/arm.h), and what they were told. All bits are kept; what a device doesn't measure
 // is 0, with its flag unset.
 struct FingerInputRecord {
   enum Flag : std::uint32_t {
@@ -114,7 +114,7 @@ struct InputChunk {
   Bytes data;
 };
 
-// What a participant said to have read from its senses, and what there was to read (participants/participant.h, HandReading).
+// A participant's reading from its senses, and what there was to read (participants/participant.h, HandReading).
 struct ReadingRecord {
   std::int64_t trial = 0;
   double time = 0;
@@ -153,7 +153,7 @@ struct TrialRecord {
   double tick_us_median = 0, tick_us_p999 = 0;
 };
 
-// What somebody answered in one trial of a psychophysical experiment, written when the trial ends and durable before the next begins.
+// Somebody's answer in one trial of a psychophysical experiment, written when the trial ends and durable before the next begins.
 struct ResponseRecord {
   std::int64_t trial = 0;
   std::int64_t participant = 0;
@@ -175,7 +175,7 @@ struct ResponseRecord {
   double tactor_speed = 0;    // mean over the time in which the tactor moved [m/s]; NaN if it didn't
 };
 
-// What a person answered to a question beside the trials (tasks/lab/study/survey.h).
+// A person's answer to a question beside the trials (tasks/lab/study/survey.h).
 struct SurveyRecord {
   std::int64_t participant = 0;
   std::string moment;                                              // "before", "after" the trials
@@ -192,7 +192,7 @@ struct SessionInfo {
   std::string version, build;  // of the program; compiler
   std::string scene_json, protocol_json, devices_json;
   std::string participants_json, participants_hash;  // every parameter of simulated participants, frozen before the first trial
-  // What else bits may depend on (build_info.h); empty in sessions of before format 5.
+  // Everything else that bits may depend on (build_info.h); empty in sessions of before format 5.
   std::string commit{}, sources{}, flags{}, c_library{}, processor{};
 };
 

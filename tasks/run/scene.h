@@ -30,7 +30,7 @@ struct SceneMotion {
   engine::MotionInput at(double time) const;
 };
 
-// What is particular to two bodies.
+// Settings of two bodies that differ from the usual.
 struct ScenePair {
   int a = 0, b = 0;
   bool touch = true;
@@ -94,7 +94,7 @@ void fingerInputs(const Scene& scene, double time, std::span<grasp::FingerInput>
 // How every driven body moves at `time`, the end of a tick. One entry per driven body.
 void bodyMotions(const Scene& scene, double time, std::span<engine::MotionInput> motions);
 
-// What every drive is told at `time`, the end of a tick. One entry per drive.
+// The control of every drive at `time`, the end of a tick. One entry per drive.
 void driveControls(const Scene& scene, double time, std::span<engine::DriveInput> controls);
 
 // How many whole ticks `seconds` is, or -1 when it is none (to a millionth of a tick).

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstring>
 #include <fstream>
@@ -11,6 +12,8 @@
 
 namespace pincer::campaign {
 namespace {
+
+constexpr double kSlowest = 20;  // times what the session of inputs.h takes: beyond it hangs, on a machine as busy as this one too
 
 std::uint64_t seedOf(const Ground& ground, const std::string& row, int number) {
   std::uint64_t hash = 14695981039346656037u ^ ground.seed;
@@ -49,6 +52,7 @@ Launch Case::pincer(std::vector<std::string> arguments) const {
   launch.arguments = std::move(arguments);
   launch.folder = folder;
   launch.log = log_ / std::to_string(launches_);
+  launch.limit = std::max(launch.limit, kSlowest * ground.session_time);
   launch.environment = {{"DISPLAY", std::nullopt}, {"WAYLAND_DISPLAY", std::nullopt}};
   return launch;
 }

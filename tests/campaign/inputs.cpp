@@ -41,6 +41,23 @@ constexpr const char* kTrajectoryScene = R"({
   "fingers": [{"name": "tip", "radius": 0.008, "trajectory": {"csv": "trajectory.csv"}}]
 })";
 
+constexpr const char* kRobot = R"(<mujoco model="arm">
+  <compiler angle="radian"/>
+  <worldbody>
+    <geom name="floor" type="plane" size="1 1 1"/>
+    <body name="upper" pos="0 0 0.5">
+      <joint name="shoulder" axis="0 1 0" range="-1.5 1.5" damping="0.1"/>
+      <geom type="capsule" fromto="0 0 0 0 0 -0.2" size="0.02" mass="0.5"/>
+      <body name="lower" pos="0 0 -0.2">
+        <joint name="elbow" axis="0 1 0" range="0 2"/>
+        <geom type="box" size="0.02 0.02 0.1" pos="0 0 -0.1" mass="0.3"/>
+      </body>
+    </body>
+  </worldbody>
+  <actuator><position name="bend" joint="elbow" kp="20" kv="0.5"/></actuator>
+</mujoco>
+)";
+
 void makeTrajectory(const Ground& ground) {
   std::string table = "time,x,y,z\n";
   for (int i = 0; i <= 20; ++i) table += fmt::format("{},{},{},{}\n", 0.01 * i, -0.05 + 0.001 * i, 0.0005 * i, 0.1);
@@ -135,7 +152,7 @@ void makePeoplesSession(const Ground& ground) {
 }
 
 void makeKilledSession(const Ground& ground) {
-  for (double after = 0.4; after > 0.01; after *= 0.7) {
+  for (double after = 0.8 * ground.session_time; after > 0.01; after *= 0.7) {
     make(ground, pickupArguments("killed"), Blow{SIGKILL, after});
     if (fs::exists(ground.inputs() / "killed/session.db-wal")) return;
     fs::remove_all(ground.inputs() / "killed");
@@ -173,6 +190,7 @@ void makeInputs(Ground& ground) {
   make(ground, {"run", "manipulation", "--write-study", "studies/manipulation.json"});
   put(calibrationFile(ground),
       "{\n  \"device\": \"ARM1\",\n  \"values\": {\"base_x\": 0.012, \"base_y\": 0, \"base_z\": 0, \"base_turn\": 0.1}\n}\n");
+  put(robotFile(ground), kRobot);
   makeSessions(ground);
 }
 
@@ -187,6 +205,7 @@ fs::path peoplesSession(const Ground& ground) { return ground.inputs() / "people
 fs::path studySession(const Ground& ground) { return ground.inputs() / "study/session.db"; }
 fs::path recordingFile(const Ground& ground) { return ground.inputs() / "recording/sample.csv"; }
 fs::path calibrationFile(const Ground& ground) { return ground.inputs() / "calibration.json"; }
+fs::path robotFile(const Ground& ground) { return ground.inputs() / "robot.xml"; }
 
 std::vector<std::string> pickupArguments(const std::string& out) {
   return {"run",

@@ -23,6 +23,7 @@ fs::path peoplesSession(const Ground& ground);  // complete, one trial, with the
 fs::path studySession(const Ground& ground);    // complete, of one finger, with some hundred responses
 fs::path recordingFile(const Ground& ground);   // samples of a trial, as export writes them
 fs::path calibrationFile(const Ground& ground);
+fs::path robotFile(const Ground& ground);  // MJCF: two links, a drive
 
 // Of the session in pickupSession, for a new folder `out`.
 std::vector<std::string> pickupArguments(const std::string& out);

@@ -19,6 +19,7 @@ const std::vector<Row>& rows() {
       {"signals", "INT, TERM, HUP at any moment of run, report, export, sweep", 24, signalProgram},
       {"failing-calls", "the N-th write, fsync, rename, open, mmap ... fails", 90, failCall},
       {"failing-allocations", "the N-th allocation fails", 90, failAllocation},
+      {"every-failure", "each call and each allocation fails, up to the 1,000th of a kind", 120, failEach, allFailures},
       {"streams", "standard streams closed, full, cut off", 100, breakStreams, allStreams},
       {"planted-links", "links at names that the program might write through", 30, plantLinks},
       {"full-disks", "no space, read-only folders, file size limits", 30, fillDisk},

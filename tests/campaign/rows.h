@@ -26,6 +26,8 @@ void signalProgram(Case& c);
 
 void failCall(Case& c);
 void failAllocation(Case& c);
+int allFailures(const Ground& ground);
+void failEach(Case& c);
 
 int allStreams(const Ground& ground);
 void breakStreams(Case& c);

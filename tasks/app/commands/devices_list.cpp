@@ -61,7 +61,7 @@ void listHaply(const HaplyFound& haply) {
   if (!haply.problem.empty()) print("{}\n", printableMessage(haply.problem));
 }
 
-// What passivity builds on, of arms that tell.
+// The damping and mass that passivity builds on, of arms that tell.
 std::string tipOf(const devices::ArmCapabilities& can) {
   std::string text = can.tip_mass ? fmt::format(", {:.3g} g at the tip", 1e3 * *can.tip_mass) : "";
   if (can.tip_damping > 0) text += fmt::format(", {:.3g} N s/m", can.tip_damping);

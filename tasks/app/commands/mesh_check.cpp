@@ -1,4 +1,4 @@
-// What `pincer mesh info` and `pincer mesh check` find out, and how findings are shown.
+// Findings of `pincer mesh info` and `pincer mesh check`, and how they are shown.
 #include <fmt/format.h>
 
 #include "pincer/contact/io/counted.h"

@@ -45,7 +45,7 @@ FaultyMesh readFaulty(const MeshInput& input);
 // Writes in the format of the name's ending and prints what was written and what of the mesh the format can't hold.
 void writeAndSay(const MeshInput& input, const std::string& out, const contact::TriangleMesh& mesh, const std::string& units);
 
-// What a finger will feel of a mesh: its report, and what SmoothMesh finds where the mesh is sound enough to have a smooth surface.
+// Everything that a finger will feel of a mesh: its report, and what SmoothMesh finds where the mesh is sound enough to have a smooth surface.
 struct MeshCheck {
   contact::MeshReport report;  // its findings include those of the smooth surface
   bool has_surface = false;

@@ -253,7 +253,7 @@ void addAlignmentOptions(CLI::App& command, ManipulationArguments& arguments) {
   command.add_flag("--free-body", arguments.free_body, "The cylinder stands free on a table in place of a pivot");
 }
 
-// What every command asks; then `example`, and the callback.
+// Options that every command has; then `example`, and the callback.
 CLI::App* addManipulationCommand(CLI::App& run, const char* name, const char* what, const char* example,
                                  const std::shared_ptr<ManipulationArguments>& arguments, int& exit_code) {
   CLI::App* command = run.add_subcommand(name, what);

@@ -150,7 +150,7 @@ std::vector<Record> gapsAcrossEdges(MeasureContext& context) {
   return {atMost("place", 1e3 * gaps.place, "mm", 1e-9), atMost("direction", gaps.direction / kDegree, "deg", 1e-9)};
 }
 
-// What the published iteration takes on spheres of 80 to 320 triangles, with its best constants (gain 1, G_k = r, G_d = 0).
+// Steps that the published iteration takes on spheres of 80 to 320 triangles, with its best constants (gain 1, G_k = r, G_d = 0).
 std::vector<Record> publishedIterations(MeasureContext& context) {
   std::vector<Record> records;
   for (const int level : {1, 2}) {

@@ -1,4 +1,4 @@
-// What a query costs: warm, with the global guard, over the number of triangles, and beside other engines.
+// Cost of a query: warm, with the global guard, over the number of triangles, and beside other engines.
 #include <fmt/format.h>
 #include <unistd.h>
 

@@ -13,7 +13,7 @@ constexpr double kBenchFinger = 8e-3;  // radius r [m]
 constexpr double kBenchTick = 1e-3;    // [s]
 constexpr double kBenchMargin = 1e-3;  // further contacts nearer than this are reported, as a world's default asks for [m]
 
-// What one finger remembers, and the memory that its queries use.
+// The state of one finger, and the memory that its queries use.
 struct BenchFinger {
   contact::SurfaceTracker tracker;
   contact::PatchCacheHandle cache = contact::makePatchCache();

@@ -11,7 +11,7 @@
 namespace pincer::tasks {
 namespace {
 
-// What an edge makes a contact turn, 5 % more than it should; in a hollow the finger's centre runs on a smaller circle than its contact.
+// The turn of a contact at an edge, 5 % more than it should; in a hollow the finger's centre runs on a smaller circle than its contact.
 double turnLimit(const BenchObject& object) {
   constexpr double kSlack = 1.05;
   if (object.kind == ObjectKind::tight) return std::numeric_limits<double>::infinity();

@@ -64,7 +64,7 @@ Measurement staircaseMeasurement(const std::string& name, const StaircaseRule& r
   return {name, [=](MeasureContext& context) { return staircaseRecords(rule, observers, bound, context); }};
 }
 
-// What the published designs' staircases make of the same observers: theirs are shorter. Levels in units of the threshold.
+// Thresholds that the published designs' staircases make of the same observers: theirs are shorter. Levels in units of the threshold.
 std::vector<Measurement> publishedStaircases(int observers) {
   constexpr double kNoPromise = std::numeric_limits<double>::infinity();
   const StaircaseRule smoothness{

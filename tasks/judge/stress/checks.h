@@ -6,7 +6,7 @@
 
 namespace pincer::tasks {
 
-// What is wrong, for a person; empty when all holds.
+// The complaint, for a person; empty when all holds.
 std::string faultOfState(const engine::WorldModel& model, const engine::WorldState& state);
 std::string faultOfCones(const engine::WorldScratch& scratch);
 std::string faultOfLaw(const engine::WorldModel& model, const engine::WorldScratch& scratch);

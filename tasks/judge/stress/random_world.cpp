@@ -239,7 +239,7 @@ class Draft {
     wall_ = {.length = 2 * columns * height, .height = rows * height, .brick = height};
   }
 
-  // What pushing out an overlap of so much under every body may add, all of them on top of each other [J].
+  // The energy that pushing out an overlap of so much under every body may add, all of them on top of each other [J].
   double liftOutOf(double depth) const {
     double lift = 0, mass = 0;
     for (std::size_t i = bodies.size(); i-- > 1;) {

@@ -40,7 +40,7 @@ struct StressWorld {
 
   // Where the fingers' devices are at the end of the next tick.
   std::span<const grasp::FingerInput> nextInputs();
-  // What drives are told for it. After nextInputs.
+  // Controls of drives for it. After nextInputs.
   std::span<const engine::DriveInput> controls() const { return controls_; }
 
   const std::vector<Vec3>& startDevices() const { return devices_; }  // one per finger [m]

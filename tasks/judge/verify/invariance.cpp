@@ -1,4 +1,4 @@
-// What must not matter: the order of the bodies, how the world is turned, how it moves, and that it ran before.
+// Circumstances that must not matter: the order of the bodies, how the world is turned, how it moves, and that it ran before.
 #include "pincer/tasks/judge/verify/scene_run.h"
 #include "pincer/tasks/judge/verify/verify.h"
 

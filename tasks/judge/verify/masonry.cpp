@@ -33,7 +33,7 @@ double largestTurn(const Simulation& sim) {
   return turn;
 }
 
-// Whether some stone turns by more than 1e-4 rad in half a second.
+// True if some stone turns by more than 1e-4 rad in half a second.
 bool archFalls(Scene scene, double thickness) {
   const contact::Shape stone = stoneOf(thickness);
   scene.duration = 0.5;

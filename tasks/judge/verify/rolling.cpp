@@ -90,7 +90,7 @@ std::vector<Record> eulersDisk(MeasureContext& context) {
     energy_error = std::max(energy_error, now / energy - 1);
   });
   return {atMost("precession in 0.5 s, error over angle", lag / (W * 0.5), "-", 2e-3),
-          // What is left of the tick in which it lands, and of a stick that holds at the arms of the tick's middle.
+          // The rest of the tick in which it lands, and of a stick that holds at the arms of the tick's middle.
           atMost("centre moved, over the radius", moved / 0.05, "-", 2e-3), atMost("energy gained, relative", energy_error, "-", 1e-6)};
 }
 

@@ -17,7 +17,7 @@ std::vector<Record> stick(std::string_view scene, MeasureContext& context) {
     swing = std::max(swing, offset);
     if (sim.ticks() == 1000) first_second = offset;
   });
-  // What the solver leaves at its tolerance makes the box swing about its anchor by a few 1e-15 m for some ticks; that is bounded too.
+  // The rest that the solver leaves at its tolerance makes the box swing about its anchor by a few 1e-15 m for some ticks; that is bounded too.
   return {atMost("creep, after 1 s", first_second, "um", 1e-9),
           atMost("creep, after 10 s", 1e6 * (sim.bodyPose(1).p - start).norm(), "um", 1e-9), atMost("largest swing", swing, "um", 1e-8),
           exactly("flagged ticks", static_cast<double>(run.flagged), "-", 0)};

@@ -78,7 +78,7 @@ TrialTexts textsOf(ArcQuantity quantity) {
           quantity == ArcQuantity::kBacklash ? "Which had more backlash? 1 or 2, then Enter" : "Which had more delay? 1 or 2, then Enter"};
 }
 
-// What a condition's levels may be.
+// The range of a condition's levels.
 void validate(const ArcStudy& study, std::size_t index) {
   const ArcCondition& c = study.conditions[index];
   const std::string of = fmt::format("{}: condition {}", study.task, printable(c.name)), path = fmt::format("conditions[{}]", index);

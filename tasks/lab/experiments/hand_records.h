@@ -12,7 +12,7 @@ namespace pincer::tasks {
 SampleRecord sampleRecord(const HandScene& scene, const TickState& state, const TickScratch& scratch,
                           const std::vector<FingerInputs>& samples);
 
-// What the devices said and the hand meant, and where it led; trial, tick, time, cut and status are left to the caller. Allocates nothing.
+// The devices' samples, the hand's intents, and where they led; trial, tick, time, cut and status are left to the caller. Allocates nothing.
 InputRecord inputRecord(const HandScene& scene, const TickState& state, const TickScratch& scratch,
                         const std::vector<FingerInputs>& samples, const HandIntent& intent);
 // To the bit what inputRecord() was given.

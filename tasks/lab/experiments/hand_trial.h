@@ -17,7 +17,7 @@
 
 namespace pincer::tasks {
 
-// What a trial's row says of it whatever came out.
+// The part of a trial's row that holds whatever came out.
 struct TrialHead {
   std::string task;        // "sphere-pickup"
   std::int64_t trial = 0;  // within the session, from 0
@@ -26,7 +26,7 @@ struct TrialHead {
   bool training = false;
 };
 
-// What helps somebody who can't feel, at this moment.
+// A hint at this moment for somebody who can't feel.
 struct HandGuide {
   const char* hint = "";                    // "Too low: a finger touches the dish"
   std::optional<double> goal_height = {};   // of the object's middle [m]
@@ -75,12 +75,12 @@ class HandTrial {
 
   // One tick of the counted time, `time` after the start tone [s].
   virtual TrialVerdict judge(const HandIntent& intent, double time) = 0;
-  // What the task measured, into the trial's row.
+  // Writes the task's measures into the trial's row.
   virtual void fill(TrialRecord& row) const = 0;
   // Its hint, its goal, and how long a trial may last [s].
   virtual HandGuide taskGuide() const = 0;
   virtual double timeout() const = 0;
-  // What a reading of this kind should have said.
+  // The truth that a reading of this kind should have told.
   virtual Vec3 truthOf(const HandReading& reading) const = 0;
 
   void note(const char* kind, const char* detail = "");  // an event, now

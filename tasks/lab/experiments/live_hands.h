@@ -1,6 +1,6 @@
 // live_hands: the real arms and displays on a person's fingers, in a trial.
 //
-// What the person means to do is read from what they do: who touches the object with both fingers wants to lift it.
+// Intents are read from what the person does: who touches the object with both fingers wants to lift it.
 #pragma once
 #include <vector>
 

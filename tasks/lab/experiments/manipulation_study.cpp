@@ -138,7 +138,7 @@ std::string partName(const ManipulationTrial& spec) {
                      spec.condition() == PickupCondition::kForce ? "force only" : "display and force", training ? ", training" : "");
 }
 
-// What a person reads before a part.
+// The text that a person reads before a part.
 StudyPage partPage(const ManipulationStudy& study, const ManipulationTrial& spec, bool rests) {
   StudyPage page{partName(spec), study.session.instructions};
   if (page.lines.empty()) {

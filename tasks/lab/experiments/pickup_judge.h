@@ -41,7 +41,7 @@ struct PickupRules {
   double timeout = 60;            // [s]
 };
 
-// What there is to see in one tick.
+// Everything that a judge sees in one tick.
 struct PickupView {
   struct Finger {
     bool on_object = false;

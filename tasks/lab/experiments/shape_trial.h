@@ -27,7 +27,7 @@ struct ShapeTrialSetup {
 devices::TactileCommand onRoller(const devices::TactileCommand& command, double r, double reach);
 
 FingerPlace shapePlace(const ShapeTrialSetup& setup);
-// What a participant is told of the trial.
+// Facts that a participant is told of the trial.
 ShapeCues shapeCues(const ShapeTrialSetup& setup, std::uint64_t seed);
 
 class ShapeTrial final : public FingerTrial {

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::uint64_t kPeople = 1, kTrials = 2, kTraining = 3, kOrders = 4;  // parts of the seed
 
-// What a run shows next.
+// The next stimulus of a run.
 class RunProgress {
  public:
   explicit RunProgress(const StudyRun& run) : run_(run) {

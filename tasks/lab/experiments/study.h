@@ -61,12 +61,12 @@ class Experiment {
   // rest is filled in by the caller. Absent if `interrupted` turned true. Adds what the servo says to `served`.
   virtual std::optional<ResponseRecord> present(const StudyTrial& trial, StudySink& sink, const std::atomic<bool>& interrupted,
                                                 ServoReport& served) = 0;
-  // What a person reads before the run, and stimuli to train with, in turn; at least one.
+  // The text that a person reads before the run, and stimuli to train with, in turn; at least one.
   virtual StudyPage introduction(const StudyRun& run) const = 0;
   virtual std::vector<ListedStimulus> training(const StudyRun& run) const = 0;
   virtual const SurveyPlan& plan() const = 0;
   virtual std::vector<NamedCondition> conditions() const = 0;
-  // What was right, said after a trial of training: "The second was the smooth one; you said 1."
+  // The right answer, said after a trial of training: "The second was the smooth one; you said 1."
   virtual std::string feedback(const ResponseRecord& response) const = 0;
 
   // From now on these do the trials.

@@ -24,7 +24,7 @@ inline constexpr std::array<std::string_view, 2> kStrategyNames = {"rational", "
 inline constexpr std::array<std::string_view, 3> kTactorUseNames = {"place", "slip", "nothing"};
 inline constexpr std::span<const std::string_view> kCurveVariantNames = std::span(contact::kSurfaceVariantNames).first(3);
 
-// What a condition can show lies within half a radian, 50 mm, half a second (arc_study.cpp asks that of each).
+// Levels that a condition can show lie within half a radian, 50 mm, half a second (arc_study.cpp asks that of each).
 inline constexpr NumberRule kLevel = {0, 1, false, kAsPublished};
 inline constexpr NumberRule kStep = {1e-9, 1, false, kAsPublished};
 
@@ -266,7 +266,7 @@ void visitParameters(Study& s, Visit&& visit) {
   visit("session", s.session, Parameter{"what people read, train and are asked; simulated participants none of it"});
 }
 
-// What has a list of its own.
+// True of fields that have a list of their own.
 template <class Object>
 concept HasParameters = std::is_class_v<Object> && requires(Object& object) {
   visitParameters(object, [](std::string_view, auto&, const Parameter&) {});

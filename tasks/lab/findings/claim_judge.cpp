@@ -108,7 +108,7 @@ void addComparison(const Claim& claim, const StudyMeasures& study, ClaimEvidence
   all.difference.push_back(claim.margin_kind == MarginKind::kRatio ? math::log(b.mean / a.mean) : difference);
 }
 
-// What all parts of a table have in common.
+// Words that all parts of a table have in common.
 class CommonGround {
  public:
   void require(const SessionReader& session) {

@@ -46,7 +46,7 @@ std::string claimsText();
 std::string claimsHash();
 std::string claimsJson(const std::string& hash);  // as a session keeps it
 
-// What many studies said of a claim.
+// Verdicts of many studies on a claim.
 struct ClaimEvidence {
   int studies = 0, unsettled = 0;                             // unsettled: a staircase of it found no threshold
   int hits = 0;                                               // figure

@@ -58,7 +58,7 @@ struct VariantResult {
   std::vector<std::string> sessions = {};  // that it was judged by
 };
 
-// What the sessions of a variant's experiments say; those that aren't whole are left out. No findings where none is. Throws InputError for one that
+// Results of the sessions of a variant's experiments; those that aren't whole are left out. No findings where none is. Throws InputError for one that
 // can't be read.
 VariantResult judgeVariant(const FindingsVariant& variant, const std::vector<std::string>& sessions);
 

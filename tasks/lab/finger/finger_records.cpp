@@ -16,7 +16,7 @@ void keepValue(const Quat& q, std::array<double, 4>& kept) { kept = {q.w(), q.x(
 void keepValue(const Mat3& J, std::array<double, 9>& kept) { std::copy(J.data(), J.data() + J.size(), kept.begin()); }
 void keepValue(std::uint32_t value, std::uint32_t& kept) { kept = value; }
 
-// What is there is kept, and a flag that it was.
+// Keeps a value that is there, and a flag that it was.
 template <class Value, class Kept>
 void keep(const std::optional<Value>& value, FingerInputRecord::Flag flag, Kept& kept, FingerInputRecord& record) {
   if (!value) return;

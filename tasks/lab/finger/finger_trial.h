@@ -27,7 +27,7 @@ namespace pincer::tasks {
 
 enum class TrialQuestion : std::uint8_t { kWhich, kName, kMatch };
 
-// What a person is told while a trial goes on.
+// News for a person while a trial goes on.
 struct TrialTexts {
   std::string feel;      // "Stroke to and fro; then raise the finger and press Enter"
   std::string question;  // "Which was the smooth one? 1 or 2, then Enter"
@@ -83,7 +83,7 @@ class FingerTrial : public ServoCycle {
   FingerTold told() const;
   const FingerTrialSetup& asked() const { return asked_; }
   bool isPersons() const { return finger_.wear().is_person; }
-  // What there is to draw. The first call makes it.
+  // The picture to draw. The first call makes it.
   virtual const grasp::GraspModel& pictured() = 0;
   virtual void fill(Snapshot& snapshot) const = 0;
 

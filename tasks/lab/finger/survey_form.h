@@ -15,7 +15,7 @@ struct AskedQuestion {
   std::string text, hint, problem;
   std::size_t place = 1, of = 1;
 };
-// What the person typed; absent: the person has left.
+// The text that the person typed; absent: the person has left.
 using AskPerson = std::function<std::optional<std::string>(const AskedQuestion& question)>;
 
 struct SurveyForm {

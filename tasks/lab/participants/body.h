@@ -19,7 +19,7 @@ struct HandRanges {
   double speed_min = 0.032, speed_max = 0.074;      // mean speed of a reach [m/s]; A. J. Doxon, dissertation, Univ. of Utah, 2014
 };
 
-// What the tactors are good for: where the fingers are touched; only that the contact runs over the pad while something is held, which is a cue of
+// The use of the tactors: where the fingers are touched; only that the contact runs over the pad while something is held, which is a cue of
 // slip; nothing. The latter two are controls.
 enum class TactorUse : std::uint8_t { kPlace, kSlip, kNothing };
 
@@ -56,7 +56,7 @@ Quat drawRotation(double sd, Random& random);
 
 Body drawBody(const HandRanges& ranges, std::uint64_t seed);
 
-// What is wrong with the body's sense of itself in one trial.
+// Errors of the body's sense of itself in one trial.
 struct BodySense {
   std::array<Vec3, kHandFingers> misplacement_W;  // true minus felt place of a fingertip [m]
   std::array<Quat, kHandFingers> q_felt_true;     // felt minus true orientation, in W

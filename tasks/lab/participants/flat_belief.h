@@ -30,7 +30,7 @@ struct FlatModel {
   double place_gain = 0.9;
 };
 
-// What one finger told in a pinch. Directions about W's z axis [rad], of the surface's outward normal.
+// One finger's news in a pinch. Directions about W's z axis [rad], of the surface's outward normal.
 struct FlatPercept {
   Vec2 p_felt = Vec2::Zero();   // fingertip's centre from where the axis is told to be [m]
   double pressed = 0;           // how deep the fingertip is in the surface, which gives way [m]

@@ -20,7 +20,7 @@ constexpr int kHandFingers = 2;  // index finger, thumb
 // Tones that pace a trial. Each sounds for one tick.
 enum class Cue : std::uint8_t { kNone, kStart, kSuccess, kEnd };
 
-// What one finger feels in this tick.
+// Sensations of one finger in this tick.
 struct FingerPercept {
   devices::ArmSample arm;          // where the arm (and so the finger) is
   Vec3 f_D = Vec3::Zero();         // the arm's push on the skin [N]
@@ -33,7 +33,7 @@ struct Percept {
   Cue cue = Cue::kNone;
 };
 
-// What a participant is told about one finger before a trial: how arm and pad sit, and where it rests.
+// Facts about one finger that a participant is told before a trial: how arm and pad sit, and where it rests.
 struct FingerCue {
   Quat q_WD = Quat::Identity();
   Vec3 p_WD = Vec3::Zero();     // [m]
@@ -44,7 +44,7 @@ struct FingerCue {
   Vec3 radial_F{0, 1, 0};       // second axis of L
 };
 
-// What a participant is told before a trial, the same in every condition: all of it is learnt in training, none of it is measured.
+// Facts that a participant is told before a trial, the same in every condition: all of it is learnt in training, none of it is measured.
 struct TrialCues {
   std::uint64_t seed = 0;  // of everything that varies from trial to trial within the participant
   std::array<FingerCue, kHandFingers> fingers;
@@ -58,7 +58,7 @@ struct TrialCues {
   double dish_radius = 0.15;        // of curvature of the dish that the object lies in, its lowest point at W's origin [m]
 };
 
-// What the participant is doing; for records and for the judge, who counts as squeezes only what was meant to lift.
+// The participant's present doing; for records and for the judge, who counts as squeezes only what was meant to lift.
 enum class HandPhase : std::uint8_t { kListen, kReach, kClose, kRead, kSqueeze, kLift, kHold, kTurn, kReturn, kRest };
 constexpr int kHandPhases = 10;
 const char* nameOf(HandPhase phase);
@@ -74,7 +74,7 @@ struct HandReading {
   const char* decision = "";
 };
 
-// What a hand means to do; a simulated participant says it, a person by keys or switches.
+// Intents of a hand; a simulated participant says it, a person by keys or switches.
 struct HandIntent {
   HandPhase phase = HandPhase::kListen;
   bool wants_lift = false;             // squeezing, lifting or holding

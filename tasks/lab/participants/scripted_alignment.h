@@ -10,7 +10,7 @@
 //          flat is known no better than `sure`; each at the angle that brings a finger nearest to where the flat is believed to be
 // turn     pinch, squeeze to `turn_grip`, move the fingers about the axis, at most from one end of the hand's reach to the other
 // answer   when the flat is nearer to where the monitor is felt than the direction of the flat is known, or than `close_enough`
-// What is believed is a belief over the flat and over the hand's own misplacement (flat_belief.h). The same plan in every condition.
+// The belief is one over the flat and over the hand's own misplacement (flat_belief.h). The same plan in every condition.
 //
 // `simple`: no belief over the misplacement; the flat is where a finger came nearest to where the axis is told to be, or, where a tactor
 // moved, where the pads of the fingers said the normal was; one sweep of probes after every turn, two turns at most.

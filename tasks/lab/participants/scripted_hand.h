@@ -28,7 +28,7 @@ class ScriptedHand : public Participant {
   void enterReach(const Posture& goal, HandPhase phase);
   double meanStiffness() const;  // of the two hands [N/m]
 
-  // What a phase does in a millisecond; kReach and kReturn go along.
+  // Does a phase's share of a millisecond; kReach and kReturn go along.
   virtual void listen() = 0;
   virtual void goAlong() = 0;
   virtual void close() = 0;
@@ -39,7 +39,7 @@ class ScriptedHand : public Participant {
   virtual void turn() {}
   // The tone that ends the trial sounded, before the hand returns.
   virtual void ended() {}
-  // What the hand means to do, besides phase and reading.
+  // Intents of the hand, besides phase and reading.
   virtual void mean(HandIntent& intent) const = 0;
 
   SensingLimits limits_;

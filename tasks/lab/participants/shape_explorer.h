@@ -52,7 +52,7 @@ struct ShapeLimits {
   double tilt_min = 0, tilt_max = 1;  // of what keeps the pad square, drawn once per participant [-] (choice)
 };
 
-// What the participant is told.
+// Facts that the participant is told.
 struct ShapeCues {
   std::uint64_t seed = 0;  // of everything that varies from trial to trial within the participant
   Quat q_WD = Quat::Identity();

@@ -68,7 +68,7 @@ class PushedSkin {
   Vec2 u_ = Vec2::Zero(), v_ = Vec2::Zero();
 };
 
-// What is felt of a motion of amplitude `rms`.
+// The part of a motion of amplitude `rms` that is felt.
 struct FeltMotion {
   double felt = 0;   // [m]
   double sigma = 1;  // of the noise in it [m]

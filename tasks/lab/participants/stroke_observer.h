@@ -40,7 +40,7 @@ struct StrokeLimits {
 
 enum class StrokeQuestion : std::uint8_t { kRougher, kLooser, kLater, kOnset };
 
-// What the participant is told; learnt in training.
+// Facts that the participant is told; learnt in training.
 struct StrokeCues {
   std::uint64_t seed = 0;  // of everything that varies from trial to trial within the participant
   Quat q_WD = Quat::Identity();

@@ -57,7 +57,7 @@ std::size_t plannedTrials(const ManipulationSessionOptions& options) {
       std::count_if(trials.begin(), trials.end(), [&](const ManipulationTrial& t) { return !person || t.participant() == *person; }));
 }
 
-// What the study asks people at this moment. False: the person has left.
+// Asks people what the study has for this moment. False: the person has left.
 bool askSurvey(const ManipulationSessionOptions& options, SessionWriter& writer, const std::string& path, const std::string& moment) {
   if (!options.host.ask || !options.host.person) return true;
   std::vector<std::string> tasks;

@@ -22,7 +22,7 @@ struct ManipulationSessionOptions {
 // Throws InputError naming the first value out of range, its range and the remedy.
 void validate(const ManipulationSessionOptions& options);
 
-// What such a session says of its study, people, program and devices.
+// The session's entry on its study, people, program and devices.
 SessionInfo manipulationSessionInfo(const ManipulationSessionOptions& options);
 
 // Throws InputError for a trial that the session's plan of `planned` trials doesn't have.

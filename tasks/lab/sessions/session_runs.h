@@ -1,6 +1,6 @@
 // session_runs: many experiments, each a session in a file of its own, shared among threads.
 //
-// What is there and complete stays as it is, what was interrupted or killed is gone on with; so the same command, given again, takes up where it
+// A session that is complete stays as it is, one that was interrupted or killed is gone on with; so the same command, given again, takes up where it
 // was left. Nothing runs if a file that is there is of something else.
 #pragma once
 #include <atomic>

@@ -146,7 +146,7 @@ class ReplayedStudy final : public Experiment {
   std::vector<ResponseRecord> responses_;
 };
 
-// What the study itself says of each trial.
+// The study's own word on each trial.
 class StudyRows final : public StudySink {
  public:
   explicit StudyRows(ReplayedStudy& study, const StudyReplay& replay) : study_(study), replay_(replay) {}

@@ -25,7 +25,7 @@ class StudyFileSink final : public StudySink {
   const bool inputs_;
 };
 
-// What the study asks people at this moment. False: the person has left.
+// Asks people what the study has for this moment. False: the person has left.
 bool askSurvey(const Experiment& experiment, const StudySession& session, const std::string& moment, SessionWriter& writer) {
   if (!session.host.ask) return true;
   const SurveyPlan& plan = experiment.plan();

@@ -17,7 +17,7 @@ struct StudySession {
   bool waits = true;     // for the disk; no: samples are dropped rather than ticks
 };
 
-// What a session says of a study, its people, this program and its devices. `sample_rate` of what is kept [Hz]; 0: nothing is. `devices`: who brings
+// A session's entry on a study, its people, this program and its devices. `sample_rate` of what is kept [Hz]; 0: nothing is. `devices`: who brings
 // arm and display, as --devices names it.
 SessionInfo studySessionInfo(const std::string& task, std::uint64_t seed, const std::string& protocol_json,
                              const std::string& participants_json, const ServoOptions& servo, int sample_rate,

@@ -16,7 +16,7 @@ void captureMount(const HandsCycle& cycle, std::size_t i, const FingerInputs& sa
   finger.tactor_parked = output.tactile.parked;
 }
 
-// What the person is told, by the last tone.
+// The news for the person, by the last tone.
 void tell(const HandTrial& trial, Cue cue, TrialSnapshot& told) {
   switch (cue) {
     case Cue::kStart:

@@ -21,7 +21,7 @@ struct Parameter {
   bool may_be_null = false;                      // of a number: NaN stands for "there is none"
 };
 
-// What two parameters demand of each other, or one that was never in a file: `path` is as in messages of files (conditions[1].staircase), so
+// A demand of two parameters on each other, or one that was never in a file: `path` is as in messages of files (conditions[1].staircase), so
 // that the reader can say where in the file it stands.
 class ParameterError : public InputError {
  public:

@@ -29,7 +29,7 @@ struct StaircaseRule {
   int most_trials = 400;
 };
 
-// What is wrong with the rule, as a sentence with field, value and range; empty if nothing is.
+// The mistake in the rule, as a sentence with field, value and range; empty if there is none.
 std::string problemWith(const StaircaseRule& rule);
 
 // The probability of a right answer at which a 1-up n-down staircase settles.

@@ -70,7 +70,7 @@ std::vector<SurveyQuestion> questionsOf(const std::vector<SurveyItem>& items, co
 std::string questionText(const SurveyQuestion& question);
 std::string answerHint(const SurveyItem& item);
 
-// What was typed, as it is kept: a choice by its words. Throws InputError with a sentence about what would do.
+// Typed text as it is kept: a choice by its words. Throws InputError with a sentence about what would do.
 struct SurveyAnswer {
   std::string text;
   double value = 0;  // of a scale or a number; NaN: it has none

@@ -59,7 +59,7 @@ class OneFingerSweep {
     return study;
   }
 
-  // What would be asked, for the names of the conditions alone: not every study's file lists them.
+  // The study as it would be asked, for the names of the conditions alone: not every study's file lists them.
   std::vector<ResponseRecord> asked() const {
     std::vector<ResponseRecord> responses(1);
     for (const StudyRun& run : Experiment(published_, {}, kKeepsNothing).runs()) {

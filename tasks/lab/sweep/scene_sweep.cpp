@@ -63,7 +63,7 @@ Scene sceneAt(const NamedJson& scene, const SweepGrid& grid, std::size_t point) 
   return sceneOf(json, scene.name);
 }
 
-// What every measure came to, and then how many expectations failed. Up to where it was interrupted.
+// Results of every measure, and then how many expectations failed. Up to where it was interrupted.
 CaseResult measured(Scene scene, const SceneSweep& sweep, const std::atomic<bool>& interrupted) {
   Simulation simulation(std::move(scene));
   const std::vector<SweptMeasure> measures = measuresOf(sweep, simulation.scene());

@@ -20,7 +20,7 @@ struct Variation {
 // Throws InputError that says how it is written.
 Variation parseVariation(const std::string& text);
 
-// What varies in a sweep, and each case's values.
+// Paths that vary in a sweep, and each case's values.
 struct SweepGrid {
   std::vector<std::string> paths;
   std::vector<std::vector<double>> points;

@@ -13,7 +13,7 @@
 
 namespace pincer::tasks {
 
-// What a running measurement may tell and ask. A long one calls progress() now and then (it costs a reading of the clock) and returns soon
+// A running measurement's line to its caller. A long one calls progress() now and then (it costs a reading of the clock) and returns soon
 // after interrupted() turned true; what it returns then isn't shown.
 struct MeasureContext {
   std::function<void(double share)> progress = [](double) {};  // done of this measurement, 0 to 1
@@ -26,7 +26,7 @@ struct Measurement {
   std::function<std::vector<Record>(MeasureContext&)> run;  // records without a name get the measurement's
 };
 
-// Whether `name` holds `pattern` somewhere; in the pattern * stands for any text and ? for one character.
+// True if `name` holds `pattern` somewhere; in the pattern * stands for any text and ? for one character.
 bool matches(const std::string& name, const std::string& pattern);
 
 }  // namespace pincer::tasks

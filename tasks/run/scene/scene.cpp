@@ -188,7 +188,7 @@ grasp::GraspModel buildWorld(const Scene& scene) {
   for (std::size_t i = 0; i < scene.pairs.size(); ++i) atLine(scene, scene.pair_lines, i, [&] { addPair(scene.pairs[i], builder); });
   std::vector<grasp::FingerModel> fingers;
   for (const SceneFinger& finger : scene.fingers) fingers.push_back(finger.model);
-  // What joints make of bodies together is found out last.
+  // Groups of bodies that joints make are found out last.
   return atLine(scene, scene.joint_lines, 0, [&] { return grasp::buildGrasp(std::move(builder), std::move(fingers)); });
 }
 

@@ -32,7 +32,7 @@ void readLimits(const JsonValue& json, engine::JointTraits& traits) {
   if (!(traits.lower < traits.upper)) json.reject("leaves no way: the first must be less than the second. To hold it, make it a weld.");
 }
 
-// What acts along the free axis.
+// Forces along the free axis.
 void readTraits(const JsonValue& json, engine::JointModel& joint) {
   const auto along = [&](std::string_view key, const NumberRule& rule, double& out) {
     const JsonValue* const v = json.find(key);

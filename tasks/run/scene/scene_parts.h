@@ -19,7 +19,7 @@ std::string besideScene(const std::string& file, const std::string& name);
 // Refuses at `place` what isn't letters, digits, - and _, or is too long.
 void requireName(const std::string& name, const JsonValue& place);
 
-// What has a name in a scene, while it is read: bodies, joints, tendons, drives, frames and fingers.
+// Everything that has a name in a scene, while it is read: bodies, joints, tendons, drives, frames and fingers.
 class SceneNames {
  public:
   // The name under "name", or `otherwise`, now that of the next part. It must be new in the scene, for quantities go by it.

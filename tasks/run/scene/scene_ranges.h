@@ -100,7 +100,7 @@ inline constexpr NumberRule kEffectiveRadius = {.min = kShortestLength, .max = 1
 inline constexpr NumberRule kArmMass = {.min = 1e-4, .max = 100, .remedy = "In kilograms, at the tip."};
 inline constexpr NumberRule kForce = {.min = -1e4, .max = 1e4, .remedy = "In newtons."};
 
-// What is expected: compared, not computed with.
+// Expected values: compared, not computed with.
 inline constexpr NumberRule kExpected = {.min = -1e30, .max = 1e30, .remedy = "In the quantity's unit."};
 inline constexpr NumberRule kExpectedTolerance = {.min = 0, .max = 1e30, .remedy = "In the quantity's own unit."};
 

@@ -9,7 +9,7 @@
 
 namespace pincer::tasks {
 
-// What came of one scene.
+// Outcome of one scene.
 struct SceneVerdict {
   std::string file;
   std::vector<std::string> failures;  // a sentence each: quantity, time, wanted, measured, why; and a run that broke

@@ -20,7 +20,7 @@ std::string modelOfProcessor() {
   return "unknown model";
 }
 
-// What libraries look at to choose between variants of a function.
+// Features that libraries look at to choose between variants of a function.
 std::string instructionSets() {
   std::string sets;
 #if defined(__x86_64__)

@@ -25,10 +25,10 @@ void addBuild(SessionInfo& info);
 // "pincer 0.1.0 (commit 1f19997a0b2c)"; without a commit "(made without its repository, sources 3f2a9c0d11e2)".
 std::string programOf(const SessionInfo& info);
 
-// What `pincer --version` prints.
+// The text that `pincer --version` prints.
 std::string versionText();
 
-// What differs between two runs of a program, a line each: "processor: X then, Y now". What one of them doesn't know isn't there.
+// Differences between two runs of a program, a line each: "processor: X then, Y now". What one of them doesn't know isn't there.
 std::vector<std::string> surroundingsThatDiffer(const SessionInfo& then, const SessionInfo& now);
 
 }  // namespace pincer::tasks

@@ -30,7 +30,7 @@ InputWords wordsOf(const InputRecord& record);
 
 class InputPacker {
  public:
-  // Whether `record` goes on where the chunk ends; an empty one takes any.
+  // True if `record` goes on where the chunk ends; an empty one takes any.
   bool takes(const InputRecord& record) const;
   void add(const InputRecord& record);
   bool empty() const { return chunk_.ticks == 0; }

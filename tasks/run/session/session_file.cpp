@@ -23,7 +23,7 @@ void makeIndexes(Database& d) {
   d.run("CREATE INDEX IF NOT EXISTS input_of_trial ON input (trial)");
 }
 
-// Those that aren't there: pincers before format 5 could be killed between one column and the next.
+// Adds the columns that aren't there: pincers before format 5 could be killed between one column and the next.
 template <class Record>
 void addColumnsSince(Database& d, std::int64_t format) {
   for (const auto& [name, type] : columnsSince<Record>(format)) {

@@ -34,7 +34,7 @@ constexpr int kCheckpointPages = 16384;  // 64 MB of log: a trial never gets the
 // All that a session may consist of.
 std::array<std::string, 4> filesOfSession(const std::string& path) { return {path, path + "-wal", path + "-shm", path + "-journal"}; }
 
-// What the file says of the session. Throws InputError, which says what is wrong with one that can't be gone on with.
+// The file's entry on the session. Throws InputError, which says what is wrong with one that can't be gone on with.
 SessionInfo infoOfUnfinished(const std::string& path) {
   const SessionReader session(path);
   if (session.complete()) throw InputError(path + ": the session is complete; there is nothing to go on with.");

@@ -19,7 +19,7 @@
 
 namespace pincer::tasks {
 
-// What is shown; exchanged between two intervals of a trial.
+// The stimulus that is shown; exchanged between two intervals of a trial.
 struct PlanarStimulus {
   std::shared_ptr<const contact::Curve> force;    // never null
   std::shared_ptr<const contact::Curve> tactile;  // null: the tactor is parked

@@ -26,7 +26,7 @@ struct FingerMount {
   bool display_tactile = true;  // false: the force-only condition, the tactor stays parked
 };
 
-// What stands for a device's pose at a tick whose sample is older than the tick: the sample (zero-order hold), or the sample led on with its velocity
+// Stands for a device's pose at a tick whose sample is older than the tick: the sample (zero-order hold), or the sample led on with its velocity
 // (first-order hold), for `most_lead` at the most.
 enum class PoseHold : std::uint8_t { kZero, kFirst };
 

@@ -80,7 +80,7 @@ std::vector<Contestant> pincerContestants();
 // Other engines, each at its documented best (tasks/judge/peers); none in a build without -DPINCER_PEERS=ON.
 std::vector<Contestant> enginePeers();
 
-// What pulls and pushes a guided body along its free axes at time t, where its engine has no spring of its own: the damper as it is at the end
+// The force on a guided body along its free axes at time t, where its engine has no spring of its own: the damper as it is at the end
 // of a step of h, so that it is stable.
 Vec3 guidingForce(const BenchBody& body, const BenchMotion& motion, double t, double h);
 

@@ -67,7 +67,7 @@ Comparison compareWithPeers(const std::vector<Contestant>& contestants, const st
 
 namespace {
 
-// What went wrong in a contestant's runs, at most one line for failures and one for complaints.
+// Complaints about a contestant's runs, at most one line for failures and one for complaints.
 void addTroubles(const Contestant& contestant, std::size_t k, const std::vector<RaceRun>& runs, std::vector<Record>& records) {
   int count = 0, failed = 0, complaints = 0;
   std::string failure, complaint;

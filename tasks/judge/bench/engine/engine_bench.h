@@ -22,10 +22,10 @@ std::vector<Measurement> engineMeasurements(const EngineBenchOptions& options);
 // S9: each step of S4 timed on its own.
 Measurement stepLatencyMeasurement(std::vector<Contestant> contestants);
 
-// What contacts cost to solve, 2 to 32 of them, warm; of each tick the least of so many rounds.
+// Cost of solving contacts, 2 to 32 of them, warm; of each tick the least of so many rounds.
 Measurement solveLatencyMeasurement(int rounds);
 
-// What bodies at rest cost beside one that moves; the least of so many rounds.
+// Cost of bodies at rest beside one that moves; the least of so many rounds.
 Measurement sleepMeasurement(int rounds);
 
 // Walls of bricks, heaps of balls and hulls, pegs in holes, by sizes; `whole`: stand for a minute, and the large ones.

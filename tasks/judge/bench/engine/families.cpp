@@ -10,7 +10,7 @@
 namespace pincer::tasks {
 namespace {
 
-// What a run showed.
+// Results of a run.
 struct FamilyRun {
   std::vector<double> us;  // of each tick, of this thread
   int flagged = 0;

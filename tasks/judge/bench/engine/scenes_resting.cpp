@@ -23,7 +23,7 @@ BenchWorld columnWorld(const std::vector<double>& masses) {
 
 double placeInColumn(int body) { return kCubeHalf * (2 * body - 1); }
 
-// Whether every cube is near its place.
+// True if every cube is near its place.
 bool columnStands(int cubes, BenchEngine& e) {
   for (int i = 1; i <= cubes; ++i) {
     if (!((e.motion(i).X_WB.p - Vec3(0, 0, placeInColumn(i))).norm() < kCubeHalf)) return false;

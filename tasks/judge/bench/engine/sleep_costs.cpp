@@ -1,4 +1,4 @@
-// What bodies at rest cost beside one that moves: boxes on a floor, and one that slides for ever where there is no friction. With islands that sleep and
+// Cost of bodies at rest beside one that moves: boxes on a floor, and one that slides for ever where there is no friction. With islands that sleep and
 // without, by turns: each runs the same ticks, to the bit.
 #include <fmt/format.h>
 

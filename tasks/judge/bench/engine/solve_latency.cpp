@@ -1,4 +1,4 @@
-// What the contacts of one tick cost to solve, by how many they are: the stage "solve" of the tick, rows and memories with it, by the steady clock.
+// Cost of solving the contacts of one tick, by how many they are: the stage "solve" of the tick, rows and memories with it, by the steady clock.
 // Every round computes the same ticks to the bit. A tick's time is the least of its rounds: what is left of the tail then is the solver's, and what
 // else the machine did is in the tail of a single round.
 #include <fmt/format.h>

@@ -71,7 +71,7 @@ struct Cell {
   double laterPerMinute() const { return (least_of_1 - least) * 60 / 2; }  // in the last two of the three seconds [J/min]
 };
 
-// What a hand can take out within one tick beyond what its last velocity foretells: a held force f while the hand accelerates by a adds at most
+// The energy that a hand can take out within one tick beyond what its last velocity foretells: a held force f while the hand accelerates by a adds at most
 // |f| |a| h^2: the velocity is that of the middle of the last tick, h before that of the coming one.
 double unforeseenBy(const HandOnArm& hand, const Vec3& f_held_W, double h) {
   const Vec3 f_hand_W = hand.hand_stiffness * (hand.wish_W - hand.p_W) - (hand.friction + hand.hand_damping) * hand.v_W;

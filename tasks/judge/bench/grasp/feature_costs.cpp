@@ -1,4 +1,4 @@
-// What each feature costs: the same ticks with it and without it, by turns, as a ratio of their processor times. What a scene doesn't use it
+// Cost of each feature: the same ticks with it and without it, by turns, as a ratio of their processor times. What a scene doesn't use it
 // shouldn't pay for; what it does use has its price here.
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-// What fingers cost per tick: two on a body, each further one, other tips, other methods, passivity.
+// Cost of fingers per tick: two on a body, each further one, other tips, other methods, passivity.
 #include <fmt/format.h>
 
 #include <cmath>

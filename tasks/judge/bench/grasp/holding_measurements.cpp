@@ -1,4 +1,4 @@
-// What a grasp must keep: the cone, action and reaction, the slip's onset, a hold without drift, handing over.
+// Promises of a grasp: the cone, action and reaction, the slip's onset, a hold without drift, handing over.
 #include <fmt/format.h>
 
 #include <algorithm>
