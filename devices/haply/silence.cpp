@@ -6,6 +6,8 @@
 #include <memory>
 #include <optional>
 #include <stdexcept>
+#include <string>
+#include <utility>
 
 #include "pincer/devices/haply/haply_session.h"
 #include "pincer/devices/haply/last_zero.h"
@@ -18,7 +20,8 @@ constexpr double kGentle = 0.2;  // up [N]
 constexpr double kFar = 0.03;    // [m]
 constexpr std::int64_t kPatience = 2000 * kMillisecond;
 constexpr std::int64_t kReadyIn = 10000 * kMillisecond;
-constexpr std::int64_t kPushes = 300 * kMillisecond;  // after arming: the echo's test, and a push that is well established
+constexpr std::int64_t kPushesIn = 3000 * kMillisecond;  // after arming, the echo's test included; else this computer is too busy
+constexpr std::int64_t kPushes = 100 * kMillisecond;     // a push that is well established
 constexpr std::int64_t kLookPeriod = 2 * kMillisecond;
 constexpr int kNobody = -1;  // no descriptor wakes the wait
 
@@ -26,7 +29,7 @@ constexpr int kNobody = -1;  // no descriptor wakes the wait
 class Pusher final : public PortSink {
  public:
   Pusher(const ServicePlace& place, const std::string& arm, const ServiceVersion& version)
-      : port_(openHaplyPort(place, version.minor >= 4, 2)), session_(optionsOf(arm, version), usb::monotonicNs()) {}
+      : id_(arm), port_(openHaplyPort(place, version.minor >= 4, 2)), session_(optionsOf(arm, version), usb::monotonicNs()) {}
   ~Pusher() override {
     if (!port_) return;
     session_.disarm(0);
@@ -36,7 +39,12 @@ class Pusher final : public PortSink {
   Pusher(const Pusher&) = delete;
   Pusher& operator=(const Pusher&) = delete;
 
-  void received(std::string_view text) override { session_.received(text, usb::monotonicNs()); }
+  void received(std::string_view text) override {
+    session_.received(text, usb::monotonicNs());
+    if (readService(text, *message_) != ReadError::kNone) return;
+    const DeviceReport* arm = message_->find(id_);
+    pushes_ = arm != nullptr && arm->f_H && arm->f_H->norm() > 0.9 * kGentle;
+  }
   void heard(std::string_view event) override { session_.heard(event, usb::monotonicNs()); }
 
   void push(const std::atomic<bool>& interrupted) {
@@ -44,8 +52,12 @@ class Pusher final : public PortSink {
     if (session_.phase() != SessionPhase::kReady) complain();
     session_.arm(0, usb::monotonicNs());
     session_.want(0, Vec3(0, 0, kGentle));
+    turn(kPushesIn, [&] { return pushes_ || session_.doubted() || interrupted; });
     turn(kPushes, [&] { return session_.doubted() || interrupted; });
     if (session_.doubted()) complain();
+    if (!pushes_ && !interrupted)
+      throw std::runtime_error(
+          "The arm doesn't push within 3 s: this computer is too busy to tell. Close other programs, then measure again.");
   }
   // Gone without a word.
   void vanish() { port_.reset(); }
@@ -70,8 +82,11 @@ class Pusher final : public PortSink {
     }
   }
 
+  std::string id_;
   std::unique_ptr<HaplyPort> port_;
   HaplySession session_;
+  std::unique_ptr<ServiceMessage> message_ = std::make_unique<ServiceMessage>();
+  bool pushes_ = false;  // the service says that it does
 };
 
 // The session that looks.
@@ -81,6 +96,7 @@ class Watcher final : public PortSink {
   void received(std::string_view text) override {
     ServiceMessage& message = *message_;
     if (readService(text, message) != ReadError::kNone) return;
+    if (std::exchange(has_inventory_, true)) ++answered_;
     const DeviceReport* arm = message.find(device_.id.view());
     if (arm == nullptr) return;
     idle_ = arm->mode.view() == "idle" || (arm->f_H && arm->f_H->norm() < 0.5 * kGentle);
@@ -91,9 +107,12 @@ class Watcher final : public PortSink {
   void look() {
     const std::int64_t now = usb::monotonicNs();
     port_->send(writeProbes(buffer_, std::span<const ForceCommand>(&device_, 1)));
+    ++sent_;
     while (port_->open() && usb::monotonicNs() < now + kLookPeriod) port_->wait(now + kLookPeriod, kNobody, *this);
   }
-  bool idle() const { return idle_; }
+  // From now on idleness counts: the inventory is older, and an answer may be one message old.
+  void begin() { believed_from_ = sent_ + 2; }
+  bool idle() const { return idle_ && answered_ >= believed_from_; }
   double moved() const { return place_ && begin_ ? (*place_ - *begin_).norm() : 0; }
 
  private:
@@ -102,7 +121,8 @@ class Watcher final : public PortSink {
   std::unique_ptr<ServiceMessage> message_ = std::make_unique<ServiceMessage>();
   std::array<char, kMostCommand> buffer_{};
   std::optional<Vec3> begin_, place_;
-  bool idle_ = false;
+  bool idle_ = false, has_inventory_ = false;
+  std::int64_t sent_ = 0, answered_ = 0, believed_from_ = 0;
 };
 
 }  // namespace
@@ -115,6 +135,7 @@ SilenceFinding measureSilence(const ServicePlace& place, const std::string& arm,
   Watcher watcher(place, arm);
   pusher.push(interrupted);
   watcher.look();
+  watcher.begin();
   SilenceFinding finding;
   const std::int64_t begin = usb::monotonicNs();
   if (ending == Ending::kClose) pusher.vanish();

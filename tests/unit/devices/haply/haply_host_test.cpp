@@ -12,6 +12,7 @@
 #include "pincer/devices/emulate/haply_server.h"
 #include "pincer/devices/haply/silence.h"
 #include "pincer/devices/usb/usb_bus.h"
+#include "pincer/tests/support/allocation_guard.h"
 
 namespace pincer::devices::haply {
 namespace {
@@ -81,6 +82,25 @@ TEST(HaplyHost, MovesAndPushesTwoArms) {
   host.arm(0).stop();
   EXPECT_TRUE(pushUntil(host, Vec3(0, 0, 1), [&] { return server.force(0) == 0; }));
   EXPECT_TRUE(comesTrue([&] { return server.force(1) == 0; })) << "a force older than 4 ms ends by itself";
+}
+
+TEST(HaplyHost, AllocatesNothingInTheTick) {
+  HaplyServer server;
+  HaplyHost host(bothArmsAt(server));
+  host.waitReady(10);
+  armBoth(host);
+  const std::int64_t before = pincer::tests::allocationCount();
+  int valid = 0;
+  for (int i = 0; i < 100; ++i) {
+    for (std::size_t arm = 0; arm < host.arms(); ++arm) {
+      valid += host.arm(arm).sample().valid ? 1 : 0;
+      host.arm(arm).commandForce(Vec3(0, 0, 0.1));
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  for (std::size_t arm = 0; arm < host.arms(); ++arm) host.arm(arm).stop();
+  EXPECT_EQ(pincer::tests::allocationCount(), before);
+  EXPECT_GT(valid, 0);
 }
 
 TEST(HaplyHost, LeavesAfterAnsweredZerosEvenWhereTheServiceKeepsForcesForEver) {
