@@ -128,7 +128,9 @@ TEST_P(DocsPage, KeepsItsLinesTo110Characters) {
     const bool is_prose = !in_code && begin != line.npos && begin < 4 && line[begin] != '|';
     const auto continues = [](unsigned char c) { return (c & 0xc0) == 0x80; };  // a byte of UTF-8 that begins no character
     const auto length = static_cast<long>(line.size()) - std::count_if(line.begin(), line.end(), continues);
-    if (is_prose) EXPECT_LE(length, 110) << GetParam() << ":" << number << ": " << line.substr(0, 60);
+    if (is_prose) {
+      EXPECT_LE(length, 110) << GetParam() << ":" << number << ": " << line.substr(0, 60);
+    }
   }
 }
 

@@ -14,11 +14,11 @@
 namespace pincer::tasks {
 
 struct RobotSceneOptions {
-  std::string keyframe;                               // where it starts and what its drives are told; empty: as drawn
-  double duration = 2;                                // [s]
-  std::string prefix;                                 // of all names
-  Pose X_WR;                                          // where the file's world stands
-  std::vector<std::pair<std::string, double>> start;  // joints and their coordinates, in place of the keyframe's [rad, m]
+  std::string keyframe{};                               // where it starts and what its drives are told; empty: as drawn
+  double duration = 2;                                  // [s]
+  std::string prefix{};                                 // of all names
+  Pose X_WR{};                                          // where the file's world stands
+  std::vector<std::pair<std::string, double>> start{};  // joints and their coordinates, in place of the keyframe's [rad, m]
 };
 
 // The scene's text (JSON). Throws InputError at the robot's file and line: what a scene can't say (a spring along a tendon), an

@@ -16,7 +16,7 @@ namespace {
 using tests::RandomTree;
 using tests::randomTree;
 
-constexpr int kTrees = 300;
+constexpr int kLoopTrees = 300;
 
 // A random tree with one to three joints that close loops where it stands.
 struct LoopedTree : RandomTree {
@@ -81,7 +81,7 @@ struct Dense {
 TEST(TreeLoops, FactorAnswersAsTheClosedTree) {
   std::mt19937_64 random(11);
   int seen = 0;
-  for (int n = 0; n < kTrees; ++n) {
+  for (int n = 0; n < kLoopTrees; ++n) {
     const LoopedTree t(random);
     const Dense dense(t);
     if (!dense.is_clear) continue;
@@ -102,13 +102,13 @@ TEST(TreeLoops, FactorAnswersAsTheClosedTree) {
     EXPECT_LT((A * A.transpose() - dense.answer).norm(), 1e-9 * scale) << n;
     EXPECT_LE((dense.G * W).norm(), 1e-9 * scale * dense.G.norm()) << n;
   }
-  EXPECT_GT(seen, kTrees / 2);
+  EXPECT_GT(seen, kLoopTrees / 2);
 }
 
 TEST(TreeLoops, RowsAreTheRatesAtWhichLoopsOpenAndBend) {
   std::mt19937_64 random(12);
   constexpr double kStep = 1e-5;
-  for (int n = 0; n < kTrees; ++n) {
+  for (int n = 0; n < kLoopTrees; ++n) {
     LoopedTree t(random);
     t.base = {t.base.X_WB, {}};  // it stands still
     Dense dense(t);
@@ -144,7 +144,7 @@ TEST(TreeLoops, RowsAreTheRatesAtWhichLoopsOpenAndBend) {
 TEST(TreeLoops, WhatIsOpenCloses) {
   std::mt19937_64 random(13);
   int seen = 0;
-  for (int n = 0; n < kTrees; ++n) {
+  for (int n = 0; n < kLoopTrees; ++n) {
     LoopedTree t(random);
     const Dense dense(t);
     if (!dense.is_clear || dense.answer.norm() < 1e-9) continue;
@@ -159,7 +159,7 @@ TEST(TreeLoops, WhatIsOpenCloses) {
     // A loop that is only just possible where it was drawn (a pivot over axes that don't agree) stays open elsewhere: Newton's steps find the nearest.
     seen += miss < 1e-12;
   }
-  EXPECT_GT(seen, kTrees / 2);
+  EXPECT_GT(seen, kLoopTrees / 2);
 }
 
 }  // namespace

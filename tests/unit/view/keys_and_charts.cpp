@@ -4,6 +4,7 @@
 #include <set>
 #include <sstream>
 
+#include "pincer/devices/window/input.h"
 #include "pincer/tasks/view/history.h"
 #include "pincer/tasks/view/keys.h"
 #include "pincer/tasks/view/strip_chart.h"
