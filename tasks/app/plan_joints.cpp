@@ -54,7 +54,8 @@ std::string coordinateForm(const engine::WorldModel& world, const engine::TreeMo
   if (std::isfinite(t.lower)) parts.push_back(fmt::format("stop at {:g} {}, a row where it is reached", t.lower, place));
   if (std::isfinite(t.upper)) parts.push_back(fmt::format("stop at {:g} {}, a row where it is reached", t.upper, place));
   if (t.friction > 0)
-    parts.push_back(fmt::format("dry friction {:g} {}: a row while it holds what pushes it, a force while it slides", t.friction, turns ? "N m" : "N"));
+    parts.push_back(
+        fmt::format("dry friction {:g} {}: a row while it holds what pushes it, a force while it slides", t.friction, turns ? "N m" : "N"));
   return fmt::format("{}{}{}", turns ? "turns" : "slides", parts.empty() ? "" : "; ", fmt::join(parts, "; "));
 }
 

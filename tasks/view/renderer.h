@@ -28,8 +28,8 @@ class Renderer final : public MeshSink {
   Renderer& operator=(const Renderer&) = delete;
 
   int add(const ViewMesh& mesh) override;
-  std::string graphics() const;   // who draws: "llvmpipe (LLVM 15, 256 bits)"
-  bool isSoftware() const;        // no graphics card does
+  std::string graphics() const;  // who draws: "llvmpipe (LLVM 15, 256 bits)"
+  bool isSoftware() const;       // no graphics card does
   void draw(const DrawList& list, const Camera& camera, const RenderOptions& options);
   // What was drawn since, overlays included.
   Image picture();

@@ -18,7 +18,8 @@ engine::JointLoad load(M m, I i) { return engine::jointLoadAt(m.model.world, m.s
 // The share of the load along or about the joint's axis.
 double force(M m, I i) {
   const engine::JointLoad all = load(m, i);
-  return m.model.world.joints[static_cast<I>(m.model.world.joint_places[i].joint)].kind == engine::JointKind::kSlider ? all.f_J.z() : all.moment_J.z();
+  return m.model.world.joints[static_cast<I>(m.model.world.joint_places[i].joint)].kind == engine::JointKind::kSlider ? all.f_J.z()
+                                                                                                                      : all.moment_J.z();
 }
 engine::DriveReport drive(M m, I i) { return engine::driveAt(world(m), static_cast<int>(i)); }
 
