@@ -18,7 +18,7 @@ namespace {
 
 using HullFacet = std::array<int, 3>;
 
-constexpr double kLeastPlane = 1e-4;  // times what is taken for one plane at first
+constexpr int kPlaneTries = 5;  // each takes a tenth of what the last one took for one plane
 
 Vec3 normalOf(const std::vector<Vec3>& p, const HullFacet& f) {
   const auto at = [&](int k) -> const Vec3& { return p[static_cast<std::size_t>(f[static_cast<std::size_t>(k)])]; };
@@ -137,13 +137,14 @@ Polytope::Polytope(const std::vector<Vec3>& points, const std::string& source) {
   const double flat = kFlat * sizeOf(points);
   const std::vector<HullFacet> facets = quickHull(points);
   // A finely rounded solid may have facets that lie in one plane pair by pair and not as a whole: then less is taken for one plane.
-  for (double one_plane = flat;; one_plane *= 0.1) {
+  double one_plane = flat;
+  for (int tries = 1;; ++tries, one_plane *= 0.1) {
     vertices_ = points;
     try {
       setFaces(facets, one_plane, source);
       break;
     } catch (const InputError&) {
-      if (one_plane < kLeastPlane * flat) throw;
+      if (tries == kPlaneTries) throw;
     }
   }
   if (vertices_.size() > kMaxVertices)
