@@ -15,6 +15,7 @@ constexpr int kMostBodies = 4, kMostPoints = 12;  // beyond, the blocks of few_c
 constexpr int kMostMovers = kMostBodies + kMostPoints;
 constexpr double kRidge = 1e-10;  // of N's diagonal: far above round-off, which it meets twice
 constexpr int kMostSteps = 3;
+constexpr double kFrictionUsed = 0.5;                                 // at most, for the step to go on with its shares
 constexpr std::int64_t kPerContactStuck = 300, kPerMoverStuck = 200;  // multiplications of a step
 
 // Which of the movers are points, and the number of each among its kind.
@@ -221,12 +222,12 @@ class MoverNormals {
 
 class StuckSolve {
  public:
-  StuckSolve(const ContactProblem& problem, const StuckMovers& movers, SolverScratch& scratch, double* r, double* u)
+  StuckSolve(const ContactProblem& problem, const StuckMovers& movers, const SolverScratch& scratch, double* r, double* u)
       : problem_(problem), movers_(movers), scratch_(scratch), r_(r), u_(u) {}
 
-  // A step from r and u; false if a contact slides, or there is none.
+  // A step from r and u; false if a contact does other than it did, or holds with more than its share.
   bool step() {
-    if (!openOrStick()) return false;
+    if (!allStayAsTheyAre()) return false;
     MoverNormals normals(movers_);
     double y[kMoverFreedoms * kMostMovers];
     std::fill(y, y + kMoverFreedoms * problem_.movers, 0.0);
@@ -244,7 +245,7 @@ class StuckSolve {
       if (!sticks(i)) continue;
       double* const r_i = r_ + problem_.firstRow(i);
       addVelocity(problem_.sidesOf(i), problem_.rows(i), y, r_i);
-      projectOntoCone(r_i, problem_.rows(i), problem_.friction(i), r_i);
+      if (!sticks(i) || !isInCone(r_i, problem_.rows(i), kFrictionUsed * problem_.friction(i))) return false;
     }
     return true;
   }
@@ -252,28 +253,21 @@ class StuckSolve {
  private:
   bool sticks(int i) const { return r_[problem_.firstRow(i) + kNormalRow] > 0; }
 
-  // What opens loses its impulse. False if a contact slides, or has to push that doesn't yet.
-  bool openOrStick() {
-    bool changed = false;
+  // False if a contact slides or opens, or has to push that doesn't yet: of answers in which fewer contacts hold, this step can't tell the right one.
+  bool allStayAsTheyAre() const {
     for (int i = 0; i < problem_.contactCount(); ++i) {
-      double* const r_i = r_ + problem_.firstRow(i);
-      const double* const u_i = u_ + problem_.firstRow(i);
-      const int rows = problem_.rows(i);
+      const int first = problem_.firstRow(i), rows = problem_.rows(i);
       double y[kMaxContactRows] = {};
-      for (int k = 0; k < rows; ++k) y[k] = scratch_.weight[static_cast<std::size_t>(i)] * r_i[k] - u_i[k];
+      for (int k = 0; k < rows; ++k) y[k] = scratch_.weight[static_cast<std::size_t>(i)] * r_[first + k] - u_[first + k];
       const ContactMode mode = contactMode(y, rows, problem_.friction(i));
-      if (mode == ContactMode::kSlide || (mode == ContactMode::kStick && !sticks(i))) return false;
-      if (mode == ContactMode::kStick || !sticks(i)) continue;
-      std::fill(r_i, r_i + rows, 0.0);
-      changed = true;
+      if (mode != (sticks(i) ? ContactMode::kStick : ContactMode::kOpen)) return false;
     }
-    if (changed) errorOf(problem_, r_, scratch_, u_);
     return true;
   }
 
   const ContactProblem& problem_;
   const StuckMovers& movers_;
-  SolverScratch& scratch_;
+  const SolverScratch& scratch_;
   double *r_, *u_;
 };
 

@@ -7,7 +7,9 @@
 //   N   one 6 x 6 block per mover that turns, 3 x 3 per point; points never touch each other, and are eliminated first (Schur)
 //
 // Of all impulses that hold the bodies the step takes those nearest to the warm start: what redundant contacts share among them changes by no more than it
-// must. The ridge, one for all movers, keeps motions that no contact sees out of N's inverse (where it differs from mover to mover they come in);
+// must. Step by step these changes add up, though, to shares that use friction up where none need be used: once a contact holds with more than half of its
+// friction, or one that pushed opens, the step declines, and the general method finds shares anew (a cylinder carried between flat jaws slipped by 2 mm).
+// The ridge, one for all movers, keeps motions that no contact sees out of N's inverse (where it differs from mover to mover they come in);
 // what it leaves of -u, some 1e-9 of it, the next step takes.
 // Source: G. Golub, C. Van Loan, Matrix Computations, 4th ed. (2013), section 5.5 (least norm).
 #pragma once

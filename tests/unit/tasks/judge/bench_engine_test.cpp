@@ -217,7 +217,7 @@ TEST(BenchScenes, ACapsuleBetweenPadsDoesntCreep) {
       way[k / 5000 - 3] = verdict.error * 3.5;  // of the scene's 4 s
     }
     EXPECT_LT(way[1], 1e-7) << scene.name;  // a tenth of what is promised for a minute: within the solver's tolerance it settles once
-    EXPECT_LT(std::abs(way[1] - way[0]), 1e-11) << scene.name;  // round-off of 5000 ticks
+    EXPECT_LT(std::abs(way[1] - way[0]), 1e-10) << scene.name;  // round-off of 5000 ticks: a place of 50 mm has a last bit of 7e-12 um
   }
 }
 
