@@ -131,7 +131,7 @@ bool toggle(ViewAction action, ViewChoice& choice) {
 std::string keysMarkdown() {
   std::string text =
       "# Keys of the viewer\n\nWhat `pincer keys` prints: the table that the viewer itself reads (`tasks/view/keys.cpp`); F1 shows it "
-      "there. "
+      "there.\n"
       "`--no-keys` leaves Esc only.\n";
   for (const KeyGroup& group : kGroups) {
     text += fmt::format("\n## {}\n\n| key | |\n|---|---|\n", group.title);

@@ -23,6 +23,7 @@ class Status(enum.IntFlag):
     IMPACTS_CUT = 16
     TOLERANCE_NOT_MET = 32
     BUDGET_SPENT = 64
+    TURNS_TOO_FAR = 128
 
 class Model:
     @property
