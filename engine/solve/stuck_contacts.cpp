@@ -140,7 +140,7 @@ class MoverNormals {
   template <class Rows>
   void addCoupling(const ContactSide& point, const ContactSide& body, Rows rows) {
     const int p = movers_.numberOf(point), b = movers_.numberOf(body);
-    if (!touches_[p][b]) std::fill(coupling_[p][b][0], coupling_[p][b][0] + 3 * kMoverFreedoms, 0.0);
+    for (int k = 0; k < 3 && !touches_[p][b]; ++k) std::fill(coupling_[p][b][k], coupling_[p][b][k] + kMoverFreedoms, 0.0);
     touches_[p][b] = true;
     for (int k = 0; k < 3; ++k) addRows(point, k, body, 0, rows, coupling_[p][b][k]);
   }
@@ -199,7 +199,7 @@ class MoverNormals {
       });
     });
     for (int b = 0; b < bodies_; ++b) {
-      if (touches_[p][b]) std::copy(across[b][0], across[b][0] + 3 * kMoverFreedoms, coupling_[p][b][0]);
+      for (int k = 0; k < 3 && touches_[p][b]; ++k) copyMover(across[b][k], coupling_[p][b][k]);
     }
     return true;
   }
