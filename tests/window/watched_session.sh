@@ -23,7 +23,7 @@ while kill -0 $watched 2> /dev/null; do
   sleep 0.25
   kill -STOP $watched 2> /dev/null || break
   sleep 0.06
-  kill -CONT $watched
+  kill -CONT $watched 2> /dev/null || break  # it had ended before it was stopped
   stops=$((stops + 1))
 done
 wait $watched || { cat "$work/watched.out"; echo "the watched session ended with exit code $?, after $stops stalls"; exit 1; }
