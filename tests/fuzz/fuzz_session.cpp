@@ -106,17 +106,6 @@ void changeCells(const std::string& path, Choices& choices) {
   readsOrRefuses([&] { database.close(); });
 }
 
-// As input_codec.cpp has it: FNV-1a over trial, first tick, number of ticks and the bytes.
-std::int64_t checkOf(const InputChunk& chunk) {
-  std::uint64_t hash = 0xcbf29ce484222325;
-  const auto mix = [&](std::uint64_t byte) { hash = (hash ^ byte) * 0x100000001b3; };
-  for (const std::int64_t value : {chunk.trial, chunk.first_tick, chunk.ticks}) {
-    for (int i = 0; i < 8; ++i) mix(static_cast<std::uint64_t>(value) >> (8 * i) & 0xff);
-  }
-  for (const char c : chunk.data.value) mix(static_cast<unsigned char>(c));
-  return static_cast<std::int64_t>(hash);
-}
-
 // Each kind of row by itself: a table that is refused keeps nobody from the others.
 void readAll(const SessionReader& session) {
   session.complete();

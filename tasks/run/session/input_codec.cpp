@@ -60,7 +60,15 @@ InputRecord recordOf(const InputWords& words) {
   return record;
 }
 
-// FNV-1a over trial, first tick, number of ticks and the bytes: G. Fowler, L. C. Noll, K.-P. Vo, 64 bits.
+[[noreturn]] void refuse(const InputChunk& chunk) {
+  throw InputError(
+      fmt::format("the inputs of trial {}, ticks {} to {}, are damaged: their bytes aren't those that were recorded. Take a copy of the "
+                  "session from before.",
+                  chunk.trial + 1, chunk.first_tick, chunk.first_tick + chunk.ticks - 1));
+}
+
+}  // namespace
+
 std::int64_t checkOf(const InputChunk& chunk) {
   std::uint64_t hash = 0xcbf29ce484222325;
   const auto mix = [&](std::uint64_t byte) { hash = (hash ^ byte) * 0x100000001b3; };
@@ -70,15 +78,6 @@ std::int64_t checkOf(const InputChunk& chunk) {
   for (const char c : chunk.data.value) mix(static_cast<unsigned char>(c));
   return static_cast<std::int64_t>(hash);
 }
-
-[[noreturn]] void refuse(const InputChunk& chunk) {
-  throw InputError(
-      fmt::format("the inputs of trial {}, ticks {} to {}, are damaged: their bytes aren't those that were recorded. Take a copy of the "
-                  "session from before.",
-                  chunk.trial + 1, chunk.first_tick, chunk.first_tick + chunk.ticks - 1));
-}
-
-}  // namespace
 
 InputWords wordsOf(const InputRecord& record) {
   InputWords words{};

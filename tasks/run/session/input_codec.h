@@ -28,6 +28,9 @@ using InputWords = std::array<std::uint64_t, kInputWords>;
 
 InputWords wordsOf(const InputRecord& record);
 
+// A chunk's check: FNV-1a over trial, first tick, number of ticks and the bytes (G. Fowler, L. C. Noll, K.-P. Vo, 64 bits).
+std::int64_t checkOf(const InputChunk& chunk);
+
 class InputPacker {
  public:
   // True if `record` goes on where the chunk ends; an empty one takes any.
