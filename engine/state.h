@@ -49,7 +49,7 @@ constexpr int kOpenTicks = 8;
 
 // What a drive did in the last tick.
 enum class DriveMemory : unsigned char { kWithin, kLow, kHigh, kUnsure };  // its limits; at one of them; it may be either
-// What dry friction did: held, or braked what moves. kLocks: it held with half of its force to spare, and nothing touched what it holds.
+// Deed of dry friction: held, or braked what moves. kLocks: it held with half of its force to spare, and nothing touched what it holds.
 enum class BrakeMemory : unsigned char { kHolds, kForward, kBackward, kLocks };
 
 struct WorldState {

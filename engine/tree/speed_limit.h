@@ -4,7 +4,7 @@
 //   I = h (tau - C(q_m, 0)) + sum of c d s
 //
 // N follows from the triangle inequality: the motion's own forces do no work, dampers take some, and springs keep theirs. Symbols: drive_law.h, tree_course.h.
-// What turns further than that per part of a tick would gain energy by its own inertia, without an end.
+// A tree that turns further than that per part of a tick would gain energy by its own inertia, without an end.
 #pragma once
 #include "pincer/engine/tree/tree_course.h"
 

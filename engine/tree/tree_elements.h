@@ -7,7 +7,7 @@
 
 namespace pincer::engine {
 
-// What a spring, a damper or a drive is at one place of the tree.
+// A spring, a damper or a drive at one place of the tree.
 struct Element {
   std::span<const ColumnShare> c;  // how its length changes with the columns
   double l = 0;

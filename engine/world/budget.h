@@ -13,7 +13,7 @@ inline void charge(std::int64_t operations, WorldScratch& scratch) {
   if (isLimited(scratch)) scratch.operations_left -= operations;
 }
 
-// What solves of what is hit may take in a tick, per contact: some 100 sweeps. Beyond, no further hit cuts the tick, and each of four solves ends
+// Work that solves of hits may take in a tick, per contact: some 100 sweeps. Beyond, no further hit cuts the tick, and each of four solves ends
 // with a quarter of it: the best iterate counts, flagged.
 constexpr std::int64_t kHitOperations = 24'000;
 inline bool haveHitsSpent(const WorldScratch& scratch) {

@@ -22,7 +22,7 @@ void keepEverySecond(std::vector<double>& values) {
   values.resize(kept);
 }
 
-// What is told in words: the trial's stage, and what the person is asked to do.
+// Told in words: the trial's stage, and what the person is asked to do.
 std::string captionOf(const TrialSnapshot& trial) {
   const std::string stage = trial.stage, instruction = trial.instruction;
   return stage.empty() || instruction.empty() ? stage + instruction : stage + ": " + instruction;

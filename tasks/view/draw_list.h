@@ -38,7 +38,7 @@ enum class Layer : std::uint8_t {
   kGround,  // takes shadows, has none
 };
 
-// What an item stands for, for somebody who leaves some of them out.
+// Meaning of an item, for somebody who leaves some of them out.
 enum class Part : std::uint8_t { kThing, kContact, kForce, kCone, kJoint, kDevice, kGoal };
 
 struct DrawItem {

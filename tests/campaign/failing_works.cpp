@@ -40,7 +40,7 @@ void addCounts(const fs::path& file, Counts& counts) {
   }
 }
 
-// What an undisturbed run writes, by name; made once per command line.
+// Files that an undisturbed run writes, by name; made once per command line.
 const std::map<std::string, std::string>& soundOutputs(const Ground& ground, const Work& work) {
   static std::map<std::vector<std::string>, std::map<std::string, std::string>> kept;
   const auto found = kept.find(work.arguments);

@@ -21,7 +21,7 @@ const Work& draw(Case& c, const std::vector<Work>& all) {
 // Evenly on a logarithmic scale, 1 .. most: the first calls, and then ever fewer.
 long drawNumber(Case& c, long most) { return static_cast<long>(std::exp(c.random.uniform(0, std::log(static_cast<double>(most) + 1)))); }
 
-// What fails most often as it fails most often: of a full disk, of a table of files that is full.
+// The failures that are most frequent: of a full disk, of a table of files that is full.
 int usualErrorOf(const std::string& call) {
   if (call == "write" || call == "ftruncate" || call == "mkdir") return ENOSPC;
   if (call == "open") return EMFILE;

@@ -124,7 +124,7 @@ std::vector<Call> callsOfASession(const TemporaryDirectory& folder) {
 
 bool isOfTheSession(const std::string& path) { return path.ends_with("/session.db") || path.ends_with("/session.db-wal"); }
 
-// What a power cut would leave, over all moments of the session.
+// Remains of a power cut, over all moments of the session.
 struct Judged {
   int moments = 0;
   int early = 0;  // at which a trial had begun while one before it was not yet durable

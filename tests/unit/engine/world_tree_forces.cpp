@@ -88,7 +88,7 @@ Machine chain(int links, bool driven, bool touches) {
   return machine;
 }
 
-// What a tick can't follow was once flung ever faster by its own inertia, to what isn't a number.
+// A tree that a tick can't follow was once flung ever faster by its own inertia, to what isn't a number.
 TEST(TreeSpeed, AChainThatSpinsFasterThanATickCanFollowGainsNoEnergyAndIsFlagged) {
   for (const int links : {1, 3, 6}) {
     for (const double rate : {2e4, 1e7}) {
