@@ -144,6 +144,16 @@ std::string pageTestName(const testing::TestParamInfo<std::string>& info) {
 
 INSTANTIATE_TEST_SUITE_P(All, DocsPage, testing::ValuesIn(pages()), pageTestName);
 
+TEST(FirstScene, IsDrawnByItsProgram) {
+  const TemporaryDirectory folder;
+  const std::string line = fmt::format(
+      "cd '{}' && '{}/pincer' sim '{}/docs/examples/braking_block.json' --out block.csv > log && /usr/bin/python3 "
+      "'{}/docs/examples/plot_block.py' block.csv block.png 2>> log",
+      folder.path(), PINCER_BINARY_DIR, kSource.string(), kSource.string());
+  EXPECT_EQ(std::system(line.c_str()), 0) << readFile(folder / "log");
+  EXPECT_TRUE(fs::exists(folder / "block.png"));
+}
+
 // To renew a page: the command in its last line.
 TEST(KeyReference, IsWhatTheProgramPrints) {
   const TemporaryDirectory folder;
