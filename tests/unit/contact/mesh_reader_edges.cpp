@@ -49,6 +49,9 @@ TEST(PlyStrips, CarryTheNormalsOfTheirVertices) {
   EXPECT_EQ(mesh.triangles, (Triangles{{0, 1, 2}, {2, 1, 3}}));
   EXPECT_EQ(mesh.triangle_normals, mesh.triangles);
   expectSaid(stripHeader("1\nproperty list int int vertex_indices\n", "quality") + "4 0 1 2 3\n", MeshFormat::ply, "some of nx, ny and nz");
+  std::string no_ny = stripHeader("1\nproperty list int int vertex_indices\n") + "4 0 1 2 3\n";
+  no_ny.replace(no_ny.find("float ny"), 8, "float qy");
+  expectSaid(no_ny, MeshFormat::ply, "some of nx, ny and nz");
 }
 
 TEST(PlyStrips, StandAmongOtherPropertiesAndBesideOtherStrips) {
