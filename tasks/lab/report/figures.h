@@ -39,7 +39,7 @@ std::string trialWords(const TrialRecord& trial);
 // two participants in both.
 std::optional<Figure> peopleFigure(const SessionSummary& summary);
 
-// Whether anything was shown by a tactor during the trial.
+// True unless all tactors were parked throughout the trial.
 bool isShownByTactors(const TrialTrace& trace);
 
 // Error and time of alignment, each trial as a dot, one column per condition, means beside them.

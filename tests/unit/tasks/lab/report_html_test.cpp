@@ -49,16 +49,17 @@ TEST(Report, HoldsTheTableAndEveryFigureAndNeedsNothingElse) {
   writeSession(dir / "a.db");
   const ReportFiles files = writeReport(SessionReader(dir / "a.db"), dir / "it's a report.html");
   const std::string html = readFile(files.html);
-  for (const char* figure : {"squeezes", "time", "trial_force", "tactor_force", "trial_cld_force", "tactor_cld_force", "tick_times"}) {
+  for (const char* figure : {"squeezes", "time", "trial_force", "trial_cld_force", "tactor_cld_force", "tick_times"}) {
     EXPECT_TRUE(has(html, std::string("id=\"figure-") + figure + "\"")) << figure;
     const std::string beside = dir / (std::string("it's a report_figures/") + figure);
     EXPECT_EQ(readFile(beside + ".png").substr(0, 8), kPngSignature) << figure;
     EXPECT_NE(readFile(beside + ".svg").find("</svg>"), std::string::npos) << figure;
     EXPECT_GT(count(readFile(beside + ".csv"), "\n"), 2) << figure;
   }
-  EXPECT_EQ(files.figures.size(), 7u);
-  EXPECT_EQ(count(html, "src=\"data:image/png;base64,iVBORw0KGgo"), 7);  // the signature in base64
-  EXPECT_EQ(count(html, "src="), 7);
+  EXPECT_EQ(files.figures.size(), 6u);
+  EXPECT_EQ(count(html, "src=\"data:image/png;base64,iVBORw0KGgo"), 6);  // the signature in base64
+  EXPECT_EQ(count(html, "src="), 6);
+  EXPECT_FALSE(has(html, "figure-tactor_force\""));  // its tactors were parked: an empty plot
   EXPECT_FALSE(has(html, "http"));
   EXPECT_FALSE(has(html, "<script"));
   EXPECT_FALSE(has(html, "@import"));
@@ -66,7 +67,7 @@ TEST(Report, HoldsTheTableAndEveryFigureAndNeedsNothingElse) {
     EXPECT_TRUE(has(html, fact)) << fact;
   }
   EXPECT_FALSE(has(html, "class=\"warning\""));
-  expectLinksToTrials(html, 4);  // two conditions, two figures each
+  expectLinksToTrials(html, 3);  // two conditions, two figures where the tactors moved
 }
 
 TEST(Report, SaysThatTheSessionWasNotCompleted) {

@@ -79,7 +79,7 @@ TEST(StudyReport, ThresholdsAreMeansOfTheLastReversalsPerPerson) {
   EXPECT_EQ(whole.right.mean, 0.75);
   EXPECT_EQ(s.conditions[1].trials, 0);
   const std::string table = formatStudyTable(s);
-  EXPECT_TRUE(contains(table, "70.0 (11.4 to 430.0)") && contains(table, "yes")) << table;
+  EXPECT_TRUE(contains(table, "70.0 (11.4 to 429.9)") && contains(table, "yes")) << table;
 }
 
 // Turns of 0.9/9 and 0.9/99 rad, over and over: n = 10 and 100. The mean of n is 55; the n of the mean angle would be 17.5.
