@@ -6,6 +6,7 @@
 #include "pincer/tasks/view/gl_parts.h"
 #include "pincer/tasks/view/renderer.h"
 #include "pincer/tasks/view/shaders.h"
+#include "pincer/tasks/view/shading_gl.h"
 
 namespace pincer::tasks {
 namespace {
@@ -43,8 +44,8 @@ struct Renderer::Gl {
   void drawTransparent(const DrawList& list, const Vec3& eye_W);
 
   devices::Surface& surface;
-  GlProgram solid{kSolidVertexShader, kSolidFragmentShader}, shadow{kShadowVertexShader, kShadowFragmentShader},
-      sky{kSkyVertexShader, kSkyFragmentShader};
+  GlProgram shadow{kShadowVertexShader, kShadowFragmentShader}, sky{kSkyVertexShader, kSkyFragmentShader};
+  GlShading shading;
   GlShadowMap shadow_map{kShadowSide};
   GlPicture picture;
   GlOcclusion occlusion;
@@ -91,17 +92,7 @@ void Renderer::Gl::drawSky() {
 }
 
 void Renderer::Gl::drawItem(const DrawItem& item, float alpha) {
-  const Eigen::Matrix3f linear = item.X_WM.topLeftCorner<3, 3>();
-  solid.set("X_WM", item.X_WM);
-  solid.set("N_WM", Eigen::Matrix3f(linear.inverse().transpose()));
-  solid.set("paint", Eigen::Vector4f(item.paint.colour.x(), item.paint.colour.y(), item.paint.colour.z(), alpha * item.paint.alpha));
-  solid.set("gloss", item.paint.gloss);
-  solid.set("edges", item.paint.edges);
-  solid.set("octants", item.paint.octants);
-  solid.set("glow", item.paint.glow);
-  solid.set("fade", item.paint.fade);
-  solid.set("grid", item.paint.grid);
-  solid.set("sheer", item.paint.sheer ? 1 : 0);
+  shading.begin(item, alpha);
   meshes[static_cast<std::size_t>(item.mesh)]->draw();
 }
 
@@ -134,7 +125,7 @@ void Renderer::Gl::drawGround(const DrawList& list) {
 void Renderer::Gl::darkenCorners(const Camera& camera, double reach) {
   occlusion.darken(picture, camera, reach, nothing);
   glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-  solid.use();
+  shading.forget();
 }
 
 // From far to near.
@@ -163,18 +154,14 @@ void Renderer::draw(const DrawList& list, const Camera& camera, const RenderOpti
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   gl_->drawSky();
   gl_->shadow_map.bind();
-  GlProgram& solid = gl_->solid;
-  solid.use();
-  solid.set("world_to_clip", camera.world_to_clip(static_cast<double>(size.width) / size.height));
-  solid.set("world_to_sun", worldToSun(options));
-  solid.set("eye_W", Vec3f(camera.eye_W().cast<float>()));
-  solid.set("target_W", Vec3f(camera.target_W.cast<float>()));
-  solid.set("sun_W", Vec3f(kSun_W.cast<float>()));
-  solid.set("shadow_strength", options.shadows ? 0.85f : 0.0f);
-  solid.set("shadow_texel", 1.0f / kShadowSide);
-  solid.set("shadow_map", 0);
-  solid.set("sun_depths", 1);
-  solid.set("soft", options.soft ? 1 : 0);
+  gl_->shading.setFrame({.world_to_clip = camera.world_to_clip(static_cast<double>(size.width) / size.height),
+                         .world_to_sun = worldToSun(options),
+                         .eye_W = camera.eye_W().cast<float>(),
+                         .target_W = camera.target_W.cast<float>(),
+                         .sun_W = kSun_W.cast<float>(),
+                         .shadow_strength = options.shadows ? 0.85f : 0.0f,
+                         .shadow_texel = 1.0f / kShadowSide,
+                         .soft = options.soft});
   gl_->drawOpaque(list, Layer::kSolid);
   gl_->drawOpaque(list, Layer::kGround);
   glEnable(GL_BLEND);

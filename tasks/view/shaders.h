@@ -29,7 +29,9 @@ void main() {
 }
 )";
 
-inline constexpr const char* kSolidFragmentShader = R"(#version 330 core
+// Behind the version and three words that are 0 or 1: SOFT half shadows, GRID lines, SHEER nothing but lines and shadows. Programs of their own, as
+// without a graphics card a branch that isn't taken costs as much as one that is.
+inline constexpr const char* kSolidFragmentShader = R"(
 in vec3 p_W;
 in vec3 n_W;
 in vec3 edge;
@@ -47,12 +49,11 @@ uniform float fade;
 uniform float shadow_strength;
 uniform float shadow_texel;
 uniform float grid;
-uniform bool sheer;
-uniform bool soft;
 uniform sampler2DShadow shadow_map;
 uniform sampler2D sun_depths;
 out vec4 colour;
 
+#if SOFT
 const int kTaps = 32;
 
 // Of a disc, evenly spread by the golden angle, turned by `turn` [rad].
@@ -81,18 +82,23 @@ float softlyLit(vec3 at) {
   for (int i = 0; i < kTaps; ++i) sum += texture(shadow_map, vec3(at.xy + width * tap(i, turn), at.z));
   return sum / float(kTaps);
 }
+#endif
 
 float lit(float slope) {
   if (shadow_strength <= 0.0) return 1.0;
   float border = max(abs(p_sun.x), abs(p_sun.y)), strength = shadow_strength * (1.0 - smoothstep(0.85, 0.98, border));
   if (border > 0.98) return 1.0;
   vec3 at = 0.5 * p_sun + 0.5;
-  at.z -= 0.0012 + (soft ? 0.005 : 0.0025) * slope;
-  if (soft) return mix(1.0, softlyLit(at), strength);
+#if SOFT
+  at.z -= 0.0012 + 0.005 * slope;
+  return mix(1.0, softlyLit(at), strength);
+#else
+  at.z -= 0.0012 + 0.0025 * slope;
   float sum = 0.0;
   for (int x = -1; x <= 1; ++x)
     for (int y = -1; y <= 1; ++y) sum += texture(shadow_map, vec3(at.xy + 1.5 * shadow_texel * vec2(x, y), at.z));
   return mix(1.0, sum / 9.0, strength);
+#endif
 }
 
 vec3 film(vec3 x) {  // rises like x, ends at 1
@@ -100,6 +106,7 @@ vec3 film(vec3 x) {  // rises like x, ends at 1
   return pow(clamp(x, 0.0, 1.0), vec3(1.0 / 2.2));
 }
 
+#if GRID
 // How much of a line of the grid of this spacing is in the pixel; none where lines are closer than some pixels.
 float line(vec2 place, float spacing) {
   vec2 at = place / spacing, wide = max(fwidth(at), vec2(1e-6));
@@ -107,8 +114,21 @@ float line(vec2 place, float spacing) {
   vec2 apart = 1.0 - smoothstep(0.08, 0.4, wide);
   return max(near.x * apart.x, near.y * apart.y);
 }
-float gridLine() { return grid > 0.0 ? max(0.28 * line(octant.xy, grid), 0.55 * line(octant.xy, 10.0 * grid)) : 0.0; }
+float gridLine() { return max(0.28 * line(octant.xy, grid), 0.55 * line(octant.xy, 10.0 * grid)); }
+#endif
+float faded(float alpha) { return fade > 0.0 ? alpha * (1.0 - smoothstep(0.35 * fade, fade, length((p_W - target_W).xy))) : alpha; }
+const vec3 kLine = vec3(0.10, 0.12, 0.15);
 
+#if SHEER
+void main() {
+#if SOFT
+  float shadow = 0.32 * (1.0 - lit(1.0 - max(normalize(n_W).z * sun_W.z, 0.0)));
+#else
+  float shadow = 0.0;
+#endif
+  colour = vec4(film(kLine), faded(max(gridLine(), shadow)));
+}
+#else
 void main() {
   vec3 v = normalize(eye_W - p_W);
   vec3 n = normalize(n_W);
@@ -132,16 +152,13 @@ void main() {
     vec3 near = smoothstep(vec3(0.0), 1.4 * width, edge);
     albedo = mix(albedo * (1.0 - 0.75 * edges), albedo, min(near.x, min(near.y, near.z)));
   }
-  float drawn = gridLine();
-  vec3 radiance = mix(mix(albedo * light + highlight, albedo, glow), vec3(0.10, 0.12, 0.15), drawn);
-  float alpha = paint.a;
-  if (sheer) {
-    radiance = vec3(0.10, 0.12, 0.15);
-    alpha = max(drawn, 0.32 * (1.0 - shade));
-  }
-  if (fade > 0.0) alpha *= 1.0 - smoothstep(0.35 * fade, fade, length((p_W - target_W).xy));
-  colour = vec4(film(radiance), alpha);
+  vec3 radiance = mix(albedo * light + highlight, albedo, glow);
+#if GRID
+  radiance = mix(radiance, kLine, gridLine());
+#endif
+  colour = vec4(film(radiance), faded(paint.a));
 }
+#endif
 )";
 
 inline constexpr const char* kShadowVertexShader = R"(#version 330 core
