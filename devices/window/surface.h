@@ -39,6 +39,7 @@ class Surface {
   virtual std::span<const InputEvent> poll() = 0;
   virtual bool closed() const = 0;  // the person has closed it
   virtual void toggleFullScreen() = 0;
+  virtual void showPointer(bool shown) = 0;  // over the window; its events come all the same
 };
 
 struct WindowOptions {

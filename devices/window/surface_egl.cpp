@@ -57,6 +57,7 @@ class OffscreenSurface final : public Surface {
   std::span<const InputEvent> poll() override { return {}; }
   bool closed() const override { return false; }
   void toggleFullScreen() override {}
+  void showPointer(bool) override {}
 
  private:
   SurfaceSize size_;

@@ -70,6 +70,7 @@ class WindowSurface final : public Surface {
   }
   bool closed() const override { return glfwWindowShouldClose(window_) == GLFW_TRUE; }
   void toggleFullScreen() override;
+  void showPointer(bool shown) override { glfwSetInputMode(window_, GLFW_CURSOR, shown ? GLFW_CURSOR_NORMAL : GLFW_CURSOR_HIDDEN); }
 
  private:
   struct Place {

@@ -1,3 +1,5 @@
+#include "pincer/tasks/app/sim_text.h"
+
 #include <fmt/format.h>
 
 #include "pincer/contact/io/counted.h"
@@ -47,14 +49,6 @@ void appendRecorded(const Simulation& simulation, std::string& out) {
   for (const Quantity& q : quantities) out += fmt::format("  {:<24} {:.10g} {}\n", q.name, q.measure(simulation.moment()), q.kind->unit);
 }
 
-void appendExpectations(const SimResult& result, std::string& out) {
-  if (result.log.expectations().empty()) return;
-  out += "\nExpected\n";
-  for (std::size_t i = 0; i < result.log.expectations().size(); ++i) {
-    out += expectationLine(result.log.expectations()[i], result.log.outcomes()[i]);
-  }
-}
-
 void appendStatuses(const SimResult& result, std::string& out) {
   for (std::size_t i = 0; i < kStatusKinds.size(); ++i) {
     if (result.statuses.of(i) > 0)
@@ -64,6 +58,13 @@ void appendStatuses(const SimResult& result, std::string& out) {
 
 }  // namespace
 
+std::string expectationsText(const ExpectationLog& log) {
+  if (log.expectations().empty()) return "";
+  std::string out = "\nExpected\n";
+  for (std::size_t i = 0; i < log.expectations().size(); ++i) out += expectationLine(log.expectations()[i], log.outcomes()[i]);
+  return out;
+}
+
 std::string simText(const Simulation& simulation, const SimOptions& options, const SimResult& result) {
   const Scene& scene = simulation.scene();
   std::string out = scene.description.empty()
@@ -72,7 +73,7 @@ std::string simText(const Simulation& simulation, const SimOptions& options, con
   appendStates(simulation, out);
   if (options.grasp) out += graspText(simulation);
   appendRecorded(simulation, out);
-  appendExpectations(result, out);
+  out += expectationsText(result.log);
   appendStatuses(result, out);
   out += fmt::format("\n{} of {:g} ms, each: median {:.2f} us, p99.9 {:.2f} us, longest {:.1f} us\n", counted(simulation.ticks(), "tick"),
                      1e3 * scene.options.h, 1e6 * result.times.quantile(0.5), 1e6 * result.times.quantile(0.999),

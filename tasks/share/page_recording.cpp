@@ -62,6 +62,7 @@ void PageRecording::addItems(const DrawList& list) {
   std::vector<std::size_t> placed(groups_.size());
   const std::size_t pictures = times_.size();
   for (const DrawItem& item : list) {
+    if (item.paint.sheer) continue;  // the page's own shader knows no grid
     const std::size_t group = groupOf(item);
     placed.resize(groups_.size());
     std::vector<PlacedItem>& items = groups_[group].items;

@@ -14,6 +14,7 @@ struct Camera {
   double pitch = 0.35;            // over the horizon [rad], -1.5 .. 1.5
   double distance = 0.3;          // d [m], 1e-3 .. 1e3
   double opening = 30 * kDegree;  // of the view, from its lower to its upper border [rad]
+  bool operator==(const Camera&) const = default;
 
   Vec3 eye_W() const;
   Mat4f view() const;                     // W to the camera's frame: x right, y up, looks along -z

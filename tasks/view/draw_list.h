@@ -29,7 +29,9 @@ struct Paint {
   float edges = 0;                         // how strongly the triangles' edges show
   float octants = 0;                       // how strongly they differ by turns, so that a ball is seen to turn
   float glow = 0;                          // share of the colour that needs no light: marks, which stand for no thing
-  float fade = 0;                          // distance from W's z axis at which it has faded out [m]; 0: never
+  float fade = 0;                          // horizontal distance from the camera's target at which it has faded out [m]; 0: never
+  float grid = 0;                          // spacing of the lines along x and y of the mesh [m], each tenth stronger; 0: none
+  bool sheer = false;                      // of the surface only its lines, and the shadows on it, are seen
 };
 
 enum class Layer : std::uint8_t {
@@ -47,6 +49,7 @@ struct DrawItem {
   Paint paint;
   Layer layer = Layer::kSolid;
   Part part = Part::kThing;
+  int thing = 0;  // whose it is, for Renderer::things; 0: nobody's
 };
 
 // Who keeps the meshes that items name.

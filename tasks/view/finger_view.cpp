@@ -1,5 +1,7 @@
 #include "pincer/tasks/view/finger_view.h"
 
+#include <string_view>
+
 #include "pincer/contact/error.h"
 #include "pincer/devices/window/surface.h"
 #include "pincer/tasks/lab/finger/mouse_finger.h"
@@ -94,6 +96,9 @@ void captureFinger(const FingerTrial& trial, const TrialPlace& place, bool blind
   shown.blind = blind || told.hidden;
   shown.shows_pads = told.shows_pad;
   shown.target = told.target;
+  const std::string_view stage = told.stage;
+  const bool is_to_feel = stage == "first" || stage == "second" || stage == "feel";
+  if (told.shows_pad && is_to_feel && !snapshot.fingers[0].touching) shown.hint = "In the air: lower the finger until it touches";
   if (shown.blind) snapshot.hidden_body = Snapshot::kAllBodies;
 }
 

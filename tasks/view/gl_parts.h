@@ -62,6 +62,7 @@ class GlPicture {
   int width() const { return width_; }
   int height() const { return height_; }
   unsigned plain() const { return plain_; }
+  unsigned sampled() const { return sampled_; }
 
  private:
   void release();
@@ -78,12 +79,12 @@ class GlShadowMap {
   GlShadowMap& operator=(const GlShadowMap&) = delete;
 
   void begin() const;
-  void bind() const;
+  void bind() const;  // to be compared with, as texture 0; to be read, as texture 1
   int side() const { return side_; }
 
  private:
   int side_;
-  unsigned frame_ = 0, depth_ = 0;
+  unsigned frame_ = 0, depth_ = 0, reader_ = 0;
 };
 
 }  // namespace pincer::tasks

@@ -92,7 +92,12 @@ void drawChart(const StripChart& chart) {
     }
     list->AddPolyline(points.data(), static_cast<int>(points.size()), kLineInks[line % kLineInks.size()], 0, 1.6f);
   }
-  list->AddText({corner.x + 3, corner.y}, IM_COL32(255, 255, 255, 120), fmt::format("{:g}", range.high).c_str());
+  constexpr ImU32 kScaleInk = IM_COL32(255, 255, 255, 150);
+  list->AddText({corner.x + 3, corner.y}, kScaleInk, fmt::format("{:g} {}", range.high, chart.unit()).c_str());
+  const float low = corner.y + kChartHeight - ImGui::GetFontSize();
+  list->AddText({corner.x + 3, low}, kScaleInk, fmt::format("{:g}", range.low).c_str());
+  const std::string since = fmt::format("last {:g} s", chart.seconds());
+  list->AddText({corner.x + kChartWidth - ImGui::CalcTextSize(since.c_str()).x - 3, low}, kScaleInk, since.c_str());
   ImGui::EndGroup();
 }
 

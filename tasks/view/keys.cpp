@@ -25,8 +25,10 @@ constexpr std::array kTimeKeys = {
     KeyBinding{Key::kKeyHome, "Home", ViewAction::kScrubBack, "while paused: a second back in what was seen"},
     KeyBinding{Key::kKeyEnd, "End", ViewAction::kScrubForward, "while paused: a second on"},
     KeyBinding{Key::kKeyBackspace, "Backspace", ViewAction::kLive, "to the present; to the end of a recording"},
-    KeyBinding{'-', "-", ViewAction::kSlower, "slow motion, half as fast"},
-    KeyBinding{'=', "=", ViewAction::kFaster, "twice as fast, to real time"},
+    KeyBinding{'R', "R", ViewAction::kRestart, "again, from the beginning of what was seen"},
+    KeyBinding{'L', "L", ViewAction::kLoop, "over and over, or no longer"},
+    KeyBinding{'-', "-", ViewAction::kSlower, "half as fast, down to 1/256"},
+    KeyBinding{'=', "=", ViewAction::kFaster, "twice as fast; up to 8 times, fingers that you move to real time"},
 };
 constexpr std::array kSceneKeys = {
     KeyBinding{'C', "C", ViewAction::kContacts, "contact points and normals"},
@@ -39,6 +41,8 @@ constexpr std::array kSceneKeys = {
     KeyBinding{'M', "M", ViewAction::kFacets, "meshes as their flat triangles, or as the smooth surface"},
     KeyBinding{'T', "T", ViewAction::kTransparent, "transparent bodies"},
     KeyBinding{'S', "S", ViewAction::kShadows, "shadows"},
+    KeyBinding{'B', "B", ViewAction::kBodies, "list of what moves: place, speed, contacts"},
+    KeyBinding{'N', "N", ViewAction::kNextBody, "select the next body; a click selects what is under the pointer"},
     KeyBinding{'A', "A", ViewAction::kCamera, "look at everything again"},
 };
 constexpr std::array kHandKeys = {
@@ -64,6 +68,7 @@ constexpr std::array kCameraGestures = {
     MouseGesture{"left button, drag", "turn the camera"},
     MouseGesture{"right button, drag", "move the camera"},
     MouseGesture{"wheel", "nearer, further"},
+    MouseGesture{"left button, click", "select a body: the list tells of it, the chart follows it"},
     MouseGesture{"bar below, drag", "to another time"},
 };
 constexpr std::array kHandGestures = {
@@ -106,19 +111,13 @@ bool toggle(ViewAction action, ViewChoice& choice) {
     bool ViewChoice::*shown;
   };
   constexpr std::array kSwitches = {
-      Switch{ViewAction::kHelp, &ViewChoice::help},
-      Switch{ViewAction::kTiming, &ViewChoice::timing},
-      Switch{ViewAction::kOverlay, &ViewChoice::overlay},
-      Switch{ViewAction::kContacts, &ViewChoice::contacts},
-      Switch{ViewAction::kForces, &ViewChoice::forces},
-      Switch{ViewAction::kCones, &ViewChoice::cones},
-      Switch{ViewAction::kJoints, &ViewChoice::joints},
-      Switch{ViewAction::kDevices, &ViewChoice::devices},
-      Switch{ViewAction::kPads, &ViewChoice::pads},
-      Switch{ViewAction::kEdges, &ViewChoice::edges},
-      Switch{ViewAction::kFacets, &ViewChoice::facets},
-      Switch{ViewAction::kShadows, &ViewChoice::shadows},
-      Switch{ViewAction::kTransparent, &ViewChoice::transparent},
+      Switch{ViewAction::kHelp, &ViewChoice::help},       Switch{ViewAction::kTiming, &ViewChoice::timing},
+      Switch{ViewAction::kOverlay, &ViewChoice::overlay}, Switch{ViewAction::kContacts, &ViewChoice::contacts},
+      Switch{ViewAction::kForces, &ViewChoice::forces},   Switch{ViewAction::kCones, &ViewChoice::cones},
+      Switch{ViewAction::kJoints, &ViewChoice::joints},   Switch{ViewAction::kDevices, &ViewChoice::devices},
+      Switch{ViewAction::kPads, &ViewChoice::pads},       Switch{ViewAction::kBodies, &ViewChoice::bodies},
+      Switch{ViewAction::kEdges, &ViewChoice::edges},     Switch{ViewAction::kFacets, &ViewChoice::facets},
+      Switch{ViewAction::kShadows, &ViewChoice::shadows}, Switch{ViewAction::kTransparent, &ViewChoice::transparent},
   };
   for (const Switch& at : kSwitches) {
     if (at.action != action) continue;

@@ -10,6 +10,7 @@
 #include "pincer/tasks/run/tick/snapshot.h"
 #include "pincer/tasks/view/keys.h"
 #include "pincer/tasks/view/strip_chart.h"
+#include "pincer/tasks/view/timeline.h"
 
 namespace pincer::tasks {
 
@@ -26,6 +27,16 @@ struct PadLook {
   double grip = 0;       // that it is asked for, with mouse fingers [N]; 0: unknown
 };
 
+// A line of the list of bodies.
+struct BodyRow {
+  std::string name;
+  Vec3 p_W = Vec3::Zero();  // of its frame [m]
+  double speed = 0;         // of it [m/s]
+  double turn = 0;          // since the start [rad]
+  bool selected = false;
+  std::string contacts;  // of the selected one
+};
+
 // All that an overlay says; the viewer fills it in for every picture.
 struct OverlayText {
   const Snapshot* snapshot = nullptr;
@@ -39,7 +50,13 @@ struct OverlayText {
   std::string notice;               // of what has just happened: a screenshot's name
   double pictures_per_second = 0;
   const Histogram* lateness = nullptr;  // of the ticks that were seen; null: not known
-  double scrub = -1;                    // where in the history, 0 .. 1; negative: at the present
+  const Timeline* timeline = nullptr;   // what happened; null: there is no bar
+  std::string moment;                   // the last that happened: "1.24 s: index slips"
+  double from = 0, to = 0;              // times that the bar shows [s]
+  std::vector<BodyRow> bodies;          // that move
+  std::string hovered;                  // name of the body under the pointer
+  Vec2 pointer = Vec2::Zero();          // [pixels]
+  double grid = 0;                      // spacing of the ground's lines [m]; 0: none are drawn
   bool hands = false;                   // the mouse moves fingers
   bool keys = true;                     // do something
 };
@@ -55,6 +72,7 @@ class Overlay {
   void draw(const OverlayText& text, int width, int height);
 
  private:
+  void write(const OverlayText& text, int width, int height);
   void drawPanels(const OverlayText& text, int width, int height);
   struct Gui;
   std::unique_ptr<Gui> gui_;

@@ -51,12 +51,19 @@ Overlay::~Overlay() {
   ImGui::DestroyContext(gui_->context);
 }
 
+// Panels fit their text from the second pass on: the first, which draws nothing, tells how large they are.
 void Overlay::draw(const OverlayText& text, int width, int height) {
   ImGui::SetCurrentContext(gui_->context);
   ImGuiIO& io = ImGui::GetIO();
   io.DisplaySize = {static_cast<float>(width), static_cast<float>(height)};
   io.DeltaTime = 1 / 60.0f;
   ImGui_ImplOpenGL3_NewFrame();
+  write(text, width, height);
+  write(text, width, height);
+  ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+void Overlay::write(const OverlayText& text, int width, int height) {
   ImGui::NewFrame();
   if (text.page) {
     drawPage(text, width, height);
@@ -64,16 +71,18 @@ void Overlay::draw(const OverlayText& text, int width, int height) {
     drawPanels(text, width, height);
   }
   ImGui::Render();
-  ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
 }
 
 void Overlay::drawPanels(const OverlayText& text, int width, int height) {
-  drawLabels(text);
+  drawLabels(text, width, height);
+  if (text.grid > 0) drawScale(text, width, height);
   if (text.choice.overlay) {
     drawStatus(text);
     drawTrial(text, width);
     if (text.choice.pads) drawPads(text, width);
-    drawCharts(text, height);
+    if (text.choice.bodies) drawBodies(text, width, height);
+    drawCharts(text, text.timeline ? height - static_cast<int>(kBarHeight) : height);
+    if (text.timeline) drawTimeline(text, width, height);
   }
   if (text.choice.timing) drawHealth(text, height);
   if (text.choice.help) drawHelp(text, width, height);

@@ -14,14 +14,19 @@ class OverlayPanel {
   OverlayPanel& operator=(const OverlayPanel&) = delete;
 };
 
-void drawLabels(const OverlayText& text);
-void drawStatus(const OverlayText& text);              // upper left
-void drawTrial(const OverlayText& text, int width);    // upper middle
-void drawPads(const OverlayText& text, int width);     // upper right
-void drawCharts(const OverlayText& text, int height);  // lower left
-void drawHealth(const OverlayText& text, int height);  // left
+constexpr double kBarHeight = 40;  // of the bar of times at the picture's lower border [pixels]
+
+void drawLabels(const OverlayText& text, int width, int height);
+void drawScale(const OverlayText& text, int width, int height);     // right, over the bar
+void drawTimeline(const OverlayText& text, int width, int height);  // the bar
+void drawBodies(const OverlayText& text, int width, int height);    // right
+void drawStatus(const OverlayText& text);                           // upper left
+void drawTrial(const OverlayText& text, int width);                 // upper middle
+void drawPads(const OverlayText& text, int width);                  // upper right
+void drawCharts(const OverlayText& text, int height);               // lower left
+void drawHealth(const OverlayText& text, int height);               // left
 void drawHelp(const OverlayText& text, int width, int height);
 void drawPage(const OverlayText& text, int width, int height);    // over all of it
-void drawNotice(const OverlayText& text, int width, int height);  // lower middle, and where in the history
+void drawNotice(const OverlayText& text, int width, int height);  // lower middle
 
 }  // namespace pincer::tasks

@@ -12,7 +12,10 @@ class Painter {
   // `model` must outlive it.
   Painter(devices::Surface& surface, const grasp::GraspModel& model, const Snapshot& start);
 
-  void draw(const Snapshot& snapshot, const ViewChoice& choice, bool smooth_borders = true);
+  // `at_best`: with smooth borders, half shadows and dark corners.
+  void draw(const Snapshot& snapshot, const ViewChoice& choice, bool at_best = true);
+  // Puts the camera where most of each thing is seen (framing.h).
+  void frame(const Snapshot& snapshot);
   Image picture() { return renderer_.picture(); }
   void show() { renderer_.show(); }
 

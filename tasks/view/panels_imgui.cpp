@@ -3,12 +3,14 @@
 
 #include <algorithm>
 
+#include "pincer/tasks/view/label_layout.h"
 #include "pincer/tasks/view/overlay_parts.h"
 
 namespace pincer::tasks {
 namespace {
 
-constexpr ImU32 kInk = IM_COL32(18, 22, 28, 255), kPaper = IM_COL32(255, 255, 255, 205), kSlipInk = IM_COL32(190, 30, 10, 255);
+constexpr ImU32 kInk = IM_COL32(18, 22, 28, 255), kPaper = IM_COL32(255, 255, 255, 205), kSlipInk = IM_COL32(190, 30, 10, 255),
+                kLeaderInk = IM_COL32(18, 22, 28, 120);
 const ImVec4 kGoodText(0.45f, 0.85f, 0.50f, 1), kBadText(1.0f, 0.45f, 0.35f, 1);
 
 void textLine(const std::string& text) { ImGui::TextUnformatted(text.c_str()); }
@@ -40,14 +42,30 @@ void helpList(const char* title, const Rows& rows) {
 
 }  // namespace
 
-void drawLabels(const OverlayText& text) {
-  ImDrawList* list = ImGui::GetBackgroundDrawList();
+void drawLabels(const OverlayText& text, int width, int height) {
+  std::vector<LabelBox> boxes;
   for (const OverlayLabel& label : text.labels) {
     const ImVec2 size = ImGui::CalcTextSize(label.text.c_str());
-    const ImVec2 at(static_cast<float>(label.pixel.x()) - 0.5f * size.x, static_cast<float>(label.pixel.y()) - 0.5f * size.y);
-    list->AddRectFilled({at.x - 5, at.y - 2}, {at.x + size.x + 5, at.y + size.y + 2}, kPaper, 4);
-    list->AddText(at, label.slips ? kSlipInk : kInk, label.text.c_str());
+    boxes.push_back({label.pixel, Vec2(size.x + 10, size.y + 4)});
   }
+  const std::vector<Vec2> places = layOut(boxes, Vec2(width, height));
+  ImDrawList* list = ImGui::GetBackgroundDrawList();
+  const auto pixel = [](const Vec2& v) { return ImVec2(static_cast<float>(v.x()), static_cast<float>(v.y())); };
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    const OverlayLabel& label = text.labels[i];
+    if (places[i] != label.pixel) list->AddLine(pixel(label.pixel), pixel(places[i]), kLeaderInk, 1);
+  }
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    const OverlayLabel& label = text.labels[i];
+    const Vec2 low = places[i] - 0.5 * boxes[i].size, high = places[i] + 0.5 * boxes[i].size;
+    list->AddRectFilled(pixel(low), pixel(high), kPaper, 4);
+    list->AddText(pixel(low + Vec2(5, 2)), label.slips ? kSlipInk : kInk, label.text.c_str());
+  }
+  if (text.hovered.empty()) return;
+  const ImVec2 at(static_cast<float>(text.pointer.x()) + 14, static_cast<float>(text.pointer.y()) + 6);
+  const ImVec2 size = ImGui::CalcTextSize(text.hovered.c_str());
+  list->AddRectFilled({at.x - 5, at.y - 2}, {at.x + size.x + 5, at.y + size.y + 2}, kPaper, 4);
+  list->AddText(at, kInk, text.hovered.c_str());
 }
 
 void drawStatus(const OverlayText& text) {
@@ -59,6 +77,7 @@ void drawStatus(const OverlayText& text) {
   dimLine(fmt::format("{}", text.pace));
   if (s.tick_seconds > 0 && !s.trial.blind) dimLine(fmt::format("tick {:.1f} us, {} contacts", 1e6 * s.tick_seconds, s.contact_count));
   const std::string words = statusWords(s);
+  if (!text.moment.empty()) dimLine(text.moment);
   if (!words.empty()) colourLine((s.status & ~std::uint32_t{0}) == 0, words);
   if (text.keys) dimLine("F1 help");
 }
@@ -68,13 +87,13 @@ void drawTrial(const OverlayText& text, int width) {
   if (trial.trials == 0 && *trial.instruction == 0) return;
   const OverlayPanel panel("trial", 0.5 * width, 0, 0.5, 0);
   if (*trial.instruction) textLine(trial.instruction);
+  if (*trial.hint) colourLine(true, trial.hint);
   if (trial.trials == 0) return;
   std::string line = fmt::format("trial {} of {}", trial.trial, trial.trials);
   if (*trial.condition) line += fmt::format(" · {}", trial.condition);
   if (*trial.stage) line += fmt::format(" · {}", trial.stage);
   if (trial.time_left >= 0) line += fmt::format(" · {:.0f} s left", std::ceil(trial.time_left));
   dimLine(line);
-  if (*trial.hint) colourLine(true, trial.hint);
 }
 
 void drawHealth(const OverlayText& text, int height) {
@@ -125,14 +144,8 @@ void drawPage(const OverlayText& text, int width, int height) {
 }
 
 void drawNotice(const OverlayText& text, int width, int height) {
-  if (text.scrub >= 0) {
-    ImDrawList* list = ImGui::GetForegroundDrawList();
-    const auto w = static_cast<float>(width), y = static_cast<float>(height) - 5;
-    list->AddRectFilled({0, y}, {w, y + 5}, IM_COL32(30, 34, 40, 160));
-    list->AddRectFilled({0, y}, {w * static_cast<float>(text.scrub), y + 5}, IM_COL32(70, 140, 235, 255));
-  }
   if (text.notice.empty()) return;
-  const OverlayPanel panel("notice", 0.5 * width, height, 0.5, 1);
+  const OverlayPanel panel("notice", 0.5 * width, text.timeline ? height - kBarHeight : height, 0.5, 1);
   textLine(text.notice);
 }
 

@@ -4,6 +4,8 @@
 // Everything is drawn to an own multisampled picture, which then goes to the window, if there is one. Calls need the surface to be current.
 #pragma once
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "pincer/devices/window/surface.h"
 #include "pincer/tasks/view/camera.h"
@@ -17,6 +19,7 @@ struct RenderOptions {
   Vec3 centre_W = Vec3::Zero();  // of what has sharp shadows [m]
   double radius = 0.15;          // of it [m]
   bool smooth_borders = true;    // several samples per pixel there: twice the time without a graphics card
+  bool soft = true;              // half shadows, and less light in corners and near contacts: ten times the time without a graphics card
 };
 
 class Renderer final : public MeshSink {
@@ -31,6 +34,9 @@ class Renderer final : public MeshSink {
   std::string graphics() const;  // who draws: "llvmpipe (LLVM 15, 256 bits)"
   bool isSoftware() const;       // no graphics card does
   void draw(const DrawList& list, const Camera& camera, const RenderOptions& options);
+  // Whose each pixel is in a picture of this size, row by row from the upper left: DrawItem::thing of what is in front, 0 where nothing
+  // is. Marks and the ground are left out.
+  std::vector<int> things(const DrawList& list, const Camera& camera, devices::SurfaceSize size);
   // What was drawn since, overlays included.
   Image picture();
   // To the surface's window, if it is one.

@@ -2,15 +2,18 @@
 
 #include <algorithm>
 
+#include "pincer/tasks/view/effects_gl.h"
 #include "pincer/tasks/view/gl_parts.h"
 #include "pincer/tasks/view/renderer.h"
 #include "pincer/tasks/view/shaders.h"
+#include "pincer/tasks/view/shading_gl.h"
 
 namespace pincer::tasks {
 namespace {
 
 constexpr int kSamples = 4;                                // per pixel, along borders
 constexpr int kShadowSide = 2048;                          // texels
+constexpr double kCornerReach = 0.12;                      // of what takes light from corners, in radii of what has shadows
 constexpr float kHiddenMarks = 0.5f;                       // share of a mark that shows through what hides it
 const Vec3 kSun_W = Vec3(-0.45, -0.55, 1.1).normalized();  // towards the sun
 
@@ -24,7 +27,7 @@ Mat4f worldToSun(const RenderOptions& options) {
   return m;
 }
 
-bool isOpaque(const DrawItem& item) { return item.paint.alpha >= 1 && item.paint.fade <= 0; }
+bool isOpaque(const DrawItem& item) { return item.paint.alpha >= 1 && item.paint.fade <= 0 && !item.paint.sheer; }
 
 }  // namespace
 
@@ -36,13 +39,17 @@ struct Renderer::Gl {
   void drawItem(const DrawItem& item, float alpha = 1);
   void drawOpaque(const DrawList& list, Layer layer);
   void drawHiddenMarks(const DrawList& list);
+  void drawGround(const DrawList& list);
+  void darkenCorners(const Camera& camera, double reach);
   void drawTransparent(const DrawList& list, const Vec3& eye_W);
 
   devices::Surface& surface;
-  GlProgram solid{kSolidVertexShader, kSolidFragmentShader}, shadow{kShadowVertexShader, kShadowFragmentShader},
-      sky{kSkyVertexShader, kSkyFragmentShader};
+  GlProgram shadow{kShadowVertexShader, kShadowFragmentShader}, sky{kSkyVertexShader, kSkyFragmentShader};
+  GlShading shading;
   GlShadowMap shadow_map{kShadowSide};
   GlPicture picture;
+  GlOcclusion occlusion;
+  GlThings things;
   GlMesh nothing{{}};  // drawn where a shader makes its own corners
   std::vector<std::unique_ptr<GlMesh>> meshes;
 };
@@ -85,15 +92,7 @@ void Renderer::Gl::drawSky() {
 }
 
 void Renderer::Gl::drawItem(const DrawItem& item, float alpha) {
-  const Eigen::Matrix3f linear = item.X_WM.topLeftCorner<3, 3>();
-  solid.set("X_WM", item.X_WM);
-  solid.set("N_WM", Eigen::Matrix3f(linear.inverse().transpose()));
-  solid.set("paint", Eigen::Vector4f(item.paint.colour.x(), item.paint.colour.y(), item.paint.colour.z(), alpha * item.paint.alpha));
-  solid.set("gloss", item.paint.gloss);
-  solid.set("edges", item.paint.edges);
-  solid.set("octants", item.paint.octants);
-  solid.set("glow", item.paint.glow);
-  solid.set("fade", item.paint.fade);
+  shading.begin(item, alpha);
   meshes[static_cast<std::size_t>(item.mesh)]->draw();
 }
 
@@ -113,21 +112,32 @@ void Renderer::Gl::drawHiddenMarks(const DrawList& list) {
   glDepthMask(GL_TRUE);
 }
 
+// Fades out into the sky; of a sheer one nothing hides what lies behind.
+void Renderer::Gl::drawGround(const DrawList& list) {
+  for (const DrawItem& item : list) {
+    if (item.layer != Layer::kGround || isOpaque(item)) continue;
+    glDepthMask(item.paint.sheer ? GL_FALSE : GL_TRUE);
+    drawItem(item);
+  }
+  glDepthMask(GL_TRUE);
+}
+
+void Renderer::Gl::darkenCorners(const Camera& camera, double reach) {
+  occlusion.darken(picture, camera, reach, nothing);
+  glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  shading.forget();
+}
+
+// From far to near.
 void Renderer::Gl::drawTransparent(const DrawList& list, const Vec3& eye_W) {
   std::vector<const DrawItem*> items;
   for (const DrawItem& item : list) {
-    if (!isOpaque(item)) items.push_back(&item);
+    if (!isOpaque(item) && item.layer != Layer::kGround) items.push_back(&item);
   }
   const auto distance = [&](const DrawItem* item) { return (item->X_WM.topRightCorner<3, 1>() - eye_W.cast<float>()).norm(); };
-  // The ground first, it lies under everything; then from far to near.
-  std::stable_sort(items.begin(), items.end(), [&](const DrawItem* a, const DrawItem* b) {
-    const bool a_ground = a->layer == Layer::kGround, b_ground = b->layer == Layer::kGround;
-    return a_ground != b_ground ? a_ground : distance(a) > distance(b);
-  });
-  for (const DrawItem* item : items) {
-    glDepthMask(item->layer == Layer::kGround ? GL_TRUE : GL_FALSE);
-    drawItem(*item);
-  }
+  std::stable_sort(items.begin(), items.end(), [&](const DrawItem* a, const DrawItem* b) { return distance(a) > distance(b); });
+  glDepthMask(GL_FALSE);
+  for (const DrawItem* item : items) drawItem(*item);
   glDepthMask(GL_TRUE);
 }
 
@@ -144,23 +154,28 @@ void Renderer::draw(const DrawList& list, const Camera& camera, const RenderOpti
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   gl_->drawSky();
   gl_->shadow_map.bind();
-  GlProgram& solid = gl_->solid;
-  solid.use();
-  solid.set("world_to_clip", camera.world_to_clip(static_cast<double>(size.width) / size.height));
-  solid.set("world_to_sun", worldToSun(options));
-  solid.set("eye_W", Vec3f(camera.eye_W().cast<float>()));
-  solid.set("sun_W", Vec3f(kSun_W.cast<float>()));
-  solid.set("shadow_strength", options.shadows ? 0.85f : 0.0f);
-  solid.set("shadow_texel", 1.0f / kShadowSide);
-  solid.set("shadow_map", 0);
+  gl_->shading.setFrame({.world_to_clip = camera.world_to_clip(static_cast<double>(size.width) / size.height),
+                         .world_to_sun = worldToSun(options),
+                         .eye_W = camera.eye_W().cast<float>(),
+                         .target_W = camera.target_W.cast<float>(),
+                         .sun_W = kSun_W.cast<float>(),
+                         .shadow_strength = options.shadows ? 0.85f : 0.0f,
+                         .shadow_texel = 1.0f / kShadowSide,
+                         .soft = options.soft});
   gl_->drawOpaque(list, Layer::kSolid);
   gl_->drawOpaque(list, Layer::kGround);
   glEnable(GL_BLEND);
   glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  gl_->drawGround(list);
+  if (options.shadows && options.soft) gl_->darkenCorners(camera, kCornerReach * options.radius);
   gl_->drawTransparent(list, camera.eye_W());
   gl_->drawHiddenMarks(list);
   gl_->drawOpaque(list, Layer::kMark);
   gl_->picture.resolve();
+}
+
+std::vector<int> Renderer::things(const DrawList& list, const Camera& camera, devices::SurfaceSize size) {
+  return gl_->things.draw(list, camera, size.width, size.height, gl_->meshes);
 }
 
 Image Renderer::picture() {

@@ -15,6 +15,7 @@ namespace {
 const Vec3f kSkin(0.83f, 0.50f, 0.37f), kPad(0.88f, 0.40f, 0.34f), kNail(0.93f, 0.72f, 0.64f);
 const Vec3f kTip(0.20f, 0.22f, 0.25f);
 const Vec3f kStick(0.02f, 0.50f, 0.20f), kSlip(0.95f, 0.10f, 0.03f), kNormal(0.02f, 0.07f, 0.30f), kPorcelain(0.50f, 0.52f, 0.54f);
+const Vec3f kSelected(1.0f, 0.95f, 0.55f);
 const Vec3f kGoal(0.05f, 0.45f, 0.85f);
 const Vec3f kFloor(0.50f, 0.52f, 0.55f), kDevice(0.10f, 0.30f, 0.85f);
 const std::array<Vec3f, 6> kBodyColours = {Vec3f(0.90f, 0.42f, 0.06f), Vec3f(0.06f, 0.36f, 0.62f), Vec3f(0.30f, 0.55f, 0.16f),
@@ -22,6 +23,7 @@ const std::array<Vec3f, 6> kBodyColours = {Vec3f(0.90f, 0.42f, 0.06f), Vec3f(0.0
 constexpr double kFingerBehind = 3.2;       // length of a finger behind its tip's centre, in radii
 constexpr double kPadAngle = 55 * kDegree;  // of the pad about its normal, that the display's tactor reaches
 constexpr double kGroundExtent = 12;        // radius of the drawn floor, in radii of what moves
+constexpr double kGridShare = 0.7;          // of the radius of what moves: the ground's lines are the next power of ten below as far apart
 constexpr double kLargestThing = 1;         // a larger body that doesn't move needn't be in the picture [m]
 constexpr double kLongestArrow = 2.2;       // in sizes of what moves
 constexpr int kMostLabels = 8;              // more contacts than these, and only fingers' forces are written beside them
@@ -83,7 +85,7 @@ SceneDrawing::SceneDrawing(const grasp::GraspModel& model, const Snapshot& start
     bodies_.push_back(bodyLook(model.world, body));
     if (body.dynamic) smallest = std::min(smallest, body.bounding_radius);
   }
-  addShapes(model.world, radius(start), meshes);
+  addShapes(model.world, start, radius(start), meshes);
   for (const grasp::FingerModel& finger : model.fingers) smallest = std::min(smallest, 3 * finger.radius);
   if (smallest < kInfinity) size_ = smallest;
   for (std::size_t i = 0; i < start.fingers.size(); ++i) plain_q_WF_.push_back(plainOrientation(start, i));
@@ -109,29 +111,56 @@ SceneDrawing::ShapeLook SceneDrawing::shapeLook(const engine::ColliderModel& col
   look.layer = std::holds_alternative<contact::HalfSpace>(collider.shape) ? Layer::kGround : Layer::kSolid;
   const auto* dish = std::get_if<contact::Dish>(&collider.shape);
   const double extent = dish ? std::min(0.55 * dish->radius, std::max(1.2 * reach, 0.3 * dish->radius)) : kGroundExtent * reach;
-  look.smooth = look.facets = meshes.add(shapeMesh(collider.shape, MeshLook::kSmooth, extent));
+  const ViewMesh mesh = shapeMesh(collider.shape, MeshLook::kSmooth, extent);
+  for (const ViewVertex& vertex : mesh.vertices) look.box_S.extend(vertex.p.cast<double>());
+  look.smooth = look.facets = meshes.add(mesh);
   if (look.is_mesh) look.facets = meshes.add(shapeMesh(collider.shape, MeshLook::kFacets, extent));
   return look;
 }
 
 // Bodies that move differ in colour, a body's shapes don't.
-void SceneDrawing::addShapes(const engine::WorldModel& model, double reach, MeshSink& meshes) {
+void SceneDrawing::addShapes(const engine::WorldModel& model, const Snapshot& start, double reach, MeshSink& meshes) {
+  grid_ = math::pow(10, std::floor(math::log10(kGridShare * reach)));
+  const double extent = reach + centre_W(start).norm() / kGroundExtent;
+  bool has_ground = false;
+  double lowest = kInfinity;
+  for (const FingerSnapshot& finger : start.fingers) lowest = std::min(lowest, finger.p_WP.z());
   std::size_t next_colour = 0;
   for (const engine::BodyModel& body : model.bodies) {
     const Vec3f& colour = kBodyColours[next_colour % kBodyColours.size()];
     if (body.dynamic) ++next_colour;
     for (const engine::ColliderModel& collider : engine::collidersOf(model, body)) {
-      ShapeLook& look = shapes_.emplace_back(shapeLook(collider, reach, meshes));
+      const bool is_ground = std::holds_alternative<contact::HalfSpace>(collider.shape);
+      ShapeLook& look = shapes_.emplace_back(shapeLook(collider, is_ground ? extent : reach, meshes));
       look.paint = paintOf(collider.shape, body.dynamic, colour);
-      if (look.layer == Layer::kGround) look.paint.fade = static_cast<float>(kGroundExtent * reach);
+      has_ground = has_ground || is_ground;
+      if (is_ground) look.paint.fade = static_cast<float>(kGroundExtent * reach);
+      if (is_ground) look.paint.grid = static_cast<float>(grid_);
+      const Pose X_WS = start.X_WB[look.body] * look.X_BS;
+      for (int i = 0; i < 8 && !is_ground; ++i) {
+        lowest = std::min(lowest, (X_WS * look.box_S.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i))).z());
+      }
     }
   }
+  if (!has_ground && lowest < kInfinity) addReferencePlane(start, lowest, reach, meshes);
+}
+
+// Things that float have lines and shadows below them that say how large they are, and how high.
+void SceneDrawing::addReferencePlane(const Snapshot& start, double lowest, double reach, MeshSink& meshes) {
+  const double extent = kGroundExtent * reach;
+  Vec3 place_W = (centre_W(start) / (10 * grid_)).array().round() * 10 * grid_;
+  place_W.z() = lowest - 0.1 * reach;
+  reference_plane_ = DrawItem{meshes.add(shapeMesh(contact::HalfSpace{}, MeshLook::kSmooth, extent)),
+                              placed({Quat::Identity(), place_W}),
+                              {.fade = static_cast<float>(0.6 * extent), .grid = static_cast<float>(grid_), .sheer = true},
+                              Layer::kGround};
 }
 
 DrawList SceneDrawing::compose(const Snapshot& snapshot, const ViewChoice& choice) const {
   DrawList list;
   addBodies(snapshot, choice, list);
   if (snapshot.trial.blind) return list;
+  if (reference_plane_) list.push_back(*reference_plane_);
   for (std::size_t i = 0; i < snapshot.fingers.size(); ++i) {
     addFinger(snapshot, i, list);
     const std::size_t first = list.size();
@@ -155,6 +184,8 @@ void SceneDrawing::addBodies(const Snapshot& snapshot, const ViewChoice& choice,
     const bool moves = bodies_[look.body].moves;
     if ((snapshot.trial.blind && moves) || isHidden(snapshot, look.body)) continue;
     DrawItem item{choice.facets ? look.facets : look.smooth, placed(snapshot.X_WB[look.body] * look.X_BS), look.paint, look.layer};
+    if (choice.selected == static_cast<int>(look.body)) item.paint.colour = 0.55f * item.paint.colour + 0.45f * kSelected;
+    if (bodies_[look.body].matters) item.thing = thingOfBody(look.body);
     if (look.is_mesh && choice.edges) item.paint.edges = choice.facets ? 0.7f : 0.3f;
     if (moves && choice.transparent) item.paint.alpha = 0.4f;
     list.push_back(item);
@@ -164,9 +195,10 @@ void SceneDrawing::addBodies(const Snapshot& snapshot, const ViewChoice& choice,
 void SceneDrawing::addFinger(const Snapshot& snapshot, std::size_t finger, DrawList& list) const {
   const FingerSnapshot& seen = snapshot.fingers[finger];
   const grasp::FingerModel& model = fingers_[finger];
+  const int thing = thingOfBody(bodies_.size() + finger);
   if (tips_[finger] >= 0) {
     const Pose X_WF{seen.q_WF.value_or(Quat::Identity()), seen.p_WP};
-    list.push_back({tips_[finger], placed(X_WF), {.colour = kTip, .gloss = 0.3f}});
+    list.push_back({tips_[finger], placed(X_WF), {.colour = kTip, .gloss = 0.3f}, Layer::kSolid, Part::kThing, thing});
     return;
   }
   const Vec3 r = Vec3::Constant(model.radius);
@@ -176,20 +208,20 @@ void SceneDrawing::addFinger(const Snapshot& snapshot, std::size_t finger, DrawL
     R_FM << model.distal_F, model.distal_F.cross(model.pad_normal_F), -model.pad_normal_F;
     X_WM.q = *seen.q_WF * Quat(R_FM);
   }
-  list.push_back({finger_, placed(X_WM, r), {.colour = kSkin, .gloss = 0.3f}});
+  list.push_back({finger_, placed(X_WM, r), {.colour = kSkin, .gloss = 0.3f}, Layer::kSolid, Part::kThing, thing});
   list.push_back({nail_, placed(X_WM, r), {.colour = kNail, .gloss = 0.8f}});
   if (seen.q_WF) list.push_back({pad_, placed(X_WM, r), {.colour = kPad, .gloss = 0.25f}});
 }
 
 void SceneDrawing::addDevice(const FingerSnapshot& seen, std::size_t finger, DrawList& list) const {
   const bool is_tip = tips_[finger] >= 0;
+  const Vec3 spring = seen.p_WF - seen.p_WP;
+  if (spring.norm() < 1e-5) return;  // device and proxy are one
   list.push_back({is_tip ? tips_[finger] : ball_,
                   placed({is_tip ? seen.q_WF.value_or(Quat::Identity()) : Quat::Identity(), seen.p_WF},
                          Vec3::Constant(is_tip ? 1 : fingers_[finger].radius)),
                   {.colour = kDevice, .alpha = 0.16f, .gloss = 0.5f},
                   Layer::kMark});
-  const Vec3 spring = seen.p_WF - seen.p_WP;
-  if (spring.norm() < 1e-5) return;
   const double thin = 0.02 * size_;
   const Paint paint{.colour = kDevice, .glow = 0.6f};
   list.push_back({ball_, placed({Quat::Identity(), seen.p_WF}, Vec3::Constant(2.5 * thin)), paint, Layer::kMark});

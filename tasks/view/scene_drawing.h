@@ -4,6 +4,7 @@
 //   cone          of friction at a finger's contact: the force on the finger lies within it; its half opening is atan(mu)
 //   colours       sticking green, slipping red
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,7 +18,7 @@ namespace pincer::tasks {
 // What is shown; a key each (keys.h).
 struct ViewChoice {
   bool facets = false;       // of meshes, in place of the smooth surface
-  bool edges = true;         // of the triangles of meshes
+  bool edges = false;        // of the triangles of meshes
   bool contacts = true;      // places and normals
   bool forces = true;        // arrows, newtons
   bool cones = true;         // of friction
@@ -27,6 +28,8 @@ struct ViewChoice {
   bool shadows = true;
   bool overlay = true;  // panels and charts
   bool pads = true;     // the fingerpad insets
+  bool bodies = false;  // the list of what moves
+  int selected = -1;    // body that stands out; -1: none
   bool help = false;
   bool timing = false;
 };
@@ -43,7 +46,9 @@ class SceneDrawing {
   // Makes the meshes; `start` says where things are at first.
   SceneDrawing(const grasp::GraspModel& model, const Snapshot& start, MeshSink& meshes);
 
-  // What there is to see of `snapshot`. A blind trial shows nothing but the fingers' home: an empty dish.
+  // What there is to see of `snapshot`. A blind trial shows nothing but the fingers' home: an empty dish. Things (DrawItem::thing) are
+  // thingOfBody, and after them the fingers; 0 is what needn't be in the picture.
+  static int thingOfBody(std::size_t body) { return static_cast<int>(body) + 1; }
   DrawList compose(const Snapshot& snapshot, const ViewChoice& choice) const;
   std::vector<ViewLabel> labels(const Snapshot& snapshot, const ViewChoice& choice) const;
 
@@ -51,6 +56,7 @@ class SceneDrawing {
   Vec3 centre_W(const Snapshot& snapshot) const;
   double radius(const Snapshot& snapshot) const;
   Camera camera(const Snapshot& snapshot) const;           // that looks at it
+  double grid() const { return grid_; }                    // spacing of the ground's lines [m]
   double metresPerNewton(const Snapshot& snapshot) const;  // of the arrows
 
  private:
@@ -61,6 +67,7 @@ class SceneDrawing {
     Paint paint;
     Layer layer = Layer::kSolid;
     bool is_mesh = false;
+    Eigen::AlignedBox3d box_S;  // about it, in its frame [m]
   };
   struct BodyLook {
     bool dynamic = false, moves = false;
@@ -71,7 +78,8 @@ class SceneDrawing {
 
   static BodyLook bodyLook(const engine::WorldModel& model, const engine::BodyModel& body);
   static ShapeLook shapeLook(const engine::ColliderModel& collider, double reach, MeshSink& meshes);
-  void addShapes(const engine::WorldModel& model, double reach, MeshSink& meshes);
+  void addShapes(const engine::WorldModel& model, const Snapshot& start, double reach, MeshSink& meshes);
+  void addReferencePlane(const Snapshot& start, double lowest, double reach, MeshSink& meshes);
   void addBodies(const Snapshot& snapshot, const ViewChoice& choice, DrawList& list) const;
   void addFinger(const Snapshot& snapshot, std::size_t finger, DrawList& list) const;
   void addDevice(const FingerSnapshot& seen, std::size_t finger, DrawList& list) const;
@@ -87,7 +95,9 @@ class SceneDrawing {
   JointDrawing joints_;
   std::vector<Quat> plain_q_WF_;  // of fingers whose device says nothing of their orientation
   int ball_, rod_, cone_, head_, finger_, pad_, nail_;
-  double size_ = 0.05;  // of marks: that of the things that move [m]
+  std::optional<DrawItem> reference_plane_;  // lines below all, where no half-space lies
+  double grid_ = 0.01;                       // [m]
+  double size_ = 0.05;                       // of marks: that of the things that move [m]
 };
 
 }  // namespace pincer::tasks

@@ -29,13 +29,16 @@ void main() {
 }
 )";
 
-inline constexpr const char* kSolidFragmentShader = R"(#version 330 core
+// Behind the version and three words that are 0 or 1: SOFT half shadows, GRID lines, SHEER nothing but lines and shadows. Programs of their own, as
+// without a graphics card a branch that isn't taken costs as much as one that is.
+inline constexpr const char* kSolidFragmentShader = R"(
 in vec3 p_W;
 in vec3 n_W;
 in vec3 edge;
 in vec3 p_sun;
 in vec3 octant;
 uniform vec3 eye_W;
+uniform vec3 target_W;
 uniform vec3 sun_W;
 uniform vec4 paint;
 uniform float gloss;
@@ -45,18 +48,57 @@ uniform float glow;
 uniform float fade;
 uniform float shadow_strength;
 uniform float shadow_texel;
+uniform float grid;
 uniform sampler2DShadow shadow_map;
+uniform sampler2D sun_depths;
 out vec4 colour;
+
+#if SOFT
+const int kTaps = 32;
+
+// Of a disc, evenly spread by the golden angle, turned by `turn` [rad].
+vec2 tap(int i, float turn) {
+  float angle = 2.39996323 * float(i) + turn;
+  return sqrt((float(i) + 0.5) / float(kTaps)) * vec2(cos(angle), sin(angle));
+}
+
+// Another turn for each pixel, so that taps too few to be smooth show as fine grain (Jimenez 2014: interleaved gradient noise).
+float grain() { return 6.2831853 * fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715)))); }
+
+// Half shadows as wide as the blockers are far away (Fernando 2005, percentage-closer soft shadows); lengths in shares of the shadow map.
+float softlyLit(vec3 at) {
+  const float kSunWidth = 0.20, kWidest = 0.05;
+  float turn = grain(), depth = 0.0, blockers = 0.0;
+  for (int i = 0; i < kTaps; ++i) {
+    float seen = texture(sun_depths, at.xy + kWidest * tap(i, turn)).r;
+    if (seen < at.z - 0.001) {
+      depth += seen;
+      blockers += 1.0;
+    }
+  }
+  if (blockers == 0.0) return 1.0;
+  float width = clamp(kSunWidth * (at.z - depth / blockers), 1.5 * shadow_texel, kWidest);
+  float sum = 0.0;
+  for (int i = 0; i < kTaps; ++i) sum += texture(shadow_map, vec3(at.xy + width * tap(i, turn), at.z));
+  return sum / float(kTaps);
+}
+#endif
 
 float lit(float slope) {
   if (shadow_strength <= 0.0) return 1.0;
-  if (any(greaterThan(abs(p_sun.xy), vec2(0.98)))) return 1.0;
+  float border = max(abs(p_sun.x), abs(p_sun.y)), strength = shadow_strength * (1.0 - smoothstep(0.85, 0.98, border));
+  if (border > 0.98) return 1.0;
   vec3 at = 0.5 * p_sun + 0.5;
+#if SOFT
+  at.z -= 0.0012 + 0.005 * slope;
+  return mix(1.0, softlyLit(at), strength);
+#else
   at.z -= 0.0012 + 0.0025 * slope;
   float sum = 0.0;
   for (int x = -1; x <= 1; ++x)
     for (int y = -1; y <= 1; ++y) sum += texture(shadow_map, vec3(at.xy + 1.5 * shadow_texel * vec2(x, y), at.z));
-  return mix(1.0, sum / 9.0, shadow_strength);
+  return mix(1.0, sum / 9.0, strength);
+#endif
 }
 
 vec3 film(vec3 x) {  // rises like x, ends at 1
@@ -64,6 +106,29 @@ vec3 film(vec3 x) {  // rises like x, ends at 1
   return pow(clamp(x, 0.0, 1.0), vec3(1.0 / 2.2));
 }
 
+#if GRID
+// How much of a line of the grid of this spacing is in the pixel; none where lines are closer than some pixels.
+float line(vec2 place, float spacing) {
+  vec2 at = place / spacing, wide = max(fwidth(at), vec2(1e-6));
+  vec2 near = 1.0 - clamp(abs(fract(at - 0.5) - 0.5) / wide, 0.0, 1.0);
+  vec2 apart = 1.0 - smoothstep(0.08, 0.4, wide);
+  return max(near.x * apart.x, near.y * apart.y);
+}
+float gridLine() { return max(0.28 * line(octant.xy, grid), 0.55 * line(octant.xy, 10.0 * grid)); }
+#endif
+float faded(float alpha) { return fade > 0.0 ? alpha * (1.0 - smoothstep(0.35 * fade, fade, length((p_W - target_W).xy))) : alpha; }
+const vec3 kLine = vec3(0.10, 0.12, 0.15);
+
+#if SHEER
+void main() {
+#if SOFT
+  float shadow = 0.32 * (1.0 - lit(1.0 - max(normalize(n_W).z * sun_W.z, 0.0)));
+#else
+  float shadow = 0.0;
+#endif
+  colour = vec4(film(kLine), faded(max(gridLine(), shadow)));
+}
+#else
 void main() {
   vec3 v = normalize(eye_W - p_W);
   vec3 n = normalize(n_W);
@@ -88,10 +153,12 @@ void main() {
     albedo = mix(albedo * (1.0 - 0.75 * edges), albedo, min(near.x, min(near.y, near.z)));
   }
   vec3 radiance = mix(albedo * light + highlight, albedo, glow);
-  float alpha = paint.a;
-  if (fade > 0.0) alpha *= 1.0 - smoothstep(0.35 * fade, fade, length(p_W.xy));
-  colour = vec4(film(radiance), alpha);
+#if GRID
+  radiance = mix(radiance, kLine, gridLine());
+#endif
+  colour = vec4(film(radiance), faded(paint.a));
 }
+#endif
 )";
 
 inline constexpr const char* kShadowVertexShader = R"(#version 330 core
@@ -103,6 +170,13 @@ void main() { gl_Position = world_to_sun * (X_WM * vec4(p_M, 1.0)); }
 
 inline constexpr const char* kShadowFragmentShader = R"(#version 330 core
 void main() {}
+)";
+
+// Whose a pixel is: the number of the thing in red and green.
+inline constexpr const char* kThingFragmentShader = R"(#version 330 core
+uniform int thing;
+out vec4 colour;
+void main() { colour = vec4(float(thing & 255) / 255.0, float(thing >> 8) / 255.0, 0.0, 1.0); }
 )";
 
 // A triangle that covers the picture.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "pincer/contact/io/counted.h"
 #include "pincer/tasks/run/measure/timing.h"
 #include "pincer/tasks/view/viewer.h"
 
@@ -14,10 +15,22 @@ void captureSimulation(const Simulation& simulation, const engine::StepReport& r
   captureGrasp(simulation.model(), simulation.state(), simulation.scratch(), report, snapshot);
 }
 
+// "3 of 4 expectations met".
+std::string verdictOf(const ExpectationLog& log) {
+  const auto met = std::count_if(log.outcomes().begin(), log.outcomes().end(), [](const Outcome& o) { return o.reached && o.holds(); });
+  if (log.outcomes().empty()) return "nothing was expected";
+  return fmt::format("{} of {} met", met, counted(static_cast<std::int64_t>(log.outcomes().size()), "expectation"));
+}
+
 }  // namespace
 
 SceneCycle::SceneCycle(Simulation& simulation, SnapshotChannel& channel, devices::MouseHand* hand)
-    : simulation_(simulation), channel_(channel), hand_(hand), inputs_(simulation.scene().fingers.size()) {
+    : simulation_(simulation),
+      channel_(channel),
+      hand_(hand),
+      inputs_(simulation.scene().fingers.size()),
+      log_(hand ? std::vector<Expectation>{} : simulation.scene().expectations) {
+  judge();
   const auto& bodies = simulation.model().world.bodies;
   for (std::size_t i = 0; i < bodies.size() && object_ < 0; ++i) {
     if (bodies[i].dynamic) object_ = static_cast<int>(i);
@@ -32,6 +45,7 @@ bool SceneCycle::tick(double) {
   snapshot.tick_seconds = steadySeconds() - start;
   channel_.publish();
   noteLift();
+  judge();
   const bool broke = (report.status & engine::kStateNotFinite) != 0;
   return !broke && (hand_ || simulation_.ticks() < simulation_.scene().ticks());
 }
@@ -82,7 +96,7 @@ Image pictureOf(const Simulation& simulation) {
   const Snapshot snapshot = snapshotOf(simulation);
   SnapshotChannel channel(snapshot);
   PaceControl pace;
-  Viewer viewer(*surface, simulation.model(), snapshot, channel, pace, nullptr, {});
+  Viewer viewer(*surface, simulation.model(), snapshot, channel, pace, nullptr, {.choose_camera = true});
   viewer.choice().overlay = false;
   viewer.update();
   return viewer.picture();
@@ -100,9 +114,16 @@ WatchResult watchScene(Simulation& simulation, const ViewOptions& options, bool 
     throw InputError(fmt::format("{}: ticks of {} s can't be watched in real time, ticks of 0.25 to 10 ms can. Take --screenshot FILE.png.",
                                  simulation.scene().file, simulation.scene().options.h));
   }
-  const ServoReport report =
-      runWatched({cycle, simulation.model(), start, channel, hand ? &*hand : nullptr, true}, servo, options, interrupted);
-  return {report, cycle.lift()};
+  const ServoReport report = runWatched({.cycle = cycle,
+                                         .model = simulation.model(),
+                                         .start = start,
+                                         .channel = channel,
+                                         .hand = hand ? &*hand : nullptr,
+                                         .linger = true,
+                                         .choose_camera = !mouse,
+                                         .verdict = [&cycle] { return verdictOf(cycle.log()); }},
+                                        servo, options, interrupted);
+  return {report, cycle.lift(), cycle.log(), !mouse && simulation.ticks() >= simulation.scene().ticks()};
 }
 
 }  // namespace pincer::tasks

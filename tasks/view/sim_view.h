@@ -1,5 +1,6 @@
 // sim_view: a scene's simulation to look at: as a picture, or live in a window, with the fingers on their trajectories or on the mouse.
 #pragma once
+#include "pincer/tasks/run/expectation.h"
 #include "pincer/tasks/run/simulation.h"
 #include "pincer/tasks/view/image.h"
 #include "pincer/tasks/view/view_run.h"
@@ -17,17 +18,20 @@ class SceneCycle final : public ServoCycle {
 
   bool tick(double now) override;
   void cutForces() noexcept override {}  // nobody feels any
+  const ExpectationLog& log() const { return log_; }
   // How far the first body that moves has been over its start [m]. After the servo has returned.
   double lift() const { return lift_; }
 
  private:
   engine::StepReport handTick();
   void noteLift();
+  void judge() { log_.observe(simulation_.ticks(), simulation_.time(), simulation_.moment()); }
 
   Simulation& simulation_;
   SnapshotChannel& channel_;
   devices::MouseHand* hand_;
   std::vector<grasp::FingerInput> inputs_;
+  ExpectationLog log_;  // of a hand's none: it does as it likes
   int object_ = -1;
   double lift_ = 0;
 };
@@ -41,6 +45,8 @@ std::vector<devices::MouseMount> mouseMounts(const Scene& scene);
 struct WatchResult {
   ServoReport servo;
   double lift = 0;  // see SceneCycle [m]
+  ExpectationLog log;
+  bool ended = false;  // the scene did, rather than the window
 };
 
 // In real time, until the window is closed. With `mouse` the scene's fingers (one or two) follow it from where they start, without end;

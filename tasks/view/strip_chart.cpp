@@ -22,6 +22,9 @@ double roundedUp(double x) {
 }  // namespace
 
 void StripChart::add(double time, std::vector<double> values) {
+  for (double& value : values) {
+    if (std::abs(value) < dead_) value = 0;
+  }
   if (!points_.empty() && time < points_.back().time) points_.clear();
   if (!points_.empty() && time == points_.back().time) points_.pop_back();
   points_.push_back({time, std::move(values)});
@@ -37,8 +40,9 @@ StripChart::Range StripChart::range() const {
       high = std::max(high, value);
     }
   }
-  if (low == 0 && high == 0) return {0, 1};
-  return {low < 0 ? -roundedUp(-low) : 0, high > 0 ? roundedUp(high) : 0};
+  if (low == 0 && high == 0) return {0, dead_ > 0 ? roundedUp(10 * dead_) : 1};
+  const double least = dead_ > 0 ? 10 * dead_ : 0;
+  return {low < 0 ? -roundedUp(std::max(-low, least)) : 0, high > 0 ? roundedUp(std::max(high, least)) : 0};
 }
 
 }  // namespace pincer::tasks

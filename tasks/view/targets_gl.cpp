@@ -83,10 +83,17 @@ GlShadowMap::GlShadowMap(int side) : side_(side) {
   glDrawBuffer(GL_NONE);
   glReadBuffer(GL_NONE);
   requireComplete("a shadow map");
+  glGenSamplers(1, &reader_);
+  glSamplerParameteri(reader_, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+  glSamplerParameteri(reader_, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+  glSamplerParameteri(reader_, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  glSamplerParameteri(reader_, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  glSamplerParameteri(reader_, GL_TEXTURE_COMPARE_MODE, GL_NONE);
 }
 GlShadowMap::~GlShadowMap() {
   glDeleteFramebuffers(1, &frame_);
   glDeleteTextures(1, &depth_);
+  glDeleteSamplers(1, &reader_);
 }
 void GlShadowMap::begin() const {
   glBindFramebuffer(GL_FRAMEBUFFER, frame_);
@@ -94,6 +101,9 @@ void GlShadowMap::begin() const {
   glClear(GL_DEPTH_BUFFER_BIT);
 }
 void GlShadowMap::bind() const {
+  glActiveTexture(GL_TEXTURE1);
+  glBindTexture(GL_TEXTURE_2D, depth_);
+  glBindSampler(1, reader_);
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_2D, depth_);
 }

@@ -59,7 +59,12 @@ ServoReport runWatched(const WatchedCycle& watched, const ServoOptions& servo, c
                        const std::atomic<bool>& interrupted, devices::Surface& surface) {
   PaceControl pace;
   Viewer viewer(surface, watched.model, watched.start, watched.channel, pace, watched.hand,
-                {.title = options.title, .keys = options.keys, .from_the_side = watched.from_the_side, .answer = watched.answer});
+                {.title = options.title,
+                 .keys = options.keys,
+                 .choose_camera = watched.choose_camera,
+                 .from_the_side = watched.from_the_side,
+                 .verdict = watched.verdict,
+                 .answer = watched.answer});
   ServoOptions by_the_clock = servo;
   if (servo.clock == ServoClock::kVirtual) by_the_clock.clock = ServoClock::kPaced;
   pace.linger = watched.linger;

@@ -35,9 +35,11 @@ struct WatchedCycle {
   const Snapshot& start;
   SnapshotChannel& channel;  // that the cycle publishes to
   devices::MouseHand* hand = nullptr;
-  bool linger = false;                       // over, it is still to be looked at
-  bool from_the_side = false;                // what goes on is in the plane x = 0
-  std::function<void(int key)> answer = {};  // gets the digits and Enter; empty: nobody does
+  bool linger = false;                        // over, it is still to be looked at
+  bool choose_camera = false;                 // see ViewerOptions
+  bool from_the_side = false;                 // what goes on is in the plane x = 0
+  std::function<std::string()> verdict = {};  // said in the window once it is over; empty: none
+  std::function<void(int key)> answer = {};   // gets the digits and Enter; empty: nobody does
 };
 
 // Runs the cycle in real time until it is over or the person closes the window (then the report says that it was interrupted), or

@@ -6,11 +6,13 @@
 #include <cmath>
 #include <filesystem>
 #include <numbers>
+#include <thread>
 
 namespace pincer::tasks {
 namespace {
 
 constexpr double kNoticeTime = 2.5;  // [s]
+constexpr double kQuietTime = 0.4;   // without change, until a picture at its best is worth its time [s]
 
 double viewerSeconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
@@ -27,24 +29,42 @@ std::string freshPath(const std::string& folder, const std::string& stem, const 
 Viewer::Viewer(devices::Surface& surface, const grasp::GraspModel& model, const Snapshot& start, SnapshotChannel& channel,
                PaceControl& pace, devices::MouseHand* hand, ViewerOptions options)
     : surface_(surface), channel_(channel), pace_(pace), hand_(hand), options_(std::move(options)), painter_(surface, model, start) {
-  if (!model.fingers.empty()) charts_.emplace_back("grip force", "N", model.fingers.size());
+  if (!model.fingers.empty()) charts_.emplace_back("grip force", "N", model.fingers.size(), 1e-3);
   for (const grasp::FingerModel& finger : model.fingers) pads_.push_back({finger.name, 1.5 * finger.radius, 0});
-  for (std::size_t i = 0; i < model.world.bodies.size() && object_ < 0; ++i) {
-    if (model.world.bodies[i].dynamic) object_ = static_cast<int>(i);
+  for (const grasp::FingerModel& finger : model.fingers) finger_names_.push_back(finger.name);
+  start_X_WB_ = start.X_WB;
+  for (std::size_t i = 0; i < model.world.bodies.size(); ++i) {
+    const engine::BodyModel& body = model.world.bodies[i];
+    body_names_.push_back(body.name.empty() ? fmt::format("body {}", i) : body.name);
+    moves_.push_back(body.dynamic || body.driven);
+    if (body.dynamic && object_ < 0) object_ = static_cast<int>(i);
   }
-  if (object_ >= 0) {
-    start_height_ = start.X_WB[static_cast<std::size_t>(object_)].p.z();
-    charts_.emplace_back("height", "mm", 1);
-  }
-  charts_.emplace_back("tick", "us", 1);
+  if (object_ >= 0) charts_.emplace_back(body_names_[static_cast<std::size_t>(object_)] + ", height", "mm", 1, 1e-3);
+  charts_.emplace_back("tick", "us", 1, 1e-3);
+  lookAtAll(start);
+}
+
+void Viewer::lookAtAll(const Snapshot& snapshot) {
+  painter_.camera() = painter_.scene().camera(snapshot);
+  if (options_.choose_camera) painter_.frame(snapshot);
   if (options_.from_the_side) painter_.camera().yaw = 0.5 * std::numbers::pi;
 }
 
 bool Viewer::update() {
-  for (const devices::InputEvent& event : surface_.poll()) handle(event);
+  const auto events = surface_.poll();
+  for (const devices::InputEvent& event : events) handle(event);
   look();
-  // Without a graphics card, borders are smoothed only where there is time to see them: in what stands still, and what is kept.
-  draw(!painter_.renderer().isSoftware() || pace_.paused || !sequence_.empty());
+  surface_.showPointer(!(hand_ && shown().trial.blind));  // it would tell where the hidden hand is
+  if (!events.empty() || looksOtherwise()) quiet_since_ = viewerSeconds();
+  // Without a graphics card, a picture at its best takes most of a second: once, of what has stood still for a while, and of what is kept.
+  const bool quiet = viewerSeconds() - quiet_since_ > kQuietTime;
+  const bool at_best = !painter_.renderer().isSoftware() || quiet || !sequence_.empty();
+  if (quiet && is_best_) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  } else {
+    draw(at_best);
+    is_best_ = at_best && painter_.renderer().isSoftware();
+  }
   if (!sequence_.empty()) savePictureOfSequence();
   painter_.show();
   const double now = viewerSeconds();
@@ -55,36 +75,56 @@ bool Viewer::update() {
 
 void Viewer::showRecording(History recording, double time) {
   history_ = std::move(recording);
+  for (std::size_t i = 0; i < history_.size(); ++i) timeline_.add(history_.at(i));
   recorded_ = true;
   play_time_ = time;
   scrub_ = history_.find(time);
   chartRecording();
 }
 
+// Since the last picture.
+bool Viewer::looksOtherwise() {
+  const Camera& camera = painter_.camera();
+  const bool says = viewerSeconds() < notice_until_;
+  const bool same = shown().tick == seen_tick_ && camera == seen_camera_ && says == said_ && !surface_.closed();
+  seen_tick_ = shown().tick;
+  seen_camera_ = camera;
+  said_ = says;
+  return !same;
+}
+
 // The recording goes on by the time since the last picture.
 void Viewer::play() {
   const double passed = last_picture_ > 0 ? viewerSeconds() - last_picture_ : 0;
-  if (!pace_.paused) play_time_ += pace_.speed * passed;
+  if (!isPlaying()) return;
+  play_time_ += pace_.speed * passed;
   const std::size_t before = *scrub_;
-  if (!pace_.paused) scrub_ = history_.find(play_time_);
-  if (*scrub_ + 1 == history_.size()) pace_.paused = true;
+  scrub_ = history_.find(play_time_);
   if (*scrub_ != before) chartRecording();
+  if (*scrub_ + 1 < history_.size()) return;
+  if (loop_) return replay();
+  replaying_ = false;
+  if (recorded_) pace_.paused = true;
 }
 
 // The seconds before what is shown.
 void Viewer::chartRecording() {
   constexpr std::size_t kPoints = 400;
   const double from = shown().time - charts_.front().seconds();
-  const std::size_t first = history_.find(from), step = (*scrub_ - first) / kPoints + 1;
-  for (std::size_t i = first; i < *scrub_; i += step) addToCharts(history_.at(i));
+  const std::size_t last = scrub_.value_or(history_.size() - 1), first = history_.find(from), step = (last - first) / kPoints + 1;
+  for (std::size_t i = first; i < last; i += step) addToCharts(history_.at(i));
   addToCharts(shown());
 }
 
 void Viewer::look() {
-  if (recorded_) return play();
+  if (scrub_ && (recorded_ || replaying_)) play();
+  if (recorded_) return;
+  if (loop_ && pace_.ended && !scrub_ && history_.size() > 1) replay();
   if (!channel_.update()) return;
   const Snapshot& snapshot = channel_.current();
+  if (history_.size() > 0 && snapshot.tick == history_.at(history_.size() - 1).tick) return;
   history_.add(snapshot);
+  timeline_.add(snapshot);
   addToCharts(snapshot);
   if (const double late = pace_.late; late >= 0) lateness_.add(late);
 }
@@ -97,10 +137,41 @@ void Viewer::addToCharts(const Snapshot& snapshot) {
     charts_[next++].add(snapshot.time, std::move(forces));
   }
   if (object_ >= 0) {
-    const double height = snapshot.X_WB[static_cast<std::size_t>(object_)].p.z() - start_height_;
+    const auto object = static_cast<std::size_t>(object_);
+    const double height = snapshot.X_WB[object].p.z() - start_X_WB_[object].p.z();
     charts_[next++].add(snapshot.time, {1e3 * height});
   }
   charts_[next].add(snapshot.time, {1e6 * snapshot.tick_seconds});
+}
+
+bool Viewer::hasBar() const { return history_.size() > 1 && options_.keys && !(hand_ && !pace_.paused) && !shown().trial.blind && !page_; }
+
+std::vector<BodyRow> Viewer::bodyRows() const {
+  std::vector<BodyRow> rows;
+  const Snapshot& now = shown();
+  const std::size_t at = history_.size() == 0 ? 0 : history_.find(now.time);
+  const Snapshot& before = at > 0 ? history_.at(at - 1) : now;
+  for (std::size_t i = 0; i < now.X_WB.size(); ++i) {
+    if (!moves_[i]) continue;
+    BodyRow row{.name = body_names_[i], .p_W = now.X_WB[i].p, .selected = choice_.selected == static_cast<int>(i), .contacts = {}};
+    if (now.time > before.time) row.speed = (now.X_WB[i].p - before.X_WB[i].p).norm() / (now.time - before.time);
+    row.turn = start_X_WB_[i].q.angularDistance(now.X_WB[i].q);
+    if (row.selected) row.contacts = contactsOf(static_cast<int>(i));
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+std::string Viewer::contactsOf(int body) const {
+  std::string words;
+  for (int i = 0; i < shown().contact_count; ++i) {
+    const ContactSnapshot& contact = shown().contacts[static_cast<std::size_t>(i)];
+    if (contact.body != body) continue;
+    const std::string with = contact.finger < 0 ? "a body" : finger_names_[static_cast<std::size_t>(contact.finger)];
+    words += fmt::format("{}{} {:.2f} N, {}", words.empty() ? "" : "\n", with.empty() ? "a finger" : with, contact.f_W.norm(),
+                         contact.sliding ? "slides" : "sticks");
+  }
+  return words;
 }
 
 Image Viewer::picture() {
@@ -135,18 +206,34 @@ OverlayText Viewer::overlayText() const {
   if (viewerSeconds() < notice_until_) text.notice = notice_;
   text.pictures_per_second = pictures_per_second_;
   text.lateness = &lateness_;
-  if (scrub_) text.scrub = static_cast<double>(*scrub_ + 1) / static_cast<double>(history_.size());
+  if (hasBar()) {
+    text.timeline = &timeline_;
+    if (const TimelineMoment* moment = timeline_.before(shown().time))
+      text.moment = fmt::format("{:.2f} s: {}", moment->time, momentText(*moment, finger_names_));
+    text.from = history_.at(0).time;
+    text.to = history_.at(history_.size() - 1).time;
+  }
+  if (choice_.bodies) text.bodies = bodyRows();
+  text.hovered = hovered_;
+  text.pointer = mouse_;
+  if (!shown().trial.blind) text.grid = painter_.scene().grid();
   text.hands = hand_ != nullptr;
   text.keys = options_.keys;
   return text;
 }
 
 std::string Viewer::paceText() const {
-  if (recorded_ && pace_.paused) return fmt::format("paused, of {:.3f} s", history_.at(history_.size() - 1).time);
-  if (scrub_ && !recorded_) return "looking back";
-  if (pace_.paused) return "paused";
   const double speed = pace_.speed;
-  return speed < 1 ? fmt::format("1/{:.0f} of real time", 1 / speed) : "real time";
+  std::string words = speed < 1   ? fmt::format("1/{:.0f} of real time", 1 / speed)
+                      : speed > 1 ? fmt::format("{:.0f} times real time", speed)
+                                  : "real time";
+  if (loop_) words += ", over and over";
+  const bool at_end = !scrub_ || *scrub_ + 1 == history_.size();
+  if (recorded_ && pace_.paused) return at_end ? "ended" : fmt::format("paused, of {:.3f} s", history_.at(history_.size() - 1).time);
+  if (replaying_) return "again, " + words;
+  if (scrub_ && !recorded_) return "looking back";
+  if (pace_.ended && !recorded_) return options_.verdict ? "ended: " + options_.verdict() : "ended";
+  return pace_.paused ? "paused" : words;
 }
 
 double Viewer::metresPerHeight() const {

@@ -17,10 +17,12 @@
 namespace pincer::tasks {
 
 struct ViewerOptions {
-  std::string title;
+  std::string title = {};
   bool keys = true;                                               // false: only Esc
   std::string folder = ".";                                       // for screenshots and sequences
+  bool choose_camera = false;                                     // that sees most of each thing; else as the operator looks
   bool from_the_side = false;                                     // looks along -x at the plane x = 0, in which the mouse moves fingers
+  std::function<std::string()> verdict = {};                      // said once the cycle has ended; empty: none
   std::function<void(int key)> answer = {};                       // gets the digits and Enter; empty: nobody does
   std::function<void(const devices::InputEvent& key)> type = {};  // gets every key that goes down, but Esc; empty: nobody does
 };
@@ -51,6 +53,8 @@ class Viewer {
   double pictures_per_second() const { return pictures_per_second_; }
 
  private:
+  bool looksOtherwise();
+  void lookAtAll(const Snapshot& snapshot);
   void draw(bool at_best);
   void act(ViewAction action);
   void actOnTime(ViewAction action);
@@ -62,6 +66,13 @@ class Viewer {
   void scrubBy(int pictures);
   void scrubTo(double time);  // [s]
   void scrubToMouse();        // on the bar at the picture's lower border
+  void replay();              // of what was seen, from its beginning
+  void select(int body);
+  int bodyUnderMouse();  // -1: none
+  bool hasBar() const;
+  bool isPlaying() const { return recorded_ ? !pace_.paused : replaying_; }
+  std::vector<BodyRow> bodyRows() const;
+  std::string contactsOf(int body) const;
   bool mouseIsOnBar() const;
   void chartRecording();
   void saveScreenshot();
@@ -85,13 +96,25 @@ class Viewer {
   std::vector<StripChart> charts_;
   std::vector<PadLook> pads_;
   int object_ = -1;  // body whose height is shown
-  double start_height_ = 0;
   Histogram lateness_;
   std::optional<std::size_t> scrub_;  // place in the history; absent: the present
   bool recorded_ = false;             // the history is all there is
   double play_time_ = 0;              // of what is shown of it [s]
-  bool bar_held_ = false;             // by the left button
-  Vec2 mouse_ = Vec2::Zero();         // [pixels]
+  bool replaying_ = false;            // what was seen of something that goes on
+  bool loop_ = false;
+  bool bar_held_ = false;        // by the left button
+  Vec2 pressed_ = Vec2::Zero();  // where the left button went down [pixels]
+  std::string hovered_;
+  Timeline timeline_;
+  std::vector<std::string> body_names_, finger_names_;
+  std::vector<bool> moves_;  // per body
+  std::vector<Pose> start_X_WB_;
+  double quiet_since_ = 0;       // when a picture last changed
+  std::int64_t seen_tick_ = -1;  // of the last picture, as the next two
+  Camera seen_camera_;
+  bool said_ = false;
+  bool is_best_ = false;       // nothing to draw until something changes
+  Vec2 mouse_ = Vec2::Zero();  // [pixels]
   bool mouse_known_ = false;
   bool left_ = false, right_ = false, shift_ = false, control_ = false;
   bool quit_ = false;

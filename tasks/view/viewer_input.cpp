@@ -1,18 +1,20 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pincer/tasks/view/overlay_parts.h"
 #include "pincer/tasks/view/viewer.h"
 
 namespace pincer::tasks {
 namespace {
 
-constexpr double kTurn = 3.0;           // of the camera by a drag over the picture's height [rad]
-constexpr double kKeyStep = 4e-3;       // of the fingers by a key [m]
-constexpr double kTurnStep = 0.06;      // of the hand by a key [rad]
-constexpr double kHandTurn = 2.0;       // by a way of the mouse over the picture's height [rad]
-constexpr double kGripStep = 1.15;      // per notch or key
-constexpr double kSlowest = 1.0 / 256;  // of slow motion
-constexpr double kZoomStep = 0.9;       // per notch
+constexpr double kTurn = 3.0;                         // of the camera by a drag over the picture's height [rad]
+constexpr double kKeyStep = 4e-3;                     // of the fingers by a key [m]
+constexpr double kTurnStep = 0.06;                    // of the hand by a key [rad]
+constexpr double kHandTurn = 2.0;                     // by a way of the mouse over the picture's height [rad]
+constexpr double kGripStep = 1.15;                    // per notch or key
+constexpr double kSlowest = 1.0 / 256, kFastest = 8;  // of real time
+constexpr double kClick = 4;                          // a button that goes up this near to where it went down was a click [pixels]
+constexpr double kZoomStep = 0.9;                     // per notch
 
 Vec3 wayOf(ViewAction action) {
   switch (action) {
@@ -47,6 +49,9 @@ void Viewer::handle(const devices::InputEvent& event) {
     if (const auto action = actionOf(event.code, hand_ && !pace_.paused)) act(*action);
   } else if (event.kind == InputKind::kButton) {
     if (event.code == devices::kButtonLeft) left_ = event.down;
+    if (event.code == devices::kButtonLeft && event.down) pressed_ = mouse_;
+    if (event.code == devices::kButtonLeft && !event.down && !hand_ && !bar_held_ && (mouse_ - pressed_).norm() < kClick)
+      select(bodyUnderMouse());
     if (event.code == devices::kButtonLeft) bar_held_ = event.down && mouseIsOnBar();
     if (bar_held_) scrubToMouse();
     if (event.code == devices::kButtonRight) right_ = event.down;
@@ -59,6 +64,8 @@ void Viewer::handle(const devices::InputEvent& event) {
     mouse_ = now;
     if (bar_held_) scrubToMouse();
     mouse_known_ = true;
+    const int under = hand_ || left_ || right_ || !options_.keys ? -1 : bodyUnderMouse();
+    hovered_ = under < 0 ? "" : body_names_[static_cast<std::size_t>(under)];
   }
 }
 
@@ -98,8 +105,16 @@ void Viewer::act(ViewAction action) {
       surface_.toggleFullScreen();
       break;
     case ViewAction::kCamera:
-      painter_.camera() = painter_.scene().camera(shown());
+      lookAtAll(shown());
       break;
+    case ViewAction::kNextBody: {
+      int next = choice_.selected;
+      do {
+        if (++next == static_cast<int>(moves_.size())) next = -1;
+      } while (next >= 0 && !moves_[static_cast<std::size_t>(next)]);
+      select(next);
+      break;
+    }
     case ViewAction::kScreenshot:
       saveScreenshot();
       break;
@@ -119,6 +134,13 @@ void Viewer::actOnTime(ViewAction action) {
       pace_.paused = !pace_.paused;
       if (!pace_.paused && recorded_ && at_present) play_time_ = history_.at(0).time;
       if (!pace_.paused && !recorded_) scrub_.reset();
+      replaying_ = false;
+      break;
+    case ViewAction::kRestart:
+      replay();
+      break;
+    case ViewAction::kLoop:
+      loop_ = !loop_;
       break;
     case ViewAction::kTickForward:
       if (pace_.paused && at_present && !recorded_) {
@@ -142,13 +164,14 @@ void Viewer::actOnTime(ViewAction action) {
         scrubTo(kInfinity);
       } else {
         scrub_.reset();
+        replaying_ = false;
       }
       break;
     case ViewAction::kSlower:
       pace_.speed = std::max(0.5 * pace_.speed, kSlowest);
       break;
     case ViewAction::kFaster:
-      pace_.speed = std::min(2 * pace_.speed, 1.0);
+      pace_.speed = std::min(2 * pace_.speed, hand_ ? 1.0 : kFastest);
       break;
     default:
       break;
@@ -156,28 +179,63 @@ void Viewer::actOnTime(ViewAction action) {
 }
 
 void Viewer::scrubBy(int pictures) {
-  if (!pace_.paused || history_.size() == 0) return;
+  if (!(pace_.paused || pace_.ended) || history_.size() == 0) return;
+  replaying_ = false;
   const auto last = static_cast<std::ptrdiff_t>(history_.size()) - 1;
   const auto from = scrub_ ? static_cast<std::ptrdiff_t>(*scrub_) : last;
   scrub_ = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(from + pictures, 0, last));
   play_time_ = shown().time;
-  if (recorded_) chartRecording();
+  chartRecording();
 }
 
 void Viewer::scrubTo(double time) {
-  if (!(pace_.paused || recorded_) || history_.size() == 0) return;
+  if (!(pace_.paused || recorded_ || pace_.ended) || history_.size() == 0) return;
+  replaying_ = false;
   scrub_ = history_.find(time);
   play_time_ = shown().time;
-  if (recorded_) chartRecording();
+  chartRecording();
 }
 
-bool Viewer::mouseIsOnBar() const {
-  constexpr double kReach = 14;  // [pixels]
-  return scrub_ && mouse_.y() > surface_.size().height - kReach;
+// A scene that goes on stands still meanwhile.
+void Viewer::replay() {
+  if (history_.size() == 0) return;
+  play_time_ = history_.at(0).time;
+  scrub_ = 0;
+  if (!recorded_) pace_.paused = !pace_.ended;
+  if (recorded_) pace_.paused = false;
+  replaying_ = !recorded_;
+  chartRecording();
 }
+
+void Viewer::select(int body) {
+  if (!options_.keys || shown().trial.blind) return;
+  choice_.selected = body;
+  if (body < 0) return;
+  choice_.bodies = true;
+  if (object_ < 0 || !moves_[static_cast<std::size_t>(body)]) return;
+  object_ = body;
+  const std::size_t place = shown().fingers.empty() ? 0 : 1;
+  charts_[place] = StripChart(body_names_[static_cast<std::size_t>(body)] + ", height", "mm", 1, 1e-3);
+  if (history_.size() > 0) chartRecording();
+}
+
+int Viewer::bodyUnderMouse() {
+  if (shown().trial.blind) return -1;
+  constexpr int kShare = 4;  // of the window's pixels along a side, that are looked at
+  const devices::SurfaceSize size = surface_.size(), small{std::max(1, size.width / kShare), std::max(1, size.height / kShare)};
+  const int x = std::clamp(static_cast<int>(mouse_.x()) / kShare, 0, small.width - 1);
+  const int y = std::clamp(static_cast<int>(mouse_.y()) / kShare, 0, small.height - 1);
+  const std::vector<int> things = painter_.renderer().things(painter_.scene().compose(shown(), choice_), painter_.camera(), small);
+  const int body = things[static_cast<std::size_t>(y * small.width + x)] - SceneDrawing::thingOfBody(0);
+  return body < static_cast<int>(body_names_.size()) ? body : -1;
+}
+
+bool Viewer::mouseIsOnBar() const { return hasBar() && choice_.overlay && mouse_.y() > surface_.size().height - kBarHeight; }
 
 void Viewer::scrubToMouse() {
-  const double share = mouse_.x() / surface_.size().width;
+  if (!recorded_ && !pace_.ended) pace_.paused = true;
+  constexpr double kAside = 14;  // where the bar begins and ends [pixels]
+  const double share = std::clamp((mouse_.x() - kAside) / (surface_.size().width - 2 * kAside), 0.0, 1.0);
   scrubTo(history_.at(0).time + share * (history_.at(history_.size() - 1).time - history_.at(0).time));
 }
 

@@ -8,6 +8,7 @@
 #include "pincer/tasks/app/interrupt.h"
 #include "pincer/tasks/app/print.h"
 #include "pincer/tasks/app/progress.h"
+#include "pincer/tasks/app/sim_text.h"
 #include "pincer/tasks/app/usage.h"
 #include "pincer/tasks/run/scene/builtin_scenes.h"
 #include "pincer/tasks/run/scene/scene_ranges.h"
@@ -36,12 +37,20 @@ struct SimArguments {
   bool json = false;
 };
 
+std::string endedEarly(const Simulation& simulation) {
+  return fmt::format("The window was closed at {:g} s of {:g} s: what is expected later wasn't judged.\n", simulation.time(),
+                     static_cast<double>(simulation.scene().ticks()) * simulation.scene().options.h);
+}
+
 int watch(Simulation& simulation, const SimArguments& arguments, const std::atomic<bool>& interrupted) {
   ViewOptions view = arguments.view;
   view.title = arguments.scenes.front();
   const WatchResult result = watchScene(simulation, view, arguments.devices == "mouse", interrupted);
   print("{}\nLifted by up to {:.1f} mm.\n", servoText(result.servo, simulation.scene().options.h), 1e3 * result.lift);
-  return interrupted ? kExitInterrupted : kExitOk;
+  if (arguments.devices == "mouse") return interrupted ? kExitInterrupted : kExitOk;
+  print("{}{}", expectationsText(result.log), result.ended ? "" : endedEarly(simulation));
+  if (interrupted) return kExitInterrupted;
+  return result.log.anyFailed() ? kExitCheckFailed : kExitOk;
 }
 
 int runOne(const SimArguments& arguments, const std::string& file) {

@@ -14,8 +14,9 @@ namespace pincer::tasks {
 struct PaceControl {
   std::atomic<bool> paused{false};
   std::atomic<int> single_ticks{0};  // to do while paused
-  std::atomic<double> speed{1};      // of the inner time, 0 .. 1
+  std::atomic<double> speed{1};      // of the inner time, 0 .. 8; over 1 several ticks are done at a time
   std::atomic<bool> stop{false};     // ends the cycle
+  std::atomic<bool> ended{false};    // told by the servo: the cycle is over
   std::atomic<bool> linger{false};   // a cycle that is over goes on without ticks, to be looked at
   std::atomic<double> late{-1};      // told by the servo: how late the last tick began, against the one before [s]; negative: none yet
 };
@@ -39,11 +40,7 @@ class PacedCycle final : public ServoCycle {
       }
       return true;
     }
-    owed_ += control_.speed;
-    if (owed_ >= 1) {
-      owed_ -= 1;
-      more_ = once();
-    }
+    for (owed_ += control_.speed; owed_ >= 1 && more_; owed_ -= 1) more_ = once();
     return true;
   }
   void cutForces() noexcept override { inner_.cutForces(); }
@@ -54,7 +51,11 @@ class PacedCycle final : public ServoCycle {
     if (before_ != 0) control_.late = std::max(clock - before_ - 1 / rate_, 0.0);
     before_ = clock;
   }
-  bool once() { return inner_.tick(static_cast<double>(ticks_++) / rate_); }
+  bool once() {
+    const bool more = inner_.tick(static_cast<double>(ticks_++) / rate_);
+    if (!more) control_.ended = true;
+    return more;
+  }
 
   ServoCycle& inner_;
   PaceControl& control_;

@@ -33,7 +33,7 @@ TEST(ViewerKeys, ArrowsMeanTheFingersWhereThereAreSome) {
 }
 
 TEST(StripChart, KeepsTheLastSecondsAndARoundScale) {
-  StripChart chart("grip", "N", 2, 8);
+  StripChart chart("grip", "N", 2, 0, 8);
   for (int i = 0; i <= 1000; ++i) chart.add(0.01 * i, {0.0, 0.13 * i / 100});
   EXPECT_NEAR(chart.points().front().time, 2, 1e-9);
   EXPECT_EQ(chart.range().low, 0);

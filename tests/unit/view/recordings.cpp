@@ -92,11 +92,12 @@ TEST(Recording, IsScrubbedByKeysAndByTheBar) {
   EXPECT_EQ(viewer.shown().time, first);  // not before it
   window.key(devices::kKeyBackspace);
   EXPECT_EQ(viewer.shown().time, last);
-  viewer.handle({InputKind::kMove, 0, false, 0.25 * kSize.width, kSize.height - 2.0, {}});
+  const auto onBar = [](double share) { return 14 + share * (kSize.width - 28); };  // it has a border of 14 pixels on either side
+  viewer.handle({InputKind::kMove, 0, false, onBar(0.25), kSize.height - 2.0, {}});
   viewer.handle({InputKind::kButton, devices::kButtonLeft, true, 0, 0, {}});
   EXPECT_NEAR(viewer.shown().time, first + 0.25 * (last - first), 2e-3);
   const double yaw = viewer.painter().camera().yaw;
-  viewer.handle({InputKind::kMove, 0, false, 0.75 * kSize.width, kSize.height - 40.0, {}});  // held, it may leave the bar
+  viewer.handle({InputKind::kMove, 0, false, onBar(0.75), kSize.height - 40.0, {}});  // held, it may leave the bar
   EXPECT_NEAR(viewer.shown().time, first + 0.75 * (last - first), 2e-3);
   EXPECT_EQ(viewer.painter().camera().yaw, yaw) << "the camera stays while the bar is held";
 }
