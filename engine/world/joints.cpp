@@ -65,7 +65,13 @@ class RowWriter {
       : a_(sideOf(moment, joint.a, joint.X_AJ)),
         b_(sideOf(moment, joint.b, joint.X_BJ)),
         R_WJ_(b_.X_WJ.q.toRotationMatrix()),
-        group_(group) {}
+        group_(group) {
+    // A slider's impulses act where J of a has slid to, on both sides: the arm of b grows by the way.
+    if (joint.kind == JointKind::kSlider) b_.arm_W += a_.X_WJ.p - b_.X_WJ.p;
+  }
+
+  const Vec3& armOfA() const { return a_.arm_W; }
+  const Vec3& armOfB() const { return b_.arm_W; }
 
   void writeAll(JointKind kind) {
     const Vec3 apart = a_.X_WJ.p - b_.X_WJ.p;
@@ -151,13 +157,14 @@ const Motion kRest;
 const Motion& startOf(const WorldScratch& scratch, int body) { return body < 0 ? kRest : scratch.bodies[body].start; }
 const Motion& freeOf(const WorldScratch& scratch, int body) { return body < 0 ? kRest : scratch.bodies[body].free; }
 
-// h/2 (dG/dt) v: what the row's velocity is by the end of the tick if it is 0 with the directions of the middle.
-double turnOfRow(const JointRow& row, const WorldScratch& scratch, const Vec3& arm_a_W, const Vec3& arm_b_W) {
+// h/2 (dG/dt) v: what the row's velocity is by the end of the tick if it is 0 with the directions of the middle. A slider's point also slides past b.
+double turnOfRow(const JointRow& row, const WorldScratch& scratch, const Vec3& arm_a_W, const Vec3& arm_b_W, bool slides) {
   const Motion &a = startOf(scratch, row.a), &b = startOf(scratch, row.b);
+  const Vec3 v_rel = a.v_W + a.w_W.cross(arm_a_W) - b.v_W - b.w_W.cross(arm_b_W);
   Vec3 change = Vec3::Zero();
   if (row.a >= 0) change += a.w_W.cross(a.w_W.cross(arm_a_W));
   if (row.b >= 0) change -= b.w_W.cross(b.w_W.cross(arm_b_W));
-  const Vec3 v_rel = a.v_W + a.w_W.cross(arm_a_W) - b.v_W - b.w_W.cross(arm_b_W);
+  if (slides) change -= b.w_W.cross(v_rel);
   const double directions = b.w_W.cross(row.n_W).dot(v_rel) + b.w_W.cross(row.m_W).dot(a.w_W - b.w_W);
   return 0.5 * scratch.h * (row.n_W.dot(change) + directions);
 }
@@ -190,8 +197,10 @@ void predictGroup(const WorldModel& model, const JointGroup& g, WorldScratch& sc
     RowWriter writer(joint, moment, group);
     const std::size_t first = group.rows.size();
     writer.writeAll(joint.kind);
-    const Vec3 arm_a = sideOf(moment, joint.a, joint.X_AJ).arm_W, arm_b = sideOf(moment, joint.b, joint.X_BJ).arm_W;
-    for (std::size_t k = first; k < group.rows.size(); ++k) group.rows[k].bias = turnOfRow(group.rows[k], scratch, arm_a, arm_b);
+    const bool slides = joint.kind == JointKind::kSlider;
+    for (std::size_t k = first; k < group.rows.size(); ++k) {
+      group.rows[k].bias = turnOfRow(group.rows[k], scratch, writer.armOfA(), writer.armOfB(), slides);
+    }
     if (!(joint.damping > 0) || scratch.h == 0) continue;
     writer.writeFree(joint.kind);
     setDamping(model, scratch, joint.damping, group.rows.back());
