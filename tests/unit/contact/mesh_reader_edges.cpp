@@ -18,17 +18,17 @@ namespace {
 using tests::errorOf;
 using Triangles = std::vector<std::array<std::int32_t, 3>>;
 
-TriangleMesh read(const std::string& bytes, MeshFormat format, const ReadOptions& options = {}) {
+TriangleMesh readPart(const std::string& bytes, MeshFormat format, const ReadOptions& options = {}) {
   return parseMesh(bytes, format, "part", options);
 }
 
 void expectSaid(const std::string& bytes, MeshFormat format, const std::string& part, const ReadOptions& options = {}) {
-  const std::string error = errorOf([&] { read(bytes, format, options); });
+  const std::string error = errorOf([&] { readPart(bytes, format, options); });
   EXPECT_NE(error.find(part), std::string::npos) << "-> " << error << "\nlacks " << part;
 }
 
 template <typename T>
-std::string bytesOf(T value) {
+std::string rawOf(T value) {
   std::string raw(sizeof(T), '\0');
   std::memcpy(raw.data(), &value, sizeof(T));
   return raw;
@@ -45,7 +45,7 @@ std::string stripHeader(const std::string& element, const std::string& z_normal 
 }
 
 TEST(PlyStrips, CarryTheNormalsOfTheirVertices) {
-  const TriangleMesh mesh = read(stripHeader("1\nproperty list int int vertex_indices\n") + "4 0 1 2 3\n", MeshFormat::ply);
+  const TriangleMesh mesh = readPart(stripHeader("1\nproperty list int int vertex_indices\n") + "4 0 1 2 3\n", MeshFormat::ply);
   EXPECT_EQ(mesh.triangles, (Triangles{{0, 1, 2}, {2, 1, 3}}));
   EXPECT_EQ(mesh.triangle_normals, mesh.triangles);
   expectSaid(stripHeader("1\nproperty list int int vertex_indices\n", "quality") + "4 0 1 2 3\n", MeshFormat::ply, "some of nx, ny and nz");
@@ -56,7 +56,7 @@ TEST(PlyStrips, CarryTheNormalsOfTheirVertices) {
 
 TEST(PlyStrips, StandAmongOtherPropertiesAndBesideOtherStrips) {
   const std::string head = stripHeader("2\nproperty int colour\nproperty list uchar int vertex_indices\nproperty list char short more\n");
-  const TriangleMesh mesh = read(head + "7 4 0 1 2 3 2 8 9\n7 3 5 4 3 0\n", MeshFormat::ply);
+  const TriangleMesh mesh = readPart(head + "7 4 0 1 2 3 2 8 9\n7 3 5 4 3 0\n", MeshFormat::ply);
   EXPECT_EQ(mesh.triangles, (Triangles{{0, 1, 2}, {2, 1, 3}, {5, 4, 3}}));
   expectSaid(head + "7 4 0 1 2 3 2 8 9\n7 3 5 4 3 -1\n", MeshFormat::ply, ":22: list \"more\" has the count -1");
   expectSaid(head + "7 4 0 1 2 3 0\n7 3 5 4 3 0 0\n", MeshFormat::ply, "the line has 7 values, but a \"tristrips\" has only 6 here");
@@ -86,7 +86,7 @@ TEST(PlyStrips, OfAGridAreTheGrid) {
     for (int x = 0; x < kWide; ++x) strip.insert(strip.end(), {(y + 1) * kWide + x, y * kWide + x});
   }
   text += fmt::format("{} {}\n", strip.size(), fmt::join(strip, " "));
-  const TriangleMesh mesh = read(text, MeshFormat::ply);
+  const TriangleMesh mesh = readPart(text, MeshFormat::ply);
   EXPECT_EQ(mesh.triangles.size(), 2u * (kWide - 1) * (kHigh - 1));
   std::set<std::pair<int, int>> ways;
   double area = 0;
@@ -103,8 +103,8 @@ TEST(PlyBinary, RefusesAListThatIsLongerThanTheFile) {
       "ply\nformat binary_little_endian 1.0\nelement thing 1\nproperty list uint double w\nelement vertex 0\nproperty float x\n"
       "property float y\nproperty float z\nend_header\n";
   for (const std::uint32_t items : {3u, 0x20000000u, 0xffffffffu})
-    expectSaid(head + bytesOf(items) + std::string(16, '\0'), MeshFormat::ply, "the file ends within \"w\"");
-  expectSaid(head + bytesOf(2u) + std::string(16, '\0'), MeshFormat::ply, "no face");
+    expectSaid(head + rawOf(items) + std::string(16, '\0'), MeshFormat::ply, "the file ends within \"w\"");
+  expectSaid(head + rawOf(2u) + std::string(16, '\0'), MeshFormat::ply, "no face");
 }
 
 TEST(PlyAscii, RefusesAListThatIsLongerThanItsLine) {
@@ -120,11 +120,11 @@ TEST(PlyAscii, RefusesAListThatIsLongerThanItsLine) {
 
 std::string binaryOf(const std::vector<std::array<Vec3, 3>>& facets) {
   std::string bytes(80, ' ');
-  bytes += bytesOf(static_cast<std::uint32_t>(facets.size()));
+  bytes += rawOf(static_cast<std::uint32_t>(facets.size()));
   for (const auto& facet : facets) {
     bytes += std::string(12, '\0');
     for (const Vec3& p : facet) {
-      for (int i = 0; i < 3; ++i) bytes += bytesOf(static_cast<float>(p[i]));
+      for (int i = 0; i < 3; ++i) bytes += rawOf(static_cast<float>(p[i]));
     }
     bytes += std::string(2, '\0');
   }
@@ -165,7 +165,7 @@ TEST(StlReader, NumbersThousandsOfPlacesAsTheyFirstAppear) {
     triangles.push_back(numbers);
   }
   for (const std::string& bytes : {binaryOf(facets), textOf(facets)}) {
-    const TriangleMesh mesh = read(bytes, MeshFormat::stl, {.degenerate = Degenerate::keep});
+    const TriangleMesh mesh = readPart(bytes, MeshFormat::stl, {.degenerate = Degenerate::keep});
     EXPECT_EQ(mesh.vertices, expected);
     EXPECT_EQ(mesh.triangles, triangles);
   }
@@ -174,11 +174,11 @@ TEST(StlReader, NumbersThousandsOfPlacesAsTheyFirstAppear) {
 TEST(StlReader, TellsTextFromBytes) {
   const std::vector<std::array<Vec3, 3>> facets = {{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)}};
   const std::string text = textOf(facets);
-  for (const std::string& before : {"\xEF\xBB\xBF", " \t\r\n", "\xEF\xBB\xBF\n"})
-    EXPECT_EQ(read(before + text, MeshFormat::stl).triangles.size(), 1u) << before.size();
+  for (const std::string before : {"\xEF\xBB\xBF", " \t\r\n", "\xEF\xBB\xBF\n"})
+    EXPECT_EQ(readPart(before + text, MeshFormat::stl).triangles.size(), 1u) << before.size();
   std::string upper = text;
   std::transform(upper.begin(), upper.end(), upper.begin(), [](unsigned char c) { return std::toupper(c); });
-  EXPECT_EQ(read(upper, MeshFormat::stl).triangles.size(), 1u);
+  EXPECT_EQ(readPart(upper, MeshFormat::stl).triangles.size(), 1u);
   std::string zero = text;
   zero[60] = '\0';
   expectSaid(zero, MeshFormat::stl, "the header announces");
@@ -195,7 +195,7 @@ TEST(StlReader, NamesByteAndCornerOfWhatIsNoNumber) {
     for (std::size_t corner = 0; corner < 3; ++corner) {
       for (std::size_t i = 0; i < 3; ++i) {
         const std::size_t at = 84 + 50 * facet + 12 + 12 * corner + 4 * i;
-        expectSaid(std::string(bytes).replace(at, 4, bytesOf(nan)), MeshFormat::stl,
+        expectSaid(std::string(bytes).replace(at, 4, rawOf(nan)), MeshFormat::stl,
                    fmt::format("byte {}: {} of a corner of triangle {} = nan", at, "xyz"[i], facet + 1));
       }
     }
@@ -206,9 +206,9 @@ TEST(StlReader, NamesByteAndCornerOfWhatIsNoNumber) {
 
 TEST(MeshReader, TakesAThousandMetresAndNotMore) {
   const auto at = [](const std::string& x) { return "v 0 0 0\nv " + x + " 0 0\nv 0 1 0\nf 1 2 3\n"; };
-  EXPECT_EQ(read(at("1000"), MeshFormat::obj).vertices[1].x(), 1000);
+  EXPECT_EQ(readPart(at("1000"), MeshFormat::obj).vertices[1].x(), 1000);
   expectSaid(at("-1000.001"), MeshFormat::obj, ":2: vertex 2 lies 1e+03 m from the origin along an axis; the limit is 1000 m");
-  EXPECT_EQ(read(at("1e6"), MeshFormat::obj, {.metres_per_unit = 1e-3}).vertices[1].x(), 1000);
+  EXPECT_EQ(readPart(at("1e6"), MeshFormat::obj, {.metres_per_unit = 1e-3}).vertices[1].x(), 1000);
   expectSaid(at("1e301"), MeshFormat::obj, "limit is 1000 m", {.metres_per_unit = 1e300});
 }
 
@@ -222,24 +222,24 @@ TEST(MeshReader, TakesAPolygonOfAThousandCornersAndNotMore) {
     }
     return text + face + "\n";
   };
-  EXPECT_EQ(read(ring(1000), MeshFormat::obj).triangles.size(), 998u);
+  EXPECT_EQ(readPart(ring(1000), MeshFormat::obj).triangles.size(), 998u);
   expectSaid(ring(1001), MeshFormat::obj, "face 1 has 1001 corners; the limit is 1000");
 }
 
 TEST(MeshReader, MakesNormalsOfLengthOneWhateverTheirSize) {
   const auto with = [](const std::string& n) { return "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn " + n + "\nf 1//1 2//1 3//1\n"; };
   for (const char* n : {"0 0 1e-300", "0 0 1e300", "0 0 1", "0 0 0.5"})
-    EXPECT_EQ(read(with(n), MeshFormat::obj).normals[0], Vec3::UnitZ()) << n;
-  const Vec3 kept = read(with("0.6 0 0.8"), MeshFormat::obj).normals[0];
+    EXPECT_EQ(readPart(with(n), MeshFormat::obj).normals[0], Vec3::UnitZ()) << n;
+  const Vec3 kept = readPart(with("0.6 0 0.8"), MeshFormat::obj).normals[0];
   EXPECT_EQ(kept, Vec3(0.6, 0, 0.8)) << "to the bit: what was written comes back";
-  EXPECT_NEAR(read(with("1e200 -1e200 0"), MeshFormat::obj).normals[0].norm(), 1, 1e-15) << "its square overflows";
+  EXPECT_NEAR(readPart(with("1e200 -1e200 0"), MeshFormat::obj).normals[0].norm(), 1, 1e-15) << "its square overflows";
   expectSaid(with("0 0 0"), MeshFormat::obj, ":4: normal 1 is zero");
 }
 
 TEST(MeshReader, LeavesNothingOfAPolygonThatIsLeftOut) {
   std::vector<std::string> told;
   const ReadOptions options{.degenerate = Degenerate::reject, .left_out = [&](const std::string& what) { told.push_back(what); }};
-  const TriangleMesh mesh = read(
+  const TriangleMesh mesh = readPart(
       "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.5 0.5 0\nvn 0 0 1\ns 1\nf 1//1 2//1 3//1\ns 2\nf 1//1 5//1 3//1\nf 1//1 2//1 9//1 4//1\ns "
       "3\n"
       "f 1//1 3//1 4//1\n",
@@ -262,11 +262,11 @@ TEST(MeshReader, NamesAVertexThatAPolygonHasTwice) {
 }
 
 TEST(MeshReader, NormalsAndGroupsThatSayNothingAreLeftOut) {
-  const TriangleMesh mesh = read("v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\ns off\nf 1 2 3\n", MeshFormat::obj);
+  const TriangleMesh mesh = readPart("v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\ns off\nf 1 2 3\n", MeshFormat::obj);
   EXPECT_TRUE(mesh.normals.empty());
   EXPECT_TRUE(mesh.triangle_normals.empty());
   EXPECT_TRUE(mesh.smoothing_groups.empty());
-  const TriangleMesh some = read("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvn 0 0 1\nf 1 2 3\nf 1//1 3//1 4//1\n", MeshFormat::obj);
+  const TriangleMesh some = readPart("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvn 0 0 1\nf 1 2 3\nf 1//1 3//1 4//1\n", MeshFormat::obj);
   EXPECT_EQ(some.triangle_normals, (Triangles{{-1, -1, -1}, {0, 0, 0}}));
 }
 
