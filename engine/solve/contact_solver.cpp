@@ -8,6 +8,7 @@
 #include "pincer/engine/solve/residual.h"
 #include "pincer/engine/solve/search.h"
 #include "pincer/engine/solve/small_problem.h"
+#include "pincer/engine/solve/squeeze.h"
 #include "pincer/engine/solve/stuck_contacts.h"
 #include "pincer/engine/solve/sweeps.h"
 
@@ -104,6 +105,7 @@ void stopBySweeps(const ContactProblem& problem, int sweeps, SolverScratch& scra
     method.sweep(n % 2 == 1);
     spend(kPerContactSwept * problem.contactCount() + kPerSlideStep * method.slideSteps(), scratch);
   }
+  if (isSqueezed(problem, scratch.weight, r.data())) r.setZero();
   errorOf(problem, r.data(), scratch, u.data());
   if (removeAddedEnergy(problem, r.data(), u.data())) errorOf(problem, r.data(), scratch, u.data());
 }

@@ -8,6 +8,7 @@
 #include "pincer/engine/solve/newton.h"
 #include "pincer/engine/solve/point_problem.h"
 #include "pincer/engine/solve/residual.h"
+#include "pincer/engine/solve/search.h"
 #include "pincer/engine/solve/squeeze.h"
 #include "pincer/engine/solve/sweeps.h"
 
@@ -201,20 +202,22 @@ class FewSearch {
   double give_ = 0;
 };
 
-// What squeezes without end: as if contacts were soft. `r` and `result` are as they were if nothing is found.
+// What squeezes without end: as if contacts were soft. Those impulses never stay: they are as large as round-off lets them be.
 void yieldToWalls(const ContactProblem& problem, const SolverOptions& options, EquationForm form, SolverScratch& scratch, double* r,
                   double* u, SolveResult& result) {
   const double start = errorOf(problem, r, scratch, u).residual;
   FewSearch search(problem, form, scratch, r, u, start);
-  if (!search.soften(options)) return;
-  search.write(r, u);
-  const ContactError error = errorOf(problem, r, scratch, u);
-  result.residual = error.residual;
-  result.error = error.speed;
-  result.iterations += search.iterations();
-  result.method = SolveMethod::kNotConverged;
-  result.converged = false;
-  result.yields = true;
+  const int iterations = result.iterations;
+  if (search.soften(options)) {
+    search.write(r, u);
+    const ContactError error = errorOf(problem, r, scratch, u);
+    result = {SolveMethod::kNotConverged, search.iterations(), error.residual, error.speed, result.start, false, result.give, true};
+  } else {
+    const double first = result.start;
+    result = softenImpulses(problem, options, scratch, r, u);
+    result.start = first;
+  }
+  result.iterations += iterations;
 }
 
 // A point between walls that nothing else solved: `r`, `u` and `result` are as they were unless this does.

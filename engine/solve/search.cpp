@@ -68,6 +68,19 @@ class Search {
     return result_;
   }
 
+  SolveResult runSoftly(double* r, double* u) {
+    weighContacts(problem_, scratch_);
+    letGo();
+    keep();
+    result_.method = SolveMethod::kNotConverged;
+    MoverMatrix matrix(problem_, scratch_);
+    ProximalRound round(problem_, matrix, scratch_);
+    result_.yields = matrix.fits();
+    if (matrix.fits()) softenShifted(round);
+    write(r, u);
+    return result_;
+  }
+
  private:
   int rows() const { return problem_.rowCount(); }
   int times() const { return scratch_.is_patient ? kPatient : 1; }
@@ -288,17 +301,34 @@ class Search {
 
   // Contacts that are soft, about no impulse.
   void soften(ProximalRound& round) {
+    result_.method = SolveMethod::kNotConverged;
+    result_.yields = true;
     for (const double epsilon : kSoftEpsilons) {
-      std::fill(scratch_.centre.begin(), scratch_.centre.begin() + rows(), 0.0);
-      look();
-      if (!round.solve(Shift::kFollows, {epsilon, left(), kSoftSteps}, result_.iterations)) continue;
-      scratch_.centre.swap(scratch_.r);
-      error_ = errorOf(problem_, scratch_.centre.data(), scratch_, scratch_.u.data());
-      keep();
-      result_.method = SolveMethod::kNotConverged;
-      result_.yields = true;
-      return;
+      if (softens(round, Shift::kFollows, {epsilon, left(), kSoftSteps})) return;
     }
+    softenShifted(round);
+  }
+  // Where friction jams what walls close on, soft contacts have no answer by Coulomb's law either. With the shift of no impulse there is one, the least of a
+  // convex energy: it brings no energy in, and |r_i| <= |q| / e_i.
+  void softenShifted(ProximalRound& round) {
+    const double least = std::max(left(), kRough * referenceSpeed(problem_));
+    if (softens(round, Shift::kFrozen, {kSoftestEpsilon, least, kMostDescentSteps})) return;
+    result_.yields = false;
+    letGo();
+    keep();
+  }
+  bool softens(ProximalRound& round, Shift shift, const ProximalRound::Limits& limits) {
+    letGo();
+    if (!round.solve(shift, limits, result_.iterations)) return false;
+    scratch_.centre.swap(scratch_.r);
+    error_ = errorOf(problem_, scratch_.centre.data(), scratch_, scratch_.u.data());
+    keep();
+    return true;
+  }
+  // To no impulse.
+  void letGo() {
+    std::fill(scratch_.centre.begin(), scratch_.centre.begin() + rows(), 0.0);
+    error_ = errorOf(problem_, scratch_.centre.data(), scratch_, scratch_.u.data());
   }
 
   void sweep() {
@@ -325,7 +355,8 @@ class Search {
   static constexpr double kMostAccuracies = 100;  // of what is too entangled for anything but sweeps
   static constexpr int kPatience = 3, kMostFailures = 12, kSoftSteps = 12;
   static constexpr int kPatient = 10;  // times as much of everything, where there is time
-  static constexpr double kSoftEpsilons[] = {1e-3, 1e-2, 0.1};
+  static constexpr double kSoftestEpsilon = 0.1;
+  static constexpr double kSoftEpsilons[] = {1e-3, 1e-2, kSoftestEpsilon};
 
   const ContactProblem& problem_;
   const SolverOptions& options_;
@@ -340,6 +371,10 @@ class Search {
 
 SolveResult searchImpulses(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch, double* r, double* u) {
   return Search(problem, options, scratch).run(r, u);
+}
+
+SolveResult softenImpulses(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch, double* r, double* u) {
+  return Search(problem, options, scratch).runSoftly(r, u);
 }
 
 }  // namespace pincer::engine

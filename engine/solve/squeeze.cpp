@@ -18,17 +18,26 @@ bool maySqueeze(const ContactProblem& problem, const std::vector<double>& weight
   return largest > most;
 }
 
+// In the direction in which it moves most: pushed along its axis a joint hardly moves, and isn't heavy for that.
+double mobilityOf(const ContactSide& side) {
+  if (side.mover < 0) return 0;
+  double most = 0;
+  for (int k = 0; k < kTorsionRow; ++k) most = std::max(most, dot6(side.A[k], side.A[k]));
+  return most;
+}
+
 }  // namespace
 
 bool isSqueezed(const ContactProblem& problem, const std::vector<double>& weight, const double* r) {
+  constexpr double kRoundOff = 1e-12;  // of the contact's own mobility: what moves by less than that isn't moved by it
   const double most = kLargestSqueeze * referenceSpeed(problem);
   if (!maySqueeze(problem, weight, r, most)) return false;
   double least_mobility = std::numeric_limits<double>::infinity(), largest = 0;
   for (int i = 0; i < problem.contactCount(); ++i) {
     largest = std::max(largest, r[problem.firstRow(i) + kNormalRow]);
     for (const ContactSide& side : problem.sidesOf(i)) {
-      const double mobility = side.mover < 0 ? 0 : dot6(side.A[kNormalRow], side.A[kNormalRow]);
-      if (mobility > 0) least_mobility = std::min(least_mobility, mobility);
+      const double mobility = mobilityOf(side);
+      if (mobility > kRoundOff * weight[static_cast<std::size_t>(i)]) least_mobility = std::min(least_mobility, mobility);
     }
   }
   return largest * least_mobility > most;

@@ -1,6 +1,7 @@
 #include "pincer/engine/world/push_out.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "pincer/contact/functions/invariants.h"
@@ -111,6 +112,19 @@ void sweepPushes(const WorldModel& model, bool standing, WorldScratch& scratch) 
   }
 }
 
+// The middle of this part of the tick doesn't show how deep a corner goes that turns so far in it: what lifts the body then is taken from its own motion, or
+// spin would become height.
+void payForLift(const WorldModel& model, const WorldScratch& scratch, std::size_t i, BodyState& body) {
+  constexpr double kTurnedIn = 0.1;  // [rad]
+  const double lift = -model.bodies[i].mass * scratch.gravity_W.dot(scratch.bodies[i].push.v_W);
+  const Vec3 w_W = angularVelocity(model.bodies[i].rotation, body.X_WI.q, body.L_W);
+  if (!(lift > 0) || !(scratch.h * w_W.norm() > kTurnedIn)) return;
+  const double kinetic = 0.5 * (model.bodies[i].mass * body.v_W.squaredNorm() + body.L_W.dot(w_W));
+  const double left = kinetic > lift ? std::sqrt(1 - lift / kinetic) : 0;
+  body.v_W *= left;
+  body.L_W *= left;
+}
+
 }  // namespace
 
 bool isPushedOut(const WorldModel& model, const Contact& c) {
@@ -143,6 +157,7 @@ void pushOut(const WorldModel& model, WorldState& state, WorldScratch& scratch) 
     state.bodies[i].X_WI.p += push.v_W;
     state.bodies[i].X_WI.q = (turn * state.bodies[i].X_WI.q).normalized();
     state.bodies[i].L_W = turn * state.bodies[i].L_W;  // or a needle that spins would gain energy, turned against its spin
+    payForLift(model, scratch, i, state.bodies[i]);
   }
 }
 
