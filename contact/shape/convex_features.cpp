@@ -294,7 +294,8 @@ double wallReach(double radius, const Vec3& p, const Vec3& d) {
   if (!(uu > 0)) return kInfinity;
   return (std::sqrt(std::max(0.0, uq * uq - uu * (q.squaredNorm() - radius * radius))) - uq) / uu;
 }
-double planeReach(double along, double rate) { return rate > 0 ? along / rate : kInfinity; }
+// `along`: from the point to the plane; of points on a rim it is round-off, which a small rate would blow up.
+double planeReach(double along, double rate) { return rate > 0 ? std::max(along, 0.0) / rate : kInfinity; }
 double ballReach(double radius, const Vec3& p, const Vec3& d) {
   const double along = d.dot(p);
   return std::sqrt(std::max(0.0, along * along - p.squaredNorm() + radius * radius)) - along;

@@ -2,6 +2,7 @@
 
 #include "pincer/contact/functions/invariants.h"
 #include "pincer/contact/shape/direction.h"
+#include "pincer/contact/shape/face_contact.h"
 #include "pincer/contact/shape/facet_overlap.h"
 #include "pincer/contact/shape/separation.h"
 
@@ -88,7 +89,8 @@ void collidePadWithConvex(const Shape& core, double rounding, const Pose& X_BF, 
   PINCER_ASSERT(isConvex(core) && isConvex(body) && rounding >= 0);
   // Half of the way each from the origin in between, as two bodies are: round-off is theirs alike.
   const PosedSolid pad{core, X_BF.q.toRotationMatrix(), 0.5 * X_BF.p, rounding}, solid{body, Mat3::Identity(), -0.5 * X_BF.p};
-  collidePosed(pad, solid, margin, last_n_B, out);
+  const double size = std::min(boundingRadius(core), boundingRadius(body));
+  if (last_n_B == Vec3::Zero() || !touchOnFaces(pad, solid, last_n_B, size, margin, out)) collidePosed(pad, solid, margin, last_n_B, out);
   for (int i = 0; i < out.count; ++i) out.points[static_cast<std::size_t>(i)].p_W += 0.5 * X_BF.p;
 }
 

@@ -53,7 +53,7 @@ void flatten(const PosedSolid& solid, const Facet& facet, double sign, const Vie
   const auto corner = [&](int i) -> const FacetCorner& { return facet.corners[static_cast<std::size_t>(i)]; };
   const auto named = [&](int i, int edge) -> FlatCorner {
     const std::uint32_t name = corner(i).vertex;
-    return {Vec2::Zero(), kind == kCornerOfA ? featureOf(kind, name, 0) : featureOf(kind, 0, name), corner(edge).edge};
+    return {Vec2::Zero(), featureOfCorner(kind == kCornerOfA, name), corner(edge).edge};
   };
   const auto placeOf = [&](int i) { return solid.place(corner(i).p); };
   if (facet.count > 2) {

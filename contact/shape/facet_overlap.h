@@ -18,6 +18,9 @@
 
 namespace pincer::contact {
 
+// The feature of a point that is a corner of a's or b's facet, by the corner's name.
+constexpr std::uint32_t featureOfCorner(bool is_of_a, std::uint32_t vertex) { return is_of_a ? vertex << 14 : 1u << 28 | vertex; }
+
 // Points with gap below `margin`, sorted by feature, written to `out` as in pair_query.h, from the origin that a and b are posed about.
 // `along`: what separate() found. `size` [m] is the order of magnitude of both. Allocates nothing. False where the facets share no place
 // whose gap is along.gap, so that the direction isn't one of least overlap; `out` has the nearest points of the two along it all the same.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "pincer/contact/functions/invariants.h"
+#include "pincer/engine/world/friction_shares.h"
 #include "pincer/engine/world/hollow_inertia.h"
 #include "pincer/engine/world/impact.h"
 #include "pincer/engine/world/joint_rows.h"
@@ -133,7 +134,10 @@ void fillContacts(const WorldModel& model, const WorldState& state, WorldScratch
     scratch.first_row[i + 1] = scratch.first_row[i] + rowsOf(scratch.contacts[i].material);
     fillContact(model, rates, scratch, i);
   }
-  if (scratch.h > 0) alignStickBiases(scratch.h, rates.tangent, scratch);
+  if (scratch.h > 0) {
+    alignStickBiases(scratch.h, rates.tangent, scratch);
+    shareFriction(scratch);
+  }
 }
 
 }  // namespace pincer::engine

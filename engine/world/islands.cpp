@@ -19,6 +19,7 @@ namespace pincer::engine {
 namespace {
 
 constexpr int kSettlingTicks = 24;  // stick offsets halve per tick: from the tolerance to round-off
+constexpr int kRingingTicks = 240;  // the same of bodies that ring on the springs of flat pads, by 5 % per tick
 
 // The number of what moves there in IslandScratch's arrays per mover; -1 for what doesn't.
 int moverOf(const WorldModel& model, const WorldScratch& scratch, const Contact& c, bool is_a) {
@@ -258,10 +259,17 @@ void gather(const WorldModel& model, WorldScratch& scratch) {
 
 // For how long warm starts have to be exact to round-off: from an answer that took iterations on, until it is clear that none comes that is. One
 // that fits isn't the end of it: the impulses of a body that still slows down by 1e-13 m/s in a tick, kept, would turn it round and move it off.
-int nextSettling(const Island& island, double tolerance) {
-  if (!(island.result.start <= tolerance)) return kSettlingTicks;
+int nextSettling(const Island& island, bool rings, double tolerance) {
+  if (!(island.result.start <= tolerance)) return rings ? kRingingTicks : kSettlingTicks;
   if (island.result.method == SolveMethod::kWarmStart) return island.settling > 0 ? kSettlingTicks : 0;
   return island.settling - 1;
+}
+
+// Whether fingertips hold with more contacts than one each, as pads do.
+bool isHeldByPads(const IslandScratch& s, const Island& island, const WorldScratch& scratch) {
+  if (island.contacts > kFewContacts || island.contacts <= island.movers) return false;
+  const int* const order = s.order.data() + island.place;
+  return std::any_of(order, order + island.contacts, [&](int i) { return scratch.contacts[i].a.kind == SideKind::kPoint; });
 }
 
 double restSpeed(const Island& island, const SolverOptions& options) {
@@ -269,7 +277,7 @@ double restSpeed(const Island& island, const SolverOptions& options) {
 }
 
 void scatter(const IslandScratch& s, const Island& island, const SolverOptions& options, WorldScratch& scratch) {
-  const int settling = nextSettling(island, options.tolerance);
+  const int settling = nextSettling(island, isHeldByPads(s, island, scratch), options.tolerance);
   const double rest_speed = island.result.method == SolveMethod::kWarmStart ? restSpeed(island, options) : 0;
   const int *const order = s.order.data() + island.place, *const from_row = scratch.first_row.data();
   Contact* const contacts = scratch.contacts.data();

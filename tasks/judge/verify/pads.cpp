@@ -311,6 +311,8 @@ std::vector<Measurement> verifyPads() {
           holdOf("pads/hold-20mm", kBrick, 0.02),
           holdOf("pads/hold-40mm", kBrick, 0.04),
           holdOf("pads/hold-cylinder", contact::Cylinder{0.015, 0.03}, 0.02),
+          holdOf("pads/hold-short-cylinder", contact::Cylinder{0.015, 0.004}, 0.02),
+          holdOf("pads/hold-coin", contact::Cylinder{0.015, 0.002}, 0.01),
           holdOf("pads/hold-rod", contact::Capsule{0.015, 0.03}, 0.02),
           holdOf("pads/hold-short-rod", contact::Capsule{0.015, 0.005}, 0.02),
           overhangOf("pads/hold-edge", 0.6, false),

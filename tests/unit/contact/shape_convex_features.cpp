@@ -1,6 +1,7 @@
 // What the pair routines know of a convex solid: support points against the sampled surface, facets, bends; hulls from points.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
 
 #include "pincer/contact/error.h"
@@ -56,6 +57,14 @@ TEST(ConvexFeatures, FacetsLieOnTheSurfaceCounterClockwise) {
       EXPECT_NEAR(most, d.dot(supportOf(solid.shape, d)), 1e-15) << solid.name;  // one of the corners is the support
     }
   }
+}
+
+// A ray all but straight out of a wall's end, which is beyond the end's plane by round-off, left a short cylinder that pads held 1e-10 m early: it rattled.
+TEST(ConvexFeatures, ARimIsWhereTheSolidEnds) {
+  const double half = 0.004, beyond = std::nextafter(half, 1), slope = 1e-9, flat = 0.012;
+  const Vec3 d = Vec3(1, 0, slope).normalized();
+  EXPECT_LE(std::abs(reachOf(Cylinder{0.015, half}, Vec3(0.015, 0, beyond), d)), 1e-17);
+  EXPECT_LE(std::abs(reachOf(CylinderWithFlat{0.015, half, flat}, Vec3(flat, 0.009, beyond), d)), 1e-17);
 }
 
 // The bend is the derivative of the support point.

@@ -1,0 +1,104 @@
+#include "pincer/contact/shape/face_contact.h"
+
+#include <algorithm>
+#include <array>
+
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/contact/shape/facet_overlap.h"
+
+namespace pincer::contact {
+namespace {
+
+constexpr int kMostCorners = 4;            // of a face that lies over another with all of them; of more there is a choice to be made
+constexpr double kLowestRounding = 1e-13;  // of the size: round-off, as separation.cpp has it
+
+// One solid over the face `base` of the other: what of it faces that, seen in the base's frame.
+class OverFace {
+ public:
+  OverFace(const PosedSolid& base_solid, const Facet& base, const PosedSolid& over_solid)
+      : base_solid_(base_solid), over_solid_(over_solid), base_(base), n_(base_solid.outwards(base.n)) {
+    PINCER_ASSERT(base.count > 2);
+    const Vec3 ahead = over_solid.inwards(-n_);
+    facetOf(over_solid.shape, ahead, over_);
+    const double plane = base.n.dot(base.corners[0].p);
+    const auto seen = [&](const Vec3& p) { return base_solid.inwards(over_solid.place(p) - base_solid.p); };
+    lowest_ = base.n.dot(seen(supportOf(over_solid.shape, ahead))) - plane;
+    for (int i = 0; i < over_.count; ++i) {
+      const Vec3 p = seen(over_.corners[static_cast<std::size_t>(i)].p);
+      const double height = heights_[static_cast<std::size_t>(i)] = base.n.dot(p) - plane;
+      const bool is_inside = isInside(p);
+      highest_ = std::max(highest_, height);
+      if (is_inside) lowest_inside_ = std::min(lowest_inside_, height);
+      all_inside_ = all_inside_ && is_inside;
+    }
+  }
+
+  // A lowest point lies over the base; or would, if the two facets share a place.
+  bool isNearest(double size) const { return isLowest(lowest_inside_, size); }
+  bool isFlush(double size) const { return isLowest(highest_, size); }
+  bool isWithin() const { return all_inside_ && over_.count > 2 && over_.count <= kMostCorners; }
+  const Vec3& normal() const { return n_; }  // out of the base
+  double lowest() const { return lowest_; }  // over the base [m]
+
+  // The corners nearer than the margin, of a polygon within the base.
+  void takeCorners(bool are_of_a, double margin, PairPoints& out) const {
+    const double rounding = roundingOf(over_solid_), base_rounding = roundingOf(base_solid_);
+    const Vec3 n = are_of_a ? n_ : Vec3(-n_);
+    for (int i = 0; i < over_.count; ++i) {
+      const FacetCorner& corner = over_.corners[static_cast<std::size_t>(i)];
+      const double height = heights_[static_cast<std::size_t>(i)], phi = height - rounding - base_rounding;
+      if (!(phi < margin)) continue;
+      const Vec3 p = over_solid_.place(corner.p) - 0.5 * (height + rounding - base_rounding) * n_;
+      out.points[static_cast<std::size_t>(out.count++)] = {p, n, phi, featureOfCorner(are_of_a, corner.vertex)};
+    }
+    std::sort(out.points.begin(), out.points.begin() + out.count,
+              [](const PairPoint& x, const PairPoint& y) { return x.feature < y.feature; });
+  }
+
+ private:
+  bool isLowest(double height, double size) const { return lowest_ > 0 && height - lowest_ <= kLowestRounding * size; }
+
+  bool isInside(const Vec3& p) const {
+    const Vec3* from = &base_.corners[static_cast<std::size_t>(base_.count - 1)].p;
+    for (int i = 0; i < base_.count; ++i) {
+      const Vec3& to = base_.corners[static_cast<std::size_t>(i)].p;
+      if (!(base_.n.dot((to - *from).cross(p - *from)) >= 0)) return false;
+      from = &to;
+    }
+    return true;
+  }
+
+  const PosedSolid& base_solid_;
+  const PosedSolid& over_solid_;
+  const Facet& base_;
+  const Vec3 n_;
+  Facet over_;
+  std::array<double, Facet::kMost> heights_;  // over the base's plane [m]
+  double lowest_ = kInfinity, lowest_inside_ = kInfinity, highest_ = -kInfinity;
+  bool all_inside_ = true;
+};
+
+}  // namespace
+
+bool touchOnFaces(const PosedSolid& a, const PosedSolid& b, const Vec3& last_n, double size, double margin, PairPoints& out) {
+  PINCER_ASSERT(isUnitIfFinite(last_n) && size > 0);
+  for (const bool is_base_a : {false, true}) {
+    out.count = 0;
+    const PosedSolid& base_solid = is_base_a ? a : b;
+    Facet base;
+    facetOf(base_solid.shape, base_solid.inwards(is_base_a ? Vec3(-last_n) : last_n), base);
+    if (base.count < 3) continue;
+    const OverFace over(base_solid, base, is_base_a ? b : a);
+    const bool is_nearest = over.isNearest(size);
+    if (!is_nearest && !over.isFlush(size)) continue;
+    if (is_nearest && over.isWithin()) {
+      over.takeCorners(!is_base_a, margin, out);
+      return true;
+    }
+    const Vec3 n = is_base_a ? Vec3(-over.normal()) : over.normal();
+    if (overlapFacets(a, b, {n, over.lowest()}, size, margin, out)) return true;
+  }
+  return false;
+}
+
+}  // namespace pincer::contact
