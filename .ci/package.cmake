@@ -55,7 +55,7 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "gnuplot-nox")
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "Physics of bodies that fingers pinch, lift and turn: the program, its scenes and manual pages.")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libpincer-dev)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libdevel)
-set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS "libeigen3-dev, libfmt-dev, libopenmesh-dev, libbullet-dev, libsqlite3-dev, libtinyxml2-dev, \
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS "libeigen3-dev, libfmt-dev, libopenmesh-dev, libbullet-dev, libsqlite3-dev, libtinyxml2-dev, libsimdjson-dev, \
 libusb-1.0-0-dev, libglfw3-dev, libegl-dev, libgl-dev, pkg-config")
 set(CPACK_COMPONENT_LIBRARY_DESCRIPTION "Physics of bodies that fingers pinch, lift and turn: headers and static libraries.")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-pincer)

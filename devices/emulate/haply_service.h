@@ -23,6 +23,7 @@ struct HaplyServiceSettings {
   double damping = 0;
   bool takes_configuration = true;  // of a session's first message
   bool tells_force = true;          // that it applies
+  bool tells_others = true;         // of a device that one session commands, the other sessions
   bool wired_grips = false;         // on a cable: `button` and `hall`, no battery
 };
 

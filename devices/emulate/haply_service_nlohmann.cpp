@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -60,12 +61,14 @@ struct HaplyService::Texts {
                    R"("control_domain":"cartesian","control_mode":"{1}","transform":{2}}})",
                    kAngles, idle ? "idle" : "force", fault == HaplyFault::kTransformed ? R"({"scale":{"x":2,"y":2,"z":2}})" : "{}");
   }
+  static bool isCommandedByOthers(const HaplyService& service, int session) {
+    return std::any_of(service.sessions_.begin(), service.sessions_.end(),
+                       [&](const auto& other) { return other.first != session && other.second.commanded; });
+  }
   static void status(const HaplyService& service, int session, std::string& text) {
-    bool in_use = false;
-    for (const auto& [number, other] : service.sessions_) in_use |= number != session && other.commanded;
     fmt::format_to(std::back_inserter(text), R"({{"calibrated":{},"in_use":{},"power_supply":{},"ready":{},"started":true}})",
-                   truth(service.fault_ != HaplyFault::kCalibrationLost), truth(in_use), truth(service.fault_ != HaplyFault::kPowerLost),
-                   truth(service.fault_ != HaplyFault::kNotReady));
+                   truth(service.fault_ != HaplyFault::kCalibrationLost), truth(isCommandedByOthers(service, session)),
+                   truth(service.fault_ != HaplyFault::kPowerLost), truth(service.fault_ != HaplyFault::kNotReady));
   }
   static void arm(HaplyService& service, std::size_t i, int session, bool full, std::string& text) {
     fmt::format_to(std::back_inserter(text), R"({{"device_id":"{}","state":)", service.plants_[i]->settings().id);
@@ -96,7 +99,8 @@ struct HaplyService::Texts {
     if (first && service.settings_.minor >= 5) fmt::format_to(std::back_inserter(text), R"("session_id":{},)", session);
     text += R"("inverse3":[)";
     const char* comma = "";
-    for (std::size_t i = service.fault_ == HaplyFault::kDeviceGone ? 1 : 0; i < service.plants_.size(); ++i, comma = ",") {
+    const bool tells = service.settings_.tells_others || !isCommandedByOthers(service, session);
+    for (std::size_t i = service.fault_ == HaplyFault::kDeviceGone ? 1 : 0; tells && i < service.plants_.size(); ++i, comma = ",") {
       text += comma;
       arm(service, i, session, full, text);
     }

@@ -23,7 +23,8 @@ constexpr std::int64_t kReadyIn = 10000 * kMillisecond;
 constexpr std::int64_t kPushesIn = 3000 * kMillisecond;  // after arming, the echo's test included; else this computer is too busy
 constexpr std::int64_t kPushes = 100 * kMillisecond;     // a push that is well established
 constexpr std::int64_t kLookPeriod = 2 * kMillisecond;
-constexpr int kNobody = -1;  // no descriptor wakes the wait
+constexpr std::int64_t kBlind = 250 * kMillisecond;  // a second session that isn't told of the arm by then never is
+constexpr int kNobody = -1;                          // no descriptor wakes the wait
 
 // The session that commands.
 class Pusher final : public PortSink {
@@ -99,6 +100,7 @@ class Watcher final : public PortSink {
     if (std::exchange(has_inventory_, true)) ++answered_;
     const DeviceReport* arm = message.find(device_.id.view());
     if (arm == nullptr) return;
+    sees_ |= answered_ >= believed_from_;
     idle_ = arm->mode.view() == "idle" || (arm->f_H && arm->f_H->norm() < 0.5 * kGentle);
     if (arm->p_H) place_ = arm->p_H;
     if (!begin_) begin_ = place_;
@@ -111,7 +113,12 @@ class Watcher final : public PortSink {
     while (port_->open() && usb::monotonicNs() < now + kLookPeriod) port_->wait(now + kLookPeriod, kNobody, *this);
   }
   // From now on idleness counts: the inventory is older, and an answer may be one message old.
-  void begin() { believed_from_ = sent_ + 2; }
+  void begin() {
+    believed_from_ = sent_ + 2;
+    sees_ = false;
+  }
+  // It is told of the arm, although another session commands it.
+  bool sees() const { return sees_; }
   bool idle() const { return idle_ && answered_ >= believed_from_; }
   double moved() const { return place_ && begin_ ? (*place_ - *begin_).norm() : 0; }
 
@@ -121,7 +128,7 @@ class Watcher final : public PortSink {
   std::unique_ptr<ServiceMessage> message_ = std::make_unique<ServiceMessage>();
   std::array<char, kMostCommand> buffer_{};
   std::optional<Vec3> begin_, place_;
-  bool idle_ = false, has_inventory_ = false;
+  bool idle_ = false, has_inventory_ = false, sees_ = false;
   std::int64_t sent_ = 0, answered_ = 0, believed_from_ = 0;
 };
 
@@ -138,15 +145,19 @@ SilenceFinding measureSilence(const ServicePlace& place, const std::string& arm,
   watcher.begin();
   SilenceFinding finding;
   const std::int64_t begin = usb::monotonicNs();
+  const auto within = [&](std::int64_t time) { return usb::monotonicNs() - begin < time; };
   if (ending == Ending::kClose) pusher.vanish();
-  while (!finding.went_idle && watcher.moved() < kFar && usb::monotonicNs() - begin < kPatience && !interrupted) {
+  while (!finding.went_idle && watcher.moved() < kFar && within(watcher.sees() ? kPatience : kBlind) && !interrupted) {
     watcher.look();
     finding.went_idle = watcher.idle();
   }
   finding.seconds = 1e-9 * static_cast<double>(usb::monotonicNs() - begin);
   finding.moved = watcher.moved();
-  if (ending == Ending::kSilence) return finding;
-  Pusher(place, arm, version).push(interrupted);  // takes it back, and lets it go with zeros
+  if (ending == Ending::kClose) Pusher(place, arm, version).push(interrupted);  // takes it back, and lets it go with zeros
+  if (!watcher.sees() && !interrupted)
+    throw std::runtime_error(
+        "The service tells a second session nothing of an arm that is in use, so nobody can see when it lets go. Leave idle_after unset: "
+        "sessions keep to 2 N.");
   return finding;
 }
 

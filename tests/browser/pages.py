@@ -18,22 +18,21 @@ import sys
 import matplotlib.image
 import numpy
 
+from chromium import Chromium
+
 WIDTH, HEIGHT = 1280, 720  # as pincer draws
 BEGIN = 0.02               # [s]: contacts are there, and nothing has gone far from where the camera was placed for
 STANDING = {"masonry_arch", "stack_of_ten"}  # scenes in which nothing is to be seen to move
-# Two renderers: borders are smoothed otherwise, light and its tone differ, arrows are a few pixels wide. 
+# Two renderers: borders are smoothed otherwise, light and its tone differ, arrows are a few pixels wide.
 OVERLAP = 0.8
+# True once the page has drawn its first picture, or says why it can't.
+DRAWN = "!!(document.getElementById('clock')?.textContent || document.querySelector('.fault'))"
 
 
-def opened(page, address, picture, bare):
+def opened(browser, page, address, picture, bare):
     """The picture of a page, as numbers, and what its console said."""
-    command = ["chromium", "--headless=new", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--hide-scrollbars",
-               f"--window-size={WIDTH},{HEIGHT}", "--timeout=6000", "--enable-logging=stderr", f"--user-data-dir={picture.parent / 'profile'}",
-               f"--screenshot={picture}", f"file://{page}#{address}{'&bare' if bare else ''}"]
-    picture.unlink(missing_ok=True)
-    ended = subprocess.run(command, capture_output=True, text=True, timeout=180)
-    assert picture.exists(), ended.stderr[-2000:]
-    said = [line for line in re.findall(r"CONSOLE[^\n]*", ended.stderr) if "GPU stall due to ReadPixels" not in line]  # a remark on how a screenshot is taken
+    png, said = browser.picture(f"file://{page}#{address}{'&bare' if bare else ''}", DRAWN)
+    picture.write_bytes(png)
     return matplotlib.image.imread(picture)[..., :3], said
 
 
@@ -50,17 +49,17 @@ def run(*command):
     return subprocess.run([str(word) for word in command], capture_output=True, text=True)
 
 
-def check_scene(pincer, folder, scene, seconds):
+def check_scene(browser, pincer, folder, scene, seconds):
     page = folder / f"{scene}.html"
     shared = run(pincer, "share", scene, "--duration", seconds, "--out", page)
     assert shared.returncode == 0, shared.stderr
     assert page.stat().st_size < 5e6, f"{page.stat().st_size} bytes"
     run(pincer, "sim", scene, "--duration", BEGIN, "--screenshot", folder / f"{scene}-own.png")
     own = matplotlib.image.imread(folder / f"{scene}-own.png")[..., :3]
-    begin, said = opened(page, f"t={BEGIN}", folder / f"{scene}-begin.png", True)
+    begin, said = opened(browser, page, f"t={BEGIN}", folder / f"{scene}-begin.png", True)
     assert not said, said
     same = overlap(coloured(own), coloured(begin))
-    middle, said = opened(page, f"t={seconds / 2}", folder / f"{scene}-middle.png", True)
+    middle, said = opened(browser, page, f"t={seconds / 2}", folder / f"{scene}-middle.png", True)
     assert not said, said
     moved = (abs(begin - middle).max(axis=2) > 0.1).mean()
     print(f"{scene}: {1e-6 * page.stat().st_size:.2f} MB, {100 * coloured(begin).mean():.1f} % coloured, overlap with pincer's own picture {same:.3f}, "
@@ -71,24 +70,24 @@ def check_scene(pincer, folder, scene, seconds):
         assert moved > 0.001, "nothing moves"
 
 
-def check_damage(folder):
+def check_damage(browser, folder):
     """The console is heard: a page whose data ends too early says so, and the picture has the sentence."""
     whole = (folder / "pickup.html").read_text()
     cut = folder / "cut.html"
     cut.write_text(re.sub(r'(id="pincer-data">.{2000})[^<]*', r"\1", whole))
-    _, said = opened(cut, "t=0", folder / "cut.png", False)
+    _, said = opened(browser, cut, "t=0", folder / "cut.png", False)
     assert said, "a damaged page says nothing"
     print(f"damaged page: {said[0][:110]}", flush=True)
 
 
-def check_session(pincer, folder):
+def check_session(browser, pincer, folder):
     out = folder / "session"
     ran = run(pincer, "run", "sphere-pickup", "--repetitions", 1, "--friction", 0.9, "--condition", "cld+force", "--seed", 7, "--out", out, "--no-report")
     assert ran.returncode == 0, ran.stderr
     page = folder / "session.html"
     shared = run(pincer, "share", out, "--out", page)
     assert shared.returncode == 0, shared.stderr
-    picture, said = opened(page, "t=3&shown=1", folder / "session.png", False)
+    picture, said = opened(browser, page, "t=3&shown=1", folder / "session.png", False)
     assert not said, said
     index = json.loads(re.search(r'id="pincer-index">(.*?)</script>', page.read_text(), re.S)[1])
     trials = len(index["recordings"])
@@ -109,11 +108,12 @@ def gallery():
 def main():
     pincer, folder = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
     folder.mkdir(parents=True, exist_ok=True)
-    for scene in sys.argv[3:] or gallery():
-        check_scene(pincer, folder, scene, gallery().get(scene, 2))
-    if len(sys.argv) == 3:
-        check_damage(folder)
-        check_session(pincer, folder)
+    with Chromium(folder, WIDTH, HEIGHT) as browser:
+        for scene in sys.argv[3:] or gallery():
+            check_scene(browser, pincer, folder, scene, gallery().get(scene, 2))
+        if len(sys.argv) == 3:
+            check_damage(browser, folder)
+            check_session(browser, pincer, folder)
 
 
 if __name__ == "__main__":

@@ -235,7 +235,8 @@ TEST(House, LibrariesStayInTheirFiles) {
                                                    {"sqlite3.h", "_sqlite"},   {"libusb.h", "_libusb"},    {"nlohmann/", ""},
                                                    {"GLFW/", "_glfw"},         {"EGL/", "_egl"},           {"glad/", "_gl"},
                                                    {"imgui", "_imgui"},        {"png.h", "_png"},          {"boost/", "_beast"},
-                                                   {"pybind11/", "_pybind11"}, {"hdf5.h", "_hdf5"},        {"zlib.h", "_zlib"}};
+                                                   {"pybind11/", "_pybind11"}, {"hdf5.h", "_hdf5"},        {"zlib.h", "_zlib"},
+                                                   {"simdjson", "_simdjson"}};
   for (const auto& [folder, seen] : kMaySee) {
     for (const fs::path& file : sourcesUnder(fs::path(PINCER_SOURCE_DIR) / folder)) {
       for (const std::string& line : linesOf(file)) {

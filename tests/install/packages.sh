@@ -52,7 +52,11 @@ within test -f /usr/share/man/man1/pincer-sim.1 -a -f /lib/udev/rules.d/70-pince
 python=("$packages"/python3-pincer_*.deb)
 if [[ -e ${python[0]} ]]; then
   within bash -c 'apt-get -qq install -y --no-install-recommends /tmp/python3-pincer_*.deb' >> "$build/apt.log"
-  within python3 -c 'import pincer; print("python", pincer.__file__)'
+  within python3 -c 'import pincer
+model = pincer.load("s4_pinch")
+state = pincer.State(model)
+pincer.step(model, state, nstep=1000)
+print("python", pincer.__file__, state.body("sphere").position)'
 fi
 # The library, as a program of somebody else's meets it.
 within bash -c 'apt-get -qq install -y --no-install-recommends g++ cmake ninja-build /tmp/libpincer-dev_*.deb' >> "$build/apt.log"

@@ -13,6 +13,7 @@
 #include "pincer/devices/haply/silence.h"
 #include "pincer/devices/usb/usb_bus.h"
 #include "pincer/tests/support/allocation_guard.h"
+#include "pincer/tests/support/error_of.h"
 
 namespace pincer::devices::haply {
 namespace {
@@ -220,6 +221,20 @@ TEST(HaplySilence, TellsWhenAnArmLetsGo) {
   EXPECT_FALSE(finding(emulate::DeadMan::kKeepsForEver, Ending::kClose).went_idle);
   EXPECT_FALSE(finding(emulate::DeadMan::kZeroOnClose, Ending::kSilence).went_idle);
   EXPECT_TRUE(finding(emulate::DeadMan::kZeroOnClose, Ending::kClose).went_idle);
+}
+
+// Nor is it documented that a second session may look at an arm that is in use: then it can't be measured, and the push ends at once.
+TEST(HaplySilence, EndsWhereASecondSessionIsToldNothing) {
+  HaplyServiceSettings settings;
+  settings.tells_others = false;
+  for (auto& arm : settings.arms) arm.dead_man = emulate::DeadMan::kKeepsForEver;
+  HaplyServer server(settings);
+  const std::atomic<bool> never{false};
+  const std::string error = tests::problemOf([&] {
+    measureSilence(*servicePlaceOf(server.place()), "049D", {3, 5}, Ending::kSilence, never);
+  });
+  EXPECT_NE(error.find("tells a second session nothing"), std::string::npos) << error;
+  EXPECT_EQ(server.force(0), 0);
 }
 
 TEST(HaplyMap, IsTheEmulatorsOwnMapping) {
