@@ -4,13 +4,10 @@
 #include <cmath>
 
 #include "pincer/contact/functions/invariants.h"
+#include "pincer/contact/shape/tolerances.h"
 
 namespace pincer::contact {
 namespace {
-
-constexpr double kLike = 0.95;     // cosine: normals within 18 degrees form a group
-constexpr double kSameGap = 1e-6;  // [m]
-constexpr double kBetter = 1.01;   // ratio of scores, as in point_choice.h
 
 // The kept points of one group, and the sides of their outline seen along the first one's normal.
 struct Group {
@@ -116,7 +113,7 @@ FoundPoints ContactCandidates::keepBest() {
     keep(leader, groups[static_cast<std::size_t>(group_count)]);
     for (int i = 0; i < count_; ++i) {
       std::int8_t& group = group_of[static_cast<std::size_t>(i)];
-      if (group == kNone && at(leader).n_W.dot(at(i).n_W) > kLike) group = static_cast<std::int8_t>(group_count);
+      if (group == kNone && at(leader).n_W.dot(at(i).n_W) > kLikeNormals) group = static_cast<std::int8_t>(group_count);
     }
     ++group_count;
   }

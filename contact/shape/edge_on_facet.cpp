@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "pincer/contact/functions/invariants.h"
+#include "pincer/contact/shape/tolerances.h"
 
 namespace pincer::contact {
 namespace {
@@ -54,10 +55,9 @@ EdgePart overPolygon(const Vec3& p, const Vec3& e, double length, const Vec3& n,
 }
 
 EdgePart overLine(const Vec3& p, const Vec3& e, double length, const Vec3& n, const Facet& f, double slack, const Shape& shape) {
-  constexpr double kNearlyParallel = 0.3;  // sine, as in facet_overlap.cpp
   const Vec3 &from = f.corners[0].p, line = f.corners[1].p - from;
   const double line_length = line.norm();
-  if (e.cross(line).norm() > kNearlyParallel * line_length) return {};
+  if (e.cross(line).norm() > kNearlyParallelEdges * line_length) return {};
   const double along = line.dot(p - from) / line_length, rate = line.dot(e) / line_length;
   Range range{0, length, slack};
   range.keep(along, rate);

@@ -5,6 +5,7 @@
 
 #include "pincer/contact/functions/invariants.h"
 #include "pincer/contact/shape/point_choice.h"
+#include "pincer/contact/shape/tolerances.h"
 
 namespace pincer::contact {
 namespace {
@@ -181,17 +182,16 @@ void clipFacet(const FlatFacet& facet, const FlatFacet& clipper, bool clipper_is
 
 // The part of segment f that lies over the segment g, measured along f: the ends of f or the feet of g's ends.
 void overlapSegments(const FlatFacet& fa, const FlatFacet& fb, double tolerance, Shared& out) {
-  constexpr double kParallel = 1e-6, kNearlyParallel = 0.3;  // sine
   const Vec2 a0 = fa.corner(0).x, b0 = fb.corner(0).x;
   const Vec2 a = fa.corner(1).x - a0, b = fb.corner(1).x - b0;
   const double sine = cross(a, b), lengths = a.norm() * b.norm();
-  if (std::abs(sine) > kParallel * lengths) {
+  if (std::abs(sine) > kParallelEdges * lengths) {
     const double s = cross(b0 - a0, b) / sine, t = cross(b0 - a0, a) / sine;
     const double slack_a = tolerance / a.norm(), slack_b = tolerance / b.norm();
     if (s >= -slack_a && s <= 1 + slack_a && t >= -slack_b && t <= 1 + slack_b)
       out.add(a0 + std::clamp(s, 0.0, 1.0) * a, featureOf(kCrossing, fa.corner(0).edge, fb.corner(0).edge));
   }
-  if (std::abs(sine) > kNearlyParallel * lengths) return;
+  if (std::abs(sine) > kNearlyParallelEdges * lengths) return;
   const double radii = fa.line_radius + fb.line_radius;
   // `share`: of the way to the other line after which the two walls are as steep as each other.
   const auto addEnd = [&](const FlatCorner& end, const Vec2& from, const Vec2& line, double share) {

@@ -3,6 +3,7 @@
 #include "pincer/contact/shape/contact_candidates.h"
 #include "pincer/contact/shape/mesh_rules.h"
 #include "pincer/contact/shape/posed_solid.h"
+#include "pincer/contact/shape/tolerances.h"
 #include "pincer/contact/smooth_mesh.h"
 
 namespace pincer::contact {
@@ -128,12 +129,11 @@ class MeshOnMesh {
 
   void lookAtEdges(const Vec3& a0, const Vec3& a1, const Vec3& e, const EdgeSides& sides, const FlatTriangle& tb, int j,
                    std::uint32_t name_a, std::uint32_t name_b) {
-    constexpr double kParallel = 1e-6;  // sine
     const Vec3 b0 = R_ * tb.corner(j) + p_, f_long = R_ * (tb.corner(j + 1) - tb.corner(j));
     const double length_a = (a1 - a0).norm(), length_b = f_long.norm();
     const Vec3 f = f_long / length_b, across = e.cross(f), d = b0 - a0;
     const double sine2 = across.squaredNorm();
-    if (!(sine2 > kParallel * kParallel)) return;
+    if (!(sine2 > kParallelEdges * kParallelEdges)) return;
     const double s = d.cross(f).dot(across) / sine2, t = d.cross(e).dot(across) / sine2;
     const double slack = scale_.slack();
     if (s < -slack || s > length_a + slack || t < -slack || t > length_b + slack) return;

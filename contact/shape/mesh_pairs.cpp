@@ -8,6 +8,7 @@
 #include "pincer/contact/shape/mesh_rules.h"
 #include "pincer/contact/shape/smooth_lead.h"
 #include "pincer/contact/shape/solid_walls.h"
+#include "pincer/contact/shape/tolerances.h"
 #include "pincer/contact/smooth_mesh.h"
 
 namespace pincer::contact {
@@ -165,7 +166,6 @@ class MeshOnSolid {
       if (is_corner && features_.liesAbove(edge.ends[t > 0], s.n, kConeSlack)) continue;  // lookAtCorner's
       offerOnEdge(edge, t, s.n, phi, meshFeatureOf(kMeshEdgeEnds, 2 * edge.name + end));
     }
-    constexpr double kSameGap = 1e-6;  // [m], as in contact_candidates.cpp
     const double phi_s = s.gap - rounding_, along = edge.e.dot(s.p - edge.p);
     if (part.found && (part.is_over_face || phi_s > std::min(part.ends[0].phi, part.ends[1].phi) - solid_.skin - kSameGap)) return;
     if (along >= -scale_.slack() && along <= edge.length + scale_.slack())

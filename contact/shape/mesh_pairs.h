@@ -15,7 +15,7 @@
 // the smooth surface (smooth_lead.h); a mesh whose surface is its triangles is done. A pad's points stay those of the triangles: they tell where
 // these are the surface (finger_query.h).
 //
-// Of all candidates up to eight are kept: those of like normal (within kLike) form a group; the deepest of each group first, then within
+// Of all candidates up to eight are kept: those of like normal (within kLikeNormals) form a group; the deepest of each group first, then within
 // groups in turn the one that is furthest from what the group has, by point_choice.h's d^2 / (g + s).
 // Cost: about 0.1 us per triangle near the other body, however many.
 #pragma once

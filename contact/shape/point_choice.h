@@ -23,6 +23,7 @@
 #include "pincer/contact/pair_query.h"
 #include "pincer/contact/shape/direction.h"
 #include "pincer/contact/shape/extreme_points.h"
+#include "pincer/contact/shape/tolerances.h"
 
 namespace pincer::contact {
 
@@ -46,8 +47,6 @@ class PointChoice {
 
  private:
   static constexpr int kListed = 256;
-  static constexpr double kSameGap = 1e-6;  // [m]
-  static constexpr double kBetter = 1.01;   // ratio of scores [-]
 
   // From a chosen point to another, none to the right of it; two points have two edges, there and back.
   struct Edge {

@@ -6,6 +6,7 @@
 #include "pincer/contact/functions/invariants.h"
 #include "pincer/contact/shape/core_distance.h"
 #include "pincer/contact/shape/direction.h"
+#include "pincer/contact/shape/tolerances.h"
 
 namespace pincer::contact {
 namespace {
@@ -228,10 +229,9 @@ class Search {
   }
 
   void preferAcross(const Vec3& e, const Vec3& f) {
-    constexpr double kParallel = 1e-6;  // sine
     const Vec3 n = e.cross(f);
     const double length = n.norm();
-    if (length > kParallel) prefer(n.dot(best_.n) < 0 ? Vec3(n / -length) : Vec3(n / length));
+    if (length > kParallelEdges) prefer(n.dot(best_.n) < 0 ? Vec3(n / -length) : Vec3(n / length));
   }
 
   // Faces whose normal, and edges whose circle is within these angles of n [rad].
@@ -355,7 +355,6 @@ Separation separate(const PosedSolid& a, const PosedSolid& b, double size, doubl
 
 // Half widths along each axis are sums of |R_ij| half_j; edges nearly parallel add no direction of their own.
 Separation separateBoxes(const PosedSolid& a, const PosedSolid& b) {
-  constexpr double kParallel = 1e-6;     // sine
   constexpr double kBetterFace = 1e-10;  // of the size: faces win over edges that are no further apart
   const Vec3 half_a = std::get<Box>(a.shape).half, half_b = std::get<Box>(b.shape).half;
   const Vec3 d = a.p - b.p;
@@ -375,7 +374,7 @@ Separation separateBoxes(const PosedSolid& a, const PosedSolid& b) {
     for (int j = 0; j < 3; ++j) {
       const int j1 = (j + 1) % 3, j2 = (j + 2) % 3;
       const double sine2 = C(i1, j) * C(i1, j) + C(i2, j) * C(i2, j);
-      if (!(sine2 > kParallel * kParallel)) continue;
+      if (!(sine2 > kParallelEdges * kParallelEdges)) continue;
       const double along = C(i1, j) * d_a[i2] - C(i2, j) * d_a[i1];  // (a_i x b_j) . d
       const double reach = half_a[i1] * absC(i2, j) + half_a[i2] * absC(i1, j) + half_b[j1] * absC(i, j2) + half_b[j2] * absC(i, j1);
       const double sine = std::sqrt(sine2);

@@ -5,6 +5,7 @@
 #include "pincer/contact/functions/invariants.h"
 #include "pincer/contact/shape/mesh_rules.h"
 #include "pincer/contact/shape/solid_feature.h"
+#include "pincer/contact/shape/tolerances.h"
 #include "pincer/contact/surface/flat_minimum.h"
 #include "pincer/contact/surface/shell_solver.h"
 
@@ -18,7 +19,6 @@ constexpr double kOnePoint = 1e-3;  // of the size: points nearer to each other 
 constexpr double kLift = 0.02;      // of the size, beside the depth: how far a face is moved in
 constexpr double kFirstStep = 0.05;
 constexpr double kLongestLead = 10;  // of the size
-constexpr double kAlike = 0.95;      // cosine: normals within 18 degrees, as in contact_candidates.cpp
 constexpr int kMostQueries = 24;
 constexpr int kMostLess = 2;  // from a face to an edge to a corner
 
@@ -130,7 +130,7 @@ MeshPlace meshPlaceOf(const SurfaceNet& net, const FoundPoint& point) {
 // Whether another point with a like normal is deeper.
 bool isShadowed(const FoundPoints& points, const FoundPoint& point) {
   return std::any_of(points.points.begin(), points.points.begin() + points.count, [&](const FoundPoint& other) {
-    return &other != &point && other.n_W.dot(point.n_W) > kAlike &&
+    return &other != &point && other.n_W.dot(point.n_W) > kLikeNormals &&
            (other.phi < point.phi || (other.phi == point.phi && other.feature < point.feature));
   });
 }
@@ -158,7 +158,7 @@ void leadToSurface(const SurfaceNet& net, PatchCache& cache, const PosedSolid& s
   const auto add = [&](const FoundPoint& point) {
     if (!(point.phi < margin)) return;
     const auto is_same = [&](const FoundPoint& other) {
-      return (other.p_W - point.p_W).squaredNorm() < kOnePoint * kOnePoint * size * size && other.n_W.dot(point.n_W) > kAlike;
+      return (other.p_W - point.p_W).squaredNorm() < kOnePoint * kOnePoint * size * size && other.n_W.dot(point.n_W) > kLikeNormals;
     };
     FoundPoint* const end = led.points.data() + led.count;
     FoundPoint* const known = std::find_if(led.points.data(), end, is_same);
