@@ -161,8 +161,8 @@ class Person:
     def ring(self):
         return middle_row(near(self.screen.look()[PAD], RING), 20)
 
-    def roll_to(self, wanted, done):
-        """Until the tactor's dot is in the row that `wanted` tells, then Enter, deeper each time until it counts."""
+    def roll_to(self, wanted, done, settling=0.0):
+        """Until the dot is in the row that `wanted` tells, then Enter, deeper each time until it counts, which shows `settling` seconds later."""
         for _ in range(60):
             if done() or not self.alive():
                 return
@@ -176,6 +176,7 @@ class Person:
                 self.wait(3)
                 continue
             self.press("Return")
+            time.sleep(settling)
             if not done():
                 self.move(self.x, min(self.y + 12, 700))
                 self.wait(3)
@@ -197,7 +198,7 @@ class Person:
         self.wait(4)
         time.sleep(1)
         if memory and memory[0] is not None:
-            self.roll_to(lambda: memory[0], over)
+            self.roll_to(lambda: memory[0], over, 1.5)  # a movement in the next trial's window would take its finger along
         self.wait(3)
 
     def lift(self, name):
