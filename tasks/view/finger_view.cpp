@@ -1,5 +1,6 @@
 #include "pincer/tasks/view/finger_view.h"
 
+#include <cmath>
 #include <string_view>
 
 #include "pincer/contact/error.h"
@@ -84,6 +85,18 @@ class FingerWindow final : public FingerStage {
 
 }  // namespace
 
+const char* fingerHint(const FingerTrialSetup& asked, const FingerTold& told, const FingerSnapshot& finger) {
+  const std::string_view stage = told.stage;
+  const bool is_to_feel = stage == "first" || stage == "second" || stage == "feel";
+  if (!is_to_feel || told.instruction != asked.texts.feel) return "";
+  if (!finger.touching) return "In the air: lower the finger until it touches";
+  if (!told.target || !finger.tactor_L) return "";
+  const double over = finger.tactor_L->x() - *told.target;
+  if (std::abs(over) <= asked.tolerance) return "There: hold still and press Enter";
+  return over > 0 ? "The dot is above the ring: move to the right, away from you"
+                  : "The dot is below the ring: move to the left, towards you";
+}
+
 void captureFinger(const FingerTrial& trial, const TrialPlace& place, bool blind, Snapshot& snapshot) {
   trial.fill(snapshot);
   const FingerTold told = trial.told();
@@ -96,9 +109,7 @@ void captureFinger(const FingerTrial& trial, const TrialPlace& place, bool blind
   shown.blind = blind || told.hidden;
   shown.shows_pads = told.shows_pad;
   shown.target = told.target;
-  const std::string_view stage = told.stage;
-  const bool is_to_feel = stage == "first" || stage == "second" || stage == "feel";
-  if (told.shows_pad && is_to_feel && !snapshot.fingers[0].touching) shown.hint = "In the air: lower the finger until it touches";
+  shown.hint = told.shows_pad ? fingerHint(trial.asked(), told, snapshot.fingers[0]) : "";
   if (shown.blind) snapshot.hidden_body = Snapshot::kAllBodies;
 }
 

@@ -21,6 +21,10 @@ class FingerStage {
 std::unique_ptr<FingerStage> fingerStageOf(const std::string& devices, const ViewOptions& view, const ServoOptions& servo,
                                            const std::atomic<bool>& interrupted);
 
+// A hint for somebody who sees the pad and is to feel something: how to touch, and where the ring is from the tactor's dot. Empty: there is none,
+// as where the instruction itself says what to do.
+const char* fingerHint(const FingerTrialSetup& asked, const FingerTold& told, const FingerSnapshot& finger);
+
 // A trial's state as a snapshot sized for what it pictures. Allocates nothing. `blind`: whoever watches sees no more than a person who does it.
 void captureFinger(const FingerTrial& trial, const TrialPlace& place, bool blind, Snapshot& snapshot);
 

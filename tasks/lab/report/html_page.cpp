@@ -2,9 +2,51 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 namespace pincer::tasks {
 
 namespace {
+
+// One question, of one task and condition if it was asked of each.
+struct AskedItem {
+  std::vector<const SurveyRecord*> answers;
+};
+
+std::ptrdiff_t answeredBy(const AskedItem& item) {
+  return std::count_if(item.answers.begin(), item.answers.end(), [](const SurveyRecord* a) { return !a->answer.empty(); });
+}
+
+std::string meanWords(const AskedItem& item) {
+  double sum = 0, low = 0, high = 0;
+  int count = 0;
+  for (const SurveyRecord* answer : item.answers) {
+    const double value = answer->answer_value;
+    if (!std::isfinite(value)) continue;
+    low = count == 0 ? value : std::min(low, value);
+    high = count == 0 ? value : std::max(high, value);
+    sum += value;
+    ++count;
+  }
+  return count == 0 ? "–" : fmt::format("{:.2g} ({:g} to {:g})", sum / count, low, high);
+}
+
+// "3: 2 people; 5" and so on, in the order in which they were first given.
+std::string answerList(const AskedItem& item) {
+  std::vector<std::pair<std::string, int>> given;
+  for (const SurveyRecord* answer : item.answers) {
+    if (answer->answer.empty()) continue;
+    const auto same = [&](const auto& other) { return other.first == answer->answer; };
+    const auto known = std::find_if(given.begin(), given.end(), same);
+    ++(known == given.end() ? given.emplace_back(answer->answer, 0) : *known).second;
+  }
+  std::string words;
+  for (const auto& [text, count] : given) {
+    words += (words.empty() ? "" : "; ") + text + (count > 1 ? fmt::format(" ({} people)", count) : "");
+  }
+  return words;
+}
 
 constexpr const char* kStyle = R"(
 :root { color-scheme: light dark; --paper: #fff; --ink: #222; --dim: #555; --line: #e2e2e2; --mark: #0072B2; --tint: #eef5fa;
@@ -22,6 +64,7 @@ tr.all td { font-weight: bold; border-bottom: 2px solid var(--dim); } tr.all sma
 tr:target td { background: var(--target); }
 .facts th { text-align: left; font-weight: normal; color: var(--dim); }
 .facts td { text-align: left; white-space: normal; overflow-wrap: anywhere; }
+.asked td { text-align: left; white-space: normal; } .asked th { text-align: left; }
 .wide { overflow-x: auto; border-right: 1px dashed var(--line); max-width: 100%; }
 .finding { font-size: 1.1rem; border-left: 0.4rem solid var(--mark); background: var(--tint); padding: 0.6rem 1rem; }
 figure { margin: 1rem 0; } img { width: 100%; height: auto; border-radius: 4px; background: #fff; }
@@ -129,6 +172,27 @@ std::string htmlNotDrawn(const std::vector<std::string>& titles) {
 
 std::string htmlDetails(const char* title, const std::string& json) {
   return json.empty() ? "" : fmt::format("<details><summary>{}</summary><pre>{}</pre></details>\n", title, escaped(json));
+}
+
+std::string htmlSurvey(const std::vector<SurveyRecord>& answers) {
+  if (answers.empty()) return "";
+  std::vector<AskedItem> items;
+  for (const SurveyRecord& answer : answers) {
+    const auto same = [&](const AskedItem& item) {
+      const SurveyRecord& other = *item.answers.front();
+      return other.moment == answer.moment && other.item == answer.item && other.task == answer.task && other.condition == answer.condition;
+    };
+    const auto known = std::find_if(items.begin(), items.end(), same);
+    (known == items.end() ? items.emplace_back() : *known).answers.push_back(&answer);
+  }
+  std::string html = "<h2>Asked beside the trials</h2>\n<div class=\"wide\"><table class=\"asked\">\n" +
+                     htmlRow({"question", "task", "condition", "answered", "mean (least to most)", "answers"}, "th");
+  for (const AskedItem& item : items) {
+    const SurveyRecord& first = *item.answers.front();
+    html += htmlRowOfIntervals(
+        {first.question, first.task, first.condition, std::to_string(answeredBy(item)), meanWords(item), answerList(item)});
+  }
+  return html + "</table></div>\n<p class=\"note\">People's own words and ratings, as they gave them; no test is made of them.</p>\n";
 }
 
 std::string htmlHead(const std::string& title, const std::string& warning) {

@@ -81,7 +81,7 @@ ReportFiles writeReport(const SessionReader& session, const std::string& html_pa
   std::vector<Picture> pictures = wantedPictures(session, summary, trials);
   ReportFiles files;
   const std::string figures_name = plotAndWrite(pictures, html_path, options, files);
-  const std::string more = htmlNotDrawn(files.not_drawn) + deviceErrorsHtml(deviceErrors(session));
+  const std::string more = htmlNotDrawn(files.not_drawn) + htmlSurvey(session.survey()) + deviceErrorsHtml(deviceErrors(session));
   writeAtomically(html_path, reportHtml(summary, trials, pictures, figures_name, more));
   return files;
 }

@@ -29,26 +29,31 @@ std::vector<Picture> studyPictures(const SessionReader& session, const StudySumm
   return pictures;
 }
 
+bool isSimulated(const StudySummary& s) { return s.info.devices_json.find("\"simulated\"") != std::string::npos; }
+
+std::string studyFacts(const StudySummary& s) {
+  return htmlFacts({{"task", s.info.task},
+                    {"seed", std::to_string(s.info.seed)},
+                    {"started (UTC)", s.started_utc},
+                    {"state of the session", s.state},
+                    {"participants", fmt::format("{}{}", s.participants, isSimulated(s) ? ", simulated" : "")},
+                    {"finished trials", std::to_string(s.trials)},
+                    {"fingerprint of the participants' parameters", s.fingerprint},
+                    {"pincer", s.info.version},
+                    {"build", buildFacts(s.info)},
+                    {"session file", s.path}});
+}
+
 std::string studyHtml(const StudySummary& s, const std::vector<Picture>& pictures, const std::string& figures_name,
                       const std::string& errors) {
-  const bool is_simulated = s.info.devices_json.find("\"simulated\"") != std::string::npos;
   std::string html = htmlHead(fmt::format("{}, seed {}", s.info.task, s.info.seed), s.warning);
-  html += htmlFacts({{"task", s.info.task},
-                     {"seed", std::to_string(s.info.seed)},
-                     {"started (UTC)", s.started_utc},
-                     {"state of the session", s.state},
-                     {"participants", fmt::format("{}{}", s.participants, is_simulated ? ", simulated" : "")},
-                     {"finished trials", std::to_string(s.trials)},
-                     {"fingerprint of the participants' parameters", s.fingerprint},
-                     {"pincer", s.info.version},
-                     {"build", buildFacts(s.info)},
-                     {"session file", s.path}});
+  html += fmt::format("<p class=\"finding\">{}</p>\n", escaped(studyFinding(s)));
   html += "<h2>Per condition</h2>\n<div class=\"wide\"><table>\n" + htmlRow(studyTableHeads(s), "th");
   for (const StudyCondition& c : s.conditions) html += htmlRowOfIntervals(studyTableRow(s, c));
   html += fmt::format("</table></div>\n<p class=\"note\">{}</p>\n", escaped(studyNote(s)));
   html += studyTestsHtml(s);
   for (const Picture& picture : pictures) html += htmlFigure(picture, figures_name);
-  return html + errors + htmlFoot(s.info);
+  return html + errors + htmlFoot(s.info, studyFacts(s));
 }
 
 }  // namespace
@@ -59,7 +64,7 @@ ReportFiles writeStudyReport(const SessionReader& session, const std::string& ht
   std::vector<Picture> pictures = studyPictures(session, summary, responses);
   ReportFiles files;
   const std::string figures_name = plotAndWrite(pictures, html_path, options, files);
-  const std::string more = htmlNotDrawn(files.not_drawn) + deviceErrorsHtml(deviceErrors(session));
+  const std::string more = htmlNotDrawn(files.not_drawn) + htmlSurvey(session.survey()) + deviceErrorsHtml(deviceErrors(session));
   writeAtomically(html_path, studyHtml(summary, pictures, figures_name, more));
   return files;
 }

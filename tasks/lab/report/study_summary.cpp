@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <map>
 #include <set>
@@ -256,6 +257,22 @@ std::string studyNote(const StudySummary& s) {
   if (lost > 0) note += fmt::format(" {} found no threshold and {} left out.", counted(lost, "staircase"), lost == 1 ? "is" : "are");
   if (unanswered > 0) note += fmt::format(" {} ended without an answer.", counted(unanswered, "trial"));
   return note;
+}
+
+std::string studyFinding(const StudySummary& s) {
+  const bool is_simulated = s.info.devices_json.find("\"simulated\"") != std::string::npos;
+  std::string words = fmt::format("{} {}{}.", s.participants, is_simulated ? "simulated " : "", s.participants == 1 ? "person" : "people");
+  std::string name = s.headline.name;
+  name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
+  for (const StudyCondition& c : s.conditions) {
+    if (c.headline.n == 0) continue;
+    const std::string of = s.conditions.size() > 1 ? fmt::format(", {}", c.label.empty() ? c.name : c.label) : "";
+    words += fmt::format(" {}{}: {} {}", name, of, studyTableRow(s, c)[1], s.headline.unit);
+    words += std::isnan(c.published) ? "." : fmt::format("; published {:.3g} {}.", s.headline.scale * c.published, s.headline.unit);
+  }
+  const bool lone = std::all_of(s.conditions.begin(), s.conditions.end(), [](const StudyCondition& c) { return c.headline.n < 2; });
+  if (lone) return words + " One person says nothing about others.";
+  return words + " In brackets the 95 % interval of the mean over people.";
 }
 
 std::string formatStudyTable(const StudySummary& s) {

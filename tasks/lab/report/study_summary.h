@@ -70,6 +70,8 @@ StudySummary summariseStudy(const SessionReader& session, const std::vector<Resp
 std::vector<std::string> studyTableHeads(const StudySummary& summary);
 std::vector<std::string> studyTableRow(const StudySummary& summary, const StudyCondition& condition);
 std::string studyNote(const StudySummary& summary);
+// What came out, in words that need no table: who took part, and each condition's figure with its interval beside the published one.
+std::string studyFinding(const StudySummary& summary);
 
 std::string formatStudyTable(const StudySummary& summary);  // for a terminal
 std::string studySummaryJson(const StudySummary& summary);  // for machines
