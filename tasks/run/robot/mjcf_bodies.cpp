@@ -142,6 +142,13 @@ class BodyReader {
     const Compiler& compiler = reading_.compiler();
     body.inertia.mass = std::max(body.inertia.mass, compiler.least_mass);
     if (compiler.least_inertia > 0) raiseMoments(body.inertia.I_BBcm, compiler.least_inertia);
+    if (compiler.balance_inertia) balanceMoments(body.inertia.I_BBcm);
+  }
+
+  // No body has a principal moment above the sum of the others: such a one gets the mean of all three about every axis.
+  static void balanceMoments(Mat3& I) {
+    const Vec3 moments = Eigen::SelfAdjointEigenSolver<Mat3>(I).eigenvalues();
+    if (moments[0] + moments[1] < moments[2]) I = I.trace() / 3 * Mat3::Identity();
   }
 
   static void raiseMoments(Mat3& I, double least) {

@@ -92,7 +92,8 @@ Moments solidMoments(const std::vector<Triangle>& triangles, const Vec3& about, 
 }
 
 std::vector<Triangle> massTriangles(const RobotMesh& mesh) {
-  return mesh.inertia == MeshInertia::kConvex ? hullTriangles(mesh.triangles) : trianglesOf(mesh.triangles);
+  const bool is_hull = mesh.inertia == MeshInertia::kConvex || mesh.triangles.triangles.empty();
+  return is_hull ? hullTriangles(mesh.triangles) : trianglesOf(mesh.triangles);
 }
 
 Moments momentsOf(const RobotMesh& mesh, const std::vector<Triangle>& triangles, const Vec3& about) {
