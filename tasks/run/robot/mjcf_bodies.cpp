@@ -4,6 +4,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
+#include "pincer/contact/io/printable.h"
 #include "pincer/tasks/run/files/spelling.h"
 #include "pincer/tasks/run/robot/mjcf_parts.h"
 #include "pincer/tasks/run/robot/robot_mass.h"
@@ -180,7 +181,7 @@ void nameJoints(Reading& reading) {
     for (const RobotJoint& joint : body.joints) {
       coordinates += joint.kind == RobotJointKind::kFree ? 7 : joint.kind == RobotJointKind::kBall ? 4 : 1;
       if (!reading.joints.emplace(joint.name, &joint).second)
-        throw InputError(fmt::format("{}: <joint> is the second joint called \"{}\".", joint.place, joint.name));
+        throw InputError(printableMessage(fmt::format("{}: <joint> is the second joint called \"{}\".", joint.place, joint.name)));
     }
   }
   reading.coordinates.push_back(coordinates);

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "pincer/contact/error.h"
+#include "pincer/contact/io/printable.h"
 #include "pincer/engine/motion/driven_motion.h"
 #include "pincer/tasks/run/robot/robot_pose.h"
 #include "pincer/tasks/run/robot/robot_scene_parts.h"
@@ -331,7 +332,7 @@ void writePairs(SceneWriting& w) {
 
 }  // namespace
 
-void rejectAt(const Place& place, std::string_view problem) { throw InputError(fmt::format("{}: {}", place, problem)); }
+void rejectAt(const Place& place, std::string_view problem) { throw InputError(printableMessage(fmt::format("{}: {}", place, problem))); }
 
 std::string sceneOfRobot(const Robot& robot, const RobotSceneOptions& options, ImportNotes& notes) {
   refuseTheRest(robot);

@@ -266,6 +266,12 @@ TEST_F(MjcfReader, VelocitiesAndTimesOfKeyframesAreCounted) {
   EXPECT_EQ(notes.all()[1].what, "key time");
 }
 
+TEST_F(MjcfReader, ControlCharactersOfAFileDontReachTheTerminal) {
+  const std::string message = complaint(body("<joint axis=\"0 \x1b[2J 1\"/>"));
+  EXPECT_NE(message.find("which isn't a finite number"), std::string::npos);
+  EXPECT_EQ(message.find('\x1b'), std::string::npos);
+}
+
 TEST_F(MjcfReader, ARelposeWithoutATurnWeldsAsDrawn) {
   EXPECT_TRUE(robot(body("<freejoint/>") + "<equality><weld body1=\"a\" relpose=\"0 1 0 0 0 0 0\"/></equality>").loops.at(0).is_weld);
 }
