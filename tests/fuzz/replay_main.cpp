@@ -38,6 +38,7 @@ constexpr Target kTargets[] = {
     {"haply_message", haply_message},
     {"json", json},
     {"xml", xml},
+    {"mjcf", mjcf},
     {"scene", scene},
     {"scene_step", scene_step},
     {"scene_schema", scene_schema},

@@ -25,6 +25,7 @@ void haply_message(Bytes input);  // the texts of the service, each as every kin
 // tasks/run
 void json(Bytes input);
 void xml(Bytes input);
+void mjcf(Bytes input);          // a robot's file, the scene of it and its world
 void scene(Bytes input);         // and the world of it
 void scene_step(Bytes input);    // likewise, and some ticks
 void scene_schema(Bytes input);  // scenes drawn from the schema by the bytes: the reader knows every key that the schema has

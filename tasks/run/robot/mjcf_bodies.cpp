@@ -4,6 +4,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
+#include "pincer/contact/io/printable.h"
 #include "pincer/tasks/run/files/spelling.h"
 #include "pincer/tasks/run/robot/mjcf_parts.h"
 #include "pincer/tasks/run/robot/robot_mass.h"
@@ -142,6 +143,13 @@ class BodyReader {
     const Compiler& compiler = reading_.compiler();
     body.inertia.mass = std::max(body.inertia.mass, compiler.least_mass);
     if (compiler.least_inertia > 0) raiseMoments(body.inertia.I_BBcm, compiler.least_inertia);
+    if (compiler.balance_inertia) balanceMoments(body.inertia.I_BBcm);
+  }
+
+  // No body has a principal moment above the sum of the others: such a one gets the mean of all three about every axis.
+  static void balanceMoments(Mat3& I) {
+    const Vec3 moments = Eigen::SelfAdjointEigenSolver<Mat3>(I).eigenvalues();
+    if (moments[0] + moments[1] < moments[2]) I = I.trace() / 3 * Mat3::Identity();
   }
 
   static void raiseMoments(Mat3& I, double least) {
@@ -173,7 +181,7 @@ void nameJoints(Reading& reading) {
     for (const RobotJoint& joint : body.joints) {
       coordinates += joint.kind == RobotJointKind::kFree ? 7 : joint.kind == RobotJointKind::kBall ? 4 : 1;
       if (!reading.joints.emplace(joint.name, &joint).second)
-        throw InputError(fmt::format("{}: <joint> is the second joint called \"{}\".", joint.place, joint.name));
+        throw InputError(printableMessage(fmt::format("{}: <joint> is the second joint called \"{}\".", joint.place, joint.name)));
     }
   }
   reading.coordinates.push_back(coordinates);

@@ -27,6 +27,7 @@ contact::TriangleMesh readInline(const Values& values) {
   const std::vector<double> numbers = values.numbers("vertex", 12, kMostInlineNumbers);
   if (numbers.size() % 3 != 0) values.reject("vertex", "isn't made of threes: x y z of each corner.");
   for (std::size_t i = 0; i + 2 < numbers.size(); i += 3) mesh.vertices.emplace_back(numbers[i], numbers[i + 1], numbers[i + 2]);
+  if (!values.has("face")) return mesh;  // its hull is meant
   const std::vector<double> faces = values.numbers("face", 3, kMostInlineNumbers);
   if (faces.size() % 3 != 0) values.reject("face", "isn't made of threes: the corners of each triangle.");
   for (std::size_t i = 0; i + 2 < faces.size(); i += 3) {
@@ -65,7 +66,7 @@ RobotMesh readMeshElement(const Reading& reading, const XmlElement& element) {
   if (reading.compiler().strip_path) file = std::filesystem::path(file).filename().string();
   if (!file.empty()) mesh.file = reading.document.folder.find(element, reading.compiler().mesh_folder, file);
   mesh.triangles = file.empty() ? readInline(values) : readFile(element, mesh.file);
-  mesh.triangles.source = mesh.file;
+  mesh.triangles.source = file.empty() ? element.place() : mesh.file;
   place(values, mesh.triangles);
   constexpr std::string_view kWords[] = {"convex", "legacy", "exact", "shell"};
   mesh.inertia = static_cast<MeshInertia>(values.oneOf("inertia", kWords, static_cast<int>(MeshInertia::kLegacy)));

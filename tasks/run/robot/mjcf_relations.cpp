@@ -1,6 +1,8 @@
 // contact, tendon, equality, keyframe: what ties the bodies of the tree together, keeps them apart, and where they start.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "pincer/tasks/run/files/spelling.h"
 #include "pincer/tasks/run/robot/mjcf_parts.h"
 
@@ -22,7 +24,15 @@ void readContact(Reading& reading, const XmlElement& element) {
   if (element.tag == "pair")
     element.reject("gives two geoms a contact of their own, which isn't known yet: give the geoms their friction.");
   const Values values(element);
-  reading.robot.excluded.emplace_back(bodyNamed(reading, values, "body1"), bodyNamed(reading, values, "body2"));
+  reading.robot.excluded.push_back({bodyNamed(reading, values, "body1"), bodyNamed(reading, values, "body2"), element.place()});
+}
+
+// A hinge or slide: couplings and tendons go by one coordinate.
+const RobotJoint& axisNamed(const Reading& reading, const Values& values, std::string_view attribute) {
+  const RobotJoint& joint = jointNamed(reading, values, attribute);
+  if (joint.kind != RobotJointKind::kHinge && joint.kind != RobotJointKind::kSlide)
+    values.reject(attribute, "is neither hinge nor slide, so it has no single coordinate. Name one that has.");
+  return joint;
 }
 
 void readTendon(Reading& reading, const XmlElement& element) {
@@ -32,7 +42,7 @@ void readTendon(Reading& reading, const XmlElement& element) {
   tendon.name = values.text("name", fmt::format("tendon{}", reading.robot.tendons.size()));
   for (const XmlElement& child : element.children) {
     const Values part(child);
-    tendon.joints.emplace_back(jointNamed(reading, part, "joint").name, part.number("coef", 0));
+    tendon.joints.emplace_back(axisNamed(reading, part, "joint").name, part.number("coef", 0));
   }
   if (tendon.joints.empty()) element.reject("runs over no joint.");
   tendon.limits = values.limits("range", "limited", reading.compiler().autolimits);
@@ -50,8 +60,8 @@ void readCoupling(Reading& reading, const XmlElement& element) {
   const Values values(element);
   RobotCoupling coupling;
   coupling.place = element.place();
-  coupling.follower = jointNamed(reading, values, "joint1").name;
-  if (values.has("joint2")) coupling.leader = jointNamed(reading, values, "joint2").name;
+  coupling.follower = axisNamed(reading, values, "joint1").name;
+  if (values.has("joint2")) coupling.leader = axisNamed(reading, values, "joint2").name;
   const std::vector<double> given = values.numbers("polycoef", 1, 5);
   coupling.polynomial = {0, 1, 0, 0, 0};
   for (std::size_t i = 0; i < given.size(); ++i) coupling.polynomial[i] = given[i];
@@ -86,7 +96,9 @@ void readLoop(Reading& reading, const XmlElement& element) {
     loop.b = values.has("body2") ? bodyNamed(reading, values, "body2") : -1;
     loop.p_A = values.vector("anchor", Vec3::Zero());
     if (!loop.is_weld && !values.has("anchor")) element.reject("needs the attribute \"anchor\".");
-    if (values.has("relpose")) values.reject("relpose", "isn't known yet: draw the bodies as they are welded.");
+    const std::vector<double> pose = values.numbers("relpose", 7, 7);  // a turn of four zeros: as they are drawn
+    if (std::any_of(pose.begin() + (pose.empty() ? 0 : 3), pose.end(), [](double x) { return x != 0; }))
+      values.reject("relpose", "isn't known yet: draw the bodies as they are welded.");
   }
   reading.robot.loops.push_back(loop);
 }
@@ -109,6 +121,9 @@ void readKey(Reading& reading, const XmlElement& element) {
   const auto q_count = static_cast<std::size_t>(reading.coordinates.back());
   if (values.has("qpos")) key.q = values.numbers("qpos", q_count, q_count);
   if (values.has("qvel")) key.v = values.numbers("qvel", 0, q_count);
+  if (std::any_of(key.v.begin(), key.v.end(), [](double v) { return v != 0; }))
+    reading.document.notes.add("key qvel", "Robots start at rest.", element.place());
+  if (key.time != 0) reading.document.notes.add("key time", "Time begins at 0.", element.place());
   const std::size_t drives = reading.robot.drives.size();
   if (values.has("ctrl")) key.controls = values.numbers("ctrl", drives, drives);
   reading.robot.keyframes.push_back(std::move(key));

@@ -117,6 +117,12 @@ struct RobotDrive {
   Place place;
 };
 
+// Two bodies that don't touch; -1: the world.
+struct RobotExclusion {
+  int a = -1, b = -1;
+  Place place;
+};
+
 struct RobotKeyframe {
   std::string name;
   double time = 0;
@@ -129,9 +135,9 @@ struct Robot {
   Vec3 gravity_W = Vec3(0, 0, -9.81);
   std::vector<RobotMesh> meshes;
   std::vector<RobotBody> bodies;
-  std::vector<RobotGeom> world_geoms;         // fixed to the world
-  std::vector<RobotFrame> frames;             // body -1: fixed to the world
-  std::vector<std::pair<int, int>> excluded;  // bodies that don't touch
+  std::vector<RobotGeom> world_geoms;  // fixed to the world
+  std::vector<RobotFrame> frames;      // body -1: fixed to the world
+  std::vector<RobotExclusion> excluded;
   std::vector<RobotCoupling> couplings;
   std::vector<RobotLoop> loops;
   std::vector<RobotTendon> tendons;

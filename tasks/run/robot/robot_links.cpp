@@ -31,10 +31,21 @@ void addInertia(const engine::MassProperties& inertia, const Pose& X_LB, RobotLi
   link.inertia = link.inertia.mass == 0 ? moved : engine::sumOf(parts);
 }
 
+bool isNamedApart(const Robot& robot, int body) {
+  return std::any_of(robot.excluded.begin(), robot.excluded.end(), [&](const RobotExclusion& e) { return e.a == body || e.b == body; });
+}
+
+// Parts that stand still cost nothing: those that are kept apart from something are bodies of their own, and so is what is fixed to them.
+bool isPartApart(const PosedRobot& posed, int index) {
+  const int parent = posed.body(index).parent;
+  if (!posed.links[static_cast<std::size_t>(posed.link_of[static_cast<std::size_t>(parent)])].is_static) return false;
+  return isNamedApart(posed.robot, index) || isNamedApart(posed.robot, parent);
+}
+
 void gatherLinks(PosedRobot& posed) {
   for (int i = 0; i < static_cast<int>(posed.robot.bodies.size()); ++i) {
     const RobotBody& body = posed.body(i);
-    const bool is_own = body.parent < 0 || moves(body);
+    const bool is_own = body.parent < 0 || moves(body) || isPartApart(posed, i);
     if (is_own) posed.links.push_back({i, !moves(body), {}, {}});
     posed.link_of.push_back(is_own ? static_cast<int>(posed.links.size()) - 1 : posed.link_of[static_cast<std::size_t>(body.parent)]);
     RobotLink& link = posed.links[static_cast<std::size_t>(posed.link_of.back())];

@@ -10,7 +10,7 @@
 
 namespace pincer::tasks {
 
-// A body with joints, or one of the world, and the bodies that are fixed to it.
+// A body with joints, or one of the world, and the bodies that are fixed to it. Of what stands still an excluded part is a link of its own.
 struct RobotLink {
   int body = 0;            // whose frame is the link's
   bool is_static = false;  // it hangs on nothing: it stands still

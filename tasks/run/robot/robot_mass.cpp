@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "pincer/contact/error.h"
+#include "pincer/contact/io/printable.h"
 #include "pincer/contact/polytope.h"
 
 namespace pincer::tasks {
@@ -92,7 +93,8 @@ Moments solidMoments(const std::vector<Triangle>& triangles, const Vec3& about, 
 }
 
 std::vector<Triangle> massTriangles(const RobotMesh& mesh) {
-  return mesh.inertia == MeshInertia::kConvex ? hullTriangles(mesh.triangles) : trianglesOf(mesh.triangles);
+  const bool is_hull = mesh.inertia == MeshInertia::kConvex || mesh.triangles.triangles.empty();
+  return is_hull ? hullTriangles(mesh.triangles) : trianglesOf(mesh.triangles);
 }
 
 Moments momentsOf(const RobotMesh& mesh, const std::vector<Triangle>& triangles, const Vec3& about) {
@@ -178,7 +180,7 @@ MassProperties geomMass(const RobotGeom& geom, const std::vector<RobotMesh>& mes
     throw InputError(fmt::format(
         "{}: the mesh \"{}\" has no volume, so its mass can't be spread over it. Give the body an <inertial>, the geom mass=\"0\", "
         "or the mesh inertia=\"shell\".",
-        geom.place, mesh.name));
+        geom.place, printable(mesh.name)));
   }
   return engine::movedBy(geom.X_BG, {geom.mass, solid.centre, inertiaOf(geom.mass * solid.second_per_size)});
 }

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "pincer/contact/error.h"
+#include "pincer/contact/io/printable.h"
 #include "pincer/engine/motion/driven_motion.h"
 #include "pincer/tasks/run/robot/robot_pose.h"
 #include "pincer/tasks/run/robot/robot_scene_parts.h"
@@ -35,10 +37,24 @@ void refuseTheRest(const Robot& robot) {
   }
 }
 
+// Springs, dampers and dry friction act along one axis here; a free body has no joint at all.
+void noteForcesOfBalls(const RobotJoint& joint, ImportNotes& notes) {
+  const bool is_free = joint.kind == RobotJointKind::kFree;
+  if (!is_free && joint.kind != RobotJointKind::kBall) return;
+  const std::pair<const char*, double> forces[] = {{"stiffness", joint.stiffness},
+                                                   {"damping", joint.damping},
+                                                   {"frictionloss", joint.friction},
+                                                   {"armature", is_free ? joint.armature : 0}};
+  for (const auto& [name, value] : forces) {
+    if (value != 0) notes.add(fmt::format("{} joint {}", is_free ? "free" : "ball", name), "Hinges and slides have it.", joint.place);
+  }
+}
+
 void noteTheRest(const Robot& robot, ImportNotes& notes) {
   for (const RobotBody& body : robot.bodies) {
     if (body.gravity_compensation != 0) notes.add("body gravcomp", "Bodies weigh what they weigh.", body.place);
     for (const RobotJoint& joint : body.joints) {
+      noteForcesOfBalls(joint, notes);
       if (joint.drive_forces && !isOnlyDriveOf(robot, joint))
         notes.add("joint actuatorfrcrange", "It holds where one drive moves the joint alone.", joint.place);
     }
@@ -92,19 +108,42 @@ const std::string& betweenName(SceneWriting& w, const RobotBody& body, std::size
   return w.names.of("between", body.name + "_" + body.joints[joint].name);
 }
 
-void writeBetween(SceneWriting& w, int index, std::size_t joint) {
-  const RobotBody& body = w.posed.body(index);
-  w.notes.add("body of several joints", "A body of a microgram stands between two of them.", body.place);
-  w.json.beginObject().key("name").value(betweenName(w, body, joint));
+void writeBetween(SceneWriting& w, const std::string& name, const Pose& X_WB) {
+  w.json.beginObject().key("name").value(name);
   writeShapes({}, {}, w.json);
   writeInertia({kNextToNothing, Vec3::Zero(), kNextToNoMoment * Mat3::Identity()}, w.json);
-  writePose(w.posed.poseAfter(index, joint + 1), w.json);
+  writePose(X_WB, w.json);
   w.json.endObject();
+}
+
+// True of a free body that carries others: trees hang on something, so three sliders and a ball joint hold it to the world.
+bool isFloatingBase(const PosedRobot& posed, const RobotLink& link) {
+  const RobotBody& body = posed.body(link.body);
+  if (body.joints.empty() || body.joints[0].kind != RobotJointKind::kFree) return false;
+  return std::any_of(posed.links.begin(), posed.links.end(), [&](const RobotLink& other) {
+    const int parent = posed.body(other.body).parent;
+    return parent >= 0 && posed.carrier(parent) == link.body;
+  });
+}
+
+constexpr std::string_view kSlides[] = {"x", "y", "z"};
+
+// The body that the slider along an axis of W carries.
+const std::string& slideName(SceneWriting& w, const RobotBody& body, int axis) {
+  return w.names.of("between", fmt::format("{}_{}", body.name, kSlides[axis]));
 }
 
 void writeLink(SceneWriting& w, const RobotLink& link) {
   const RobotBody& body = w.posed.body(link.body);
-  for (std::size_t k = 0; k + 1 < body.joints.size(); ++k) writeBetween(w, link.body, k);
+  for (std::size_t k = 0; k + 1 < body.joints.size(); ++k) {
+    w.notes.add("body of several joints", "A body of a microgram stands between two of them.", body.place);
+    writeBetween(w, betweenName(w, body, k), w.posed.poseAfter(link.body, k + 1));
+  }
+  if (isFloatingBase(w.posed, link)) {
+    w.notes.add("free body that carries others", "Three sliders and a ball joint hold it; bodies of a microgram stand between.",
+                body.place);
+    for (int k = 0; k < 3; ++k) writeBetween(w, slideName(w, body, k), {Quat::Identity(), w.posed.pose(link.body).p});
+  }
   w.json.beginObject().key("name").value(w.bodyName(link.body));
   if (link.is_static) w.json.key("static").value(true);
   writeShapes(link.geoms, w.posed.robot.meshes, w.json);
@@ -160,6 +199,19 @@ void writeJoint(SceneWriting& w, int index, std::size_t k, double start) {
   w.json.endObject();
 }
 
+void writeFloatingBase(SceneWriting& w, const RobotLink& link) {
+  const RobotBody& body = w.posed.body(link.body);
+  const Vec3& p_W = w.posed.pose(link.body).p;
+  for (int k = 0; k < 3; ++k) {
+    w.json.beginObject().key("name").value(w.names.of("joint", fmt::format("{}_{}", body.joints[0].name, kSlides[k])));
+    w.json.key("type").value("slider").key("body").value(slideName(w, body, k));
+    if (k > 0) w.json.key("to").value(slideName(w, body, k - 1));
+    w.json.key("point").value(p_W).key("axis").value(Vec3(Vec3::Unit(k))).endObject();
+  }
+  w.json.beginObject().key("name").value(w.names.of("joint", body.joints[0].name)).key("type").value("ball");
+  w.json.key("body").value(w.bodyName(link.body)).key("to").value(slideName(w, body, 2)).key("point").value(p_W).endObject();
+}
+
 // The link of a body, that of the world or of what stands still: -1.
 int movingLinkOf(const PosedRobot& posed, int body) {
   if (body < 0) return -1;
@@ -200,6 +252,7 @@ void writeLoop(SceneWriting& w, const RobotLoop& loop, std::size_t number) {
 void writeJoints(SceneWriting& w) {
   w.json.key("joints").beginArray();
   for (const RobotLink& link : w.posed.links) {
+    if (isFloatingBase(w.posed, link)) writeFloatingBase(w, link);
     const double* q = w.posed.coordinatesOf(link.body);
     const auto& joints = w.posed.body(link.body).joints;
     for (std::size_t k = 0; k < joints.size(); ++k) {
@@ -234,35 +287,52 @@ void writeFrames(SceneWriting& w) {
   w.json.endArray();
 }
 
-void writePairs(SceneWriting& w) {
-  std::vector<std::pair<int, int>> apart;
-  for (const auto& [a, b] : w.posed.robot.excluded) {
-    if (a < 0 || b < 0) {
-      w.notes.add("exclude of the world", "It is left out.", w.posed.robot.file);
-    } else if (w.posed.carrier(a) != w.posed.carrier(b)) {
-      apart.emplace_back(std::minmax(w.posed.carrier(a), w.posed.carrier(b)));
-    }
+// Names of two bodies that don't touch.
+using Apart = std::set<std::pair<std::string, std::string>>;
+
+void addApart(const std::string& a, const std::string& b, Apart& apart) {
+  if (a != b) apart.insert(std::minmax(a, b));
+}
+
+// The name of a body's link, empty of a world without geoms. Only links can be kept apart: what else of the link touches is noted.
+std::string linkName(SceneWriting& w, const RobotExclusion& exclusion, int body) {
+  if (body < 0) return w.posed.robot.world_geoms.empty() ? "" : w.names.of("world", "world");
+  const RobotLink& link = w.posed.links[static_cast<std::size_t>(w.posed.link_of[static_cast<std::size_t>(body)])];
+  const std::vector<RobotGeom>& own = w.posed.body(body).geoms;
+  const auto isOwn = [&](const RobotGeom* geom) {
+    return std::any_of(own.begin(), own.end(), [&](const RobotGeom& g) { return &g == geom; });
+  };
+  const bool is_part =
+      std::any_of(link.geoms.begin(), link.geoms.end(), [&](const auto& g) { return !g.first->isOnlySeen() && !isOwn(g.first); });
+  if (is_part) w.notes.add("exclude of a part", "All that is fixed to it is kept apart, too.", exclusion.place);
+  return w.bodyName(link.body);
+}
+
+// A body of several joints doesn't touch the body that carries it, as those of one joint don't.
+void addCarried(SceneWriting& w, Apart& apart) {
+  for (const RobotLink& link : w.posed.links) {
+    const RobotBody& body = w.posed.body(link.body);
+    if (body.joints.size() > 1 && body.parent >= 0) addApart(w.bodyName(link.body), w.bodyName(w.posed.carrier(body.parent)), apart);
   }
-  std::sort(apart.begin(), apart.end());
-  apart.erase(std::unique(apart.begin(), apart.end()), apart.end());
+}
+
+void writePairs(SceneWriting& w) {
+  Apart apart;
+  for (const RobotExclusion& exclusion : w.posed.robot.excluded) {
+    const std::string a = linkName(w, exclusion, exclusion.a), b = linkName(w, exclusion, exclusion.b);
+    if (!a.empty() && !b.empty()) addApart(a, b, apart);
+  }
+  addCarried(w, apart);
   w.json.key("pairs").beginArray();
   for (const auto& [a, b] : apart) {
-    w.json.beginObject()
-        .key("bodies")
-        .beginArray()
-        .value(w.bodyName(a))
-        .value(w.bodyName(b))
-        .endArray()
-        .key("touch")
-        .value(false)
-        .endObject();
+    w.json.beginObject().key("bodies").beginArray().value(a).value(b).endArray().key("touch").value(false).endObject();
   }
   w.json.endArray();
 }
 
 }  // namespace
 
-void rejectAt(const Place& place, std::string_view problem) { throw InputError(fmt::format("{}: {}", place, problem)); }
+void rejectAt(const Place& place, std::string_view problem) { throw InputError(printableMessage(fmt::format("{}: {}", place, problem))); }
 
 std::string sceneOfRobot(const Robot& robot, const RobotSceneOptions& options, ImportNotes& notes) {
   refuseTheRest(robot);

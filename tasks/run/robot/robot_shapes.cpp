@@ -4,6 +4,7 @@
 
 #include "pincer/contact/error.h"
 #include "pincer/contact/generated_meshes.h"
+#include "pincer/contact/io/printable.h"
 #include "pincer/contact/polytope.h"
 
 namespace pincer::tasks {
@@ -27,7 +28,7 @@ std::vector<Vec3> hullPoints(const RobotGeom& geom, const RobotMesh& mesh) {
   try {
     return contact::Polytope::hullOf(mesh.triangles.vertices, mesh.name)->vertices();
   } catch (const InputError& error) {
-    throw InputError(fmt::format("{}: the mesh \"{}\" has no hull: {}", geom.place, mesh.name, error.what()));
+    throw InputError(fmt::format("{}: the mesh \"{}\" has no hull: {}", geom.place, printable(mesh.name), error.what()));
   }
 }
 

@@ -57,7 +57,9 @@ const std::string* XmlElement::find(std::string_view name) const {
 
 std::string XmlElement::place() const { return fmt::format("{}:{}", file, line); }
 
-void XmlElement::reject(std::string_view problem) const { throw InputError(fmt::format("{}: <{}> {}", place(), tag, problem)); }
+void XmlElement::reject(std::string_view problem) const {
+  throw InputError(printableMessage(fmt::format("{}: <{}> {}", place(), tag, problem)));
+}
 
 XmlElement parseXml(std::string_view text, const std::string& name) {
   tinyxml2::XMLDocument document;

@@ -229,6 +229,10 @@ TEST_F(MjcfReader, ComplaintsNameLineAndRemedy) {
       {"<actuator><motor/></actuator>", "needs either a joint or a tendon"},
       {"<actuator><motor joint=\"k\"/></actuator>", "joint=\"k\" is the name of no joint."},
       {"<actuator><general joint=\"k\" dyntype=\"integrator\"/></actuator>", "is none of the words"},
+      {body("<joint name=\"j\" type=\"ball\"/>") + "<tendon><fixed><joint joint=\"j\" coef=\"1\"/></fixed></tendon>",
+       "joint=\"j\" is neither hinge nor slide"},
+      {body("<freejoint name=\"j\"/>") + "<equality><joint joint1=\"j\"/></equality>", "joint1=\"j\" is neither hinge nor slide"},
+      {body("<freejoint/>") + "<equality><weld body1=\"a\" relpose=\"0 0 0 1 0 0 0\"/></equality>", "draw the bodies as they are welded."},
       {"<contact><exclude body1=\"a\" body2=\"b\"/></contact>", "is the name of no body."},
       {"<option><flag contact=\"disable\"/></option>", "can't be switched off"},
       {"<default class=\"a\"><default><joint/></default></default>", "needs the attribute \"class\""},
@@ -253,6 +257,40 @@ TEST_F(MjcfReader, WhatHasNoEffectIsCounted) {
   EXPECT_EQ(notes.all()[0].count, 2);
   EXPECT_EQ(notes.all()[1].what, "sensor");
   EXPECT_EQ(notes.all()[1].count, 2);
+}
+
+TEST_F(MjcfReader, VelocitiesAndTimesOfKeyframesAreCounted) {
+  const ImportNotes notes = read(body("<joint/>") + "<keyframe><key qvel=\"0\"/><key qvel=\"1\" time=\"2\"/></keyframe>").notes;
+  ASSERT_EQ(notes.all().size(), 2u);
+  EXPECT_EQ(notes.all()[0].what, "key qvel");
+  EXPECT_EQ(notes.all()[1].what, "key time");
+}
+
+TEST_F(MjcfReader, ControlCharactersOfAFileDontReachTheTerminal) {
+  const std::string message = complaint(body("<joint axis=\"0 \x1b[2J 1\"/>"));
+  EXPECT_NE(message.find("which isn't a finite number"), std::string::npos);
+  EXPECT_EQ(message.find('\x1b'), std::string::npos);
+}
+
+TEST_F(MjcfReader, ARelposeWithoutATurnWeldsAsDrawn) {
+  EXPECT_TRUE(robot(body("<freejoint/>") + "<equality><weld body1=\"a\" relpose=\"0 1 0 0 0 0 0\"/></equality>").loops.at(0).is_weld);
+}
+
+TEST_F(MjcfReader, AMeshOfCornersAloneIsTheirHull) {
+  const engine::MassProperties m = robot(R"(<asset><mesh name="m" vertex="0 0 0 1 0 0 0 1 0 0 0 1"/></asset>
+    <worldbody><body><geom type="mesh" mesh="m" density="6"/></body></worldbody>)")
+                                       .bodies.at(0)
+                                       .inertia;
+  EXPECT_NEAR(m.mass, 1, 100 * kRoundOff);
+  EXPECT_LT((m.p_BBcm - Vec3::Constant(.25)).norm(), 100 * kRoundOff);
+}
+
+// Moments 1, 1 and 4 are no body's.
+TEST_F(MjcfReader, MomentsAreBalancedWhereTheCompilerSaysSo) {
+  const Robot r = robot(R"(<compiler balanceinertia="true"/><worldbody><body><inertial mass="1" pos="0 0 0" diaginertia="1 1 4"/></body>
+    <body><inertial mass="1" pos="0 0 0" diaginertia="1 1 2"/></body></worldbody>)");
+  EXPECT_LT((r.bodies.at(0).inertia.I_BBcm - 2 * Mat3::Identity()).norm(), kRoundOff);
+  EXPECT_EQ(r.bodies.at(1).inertia.I_BBcm(2, 2), 2);
 }
 
 TEST(MjcfGrammar, HasEveryAttributeOnce) {

@@ -125,5 +125,57 @@ TEST_F(RobotScenes, ATendonsSpringPullsAndAJointsRangeOfForcesHolds) {
   EXPECT_NEAR(measured(sim, "slide_a.position") + measured(sim, "slide_b.position"), 0.1 + 1 / 50.0, 1e-9);
 }
 
+// A hand's finger that spreads and bends in the palm's edge: MuJoCo's rule of parents, whatever the number of joints.
+TEST_F(RobotScenes, ABodyOfSeveralJointsDoesNotTouchItsCarrier) {
+  Simulation sim(sceneOfText(R"(<mujoco><compiler angle="radian"/><option timestep="0.001"/><worldbody>
+    <body name="palm"><joint name="wrist" axis="0 1 0" stiffness="20" damping="1"/><geom type="box" size=".04 .04 .01"/>
+      <body name="finger" pos=".04 0 0"><joint name="spread" axis="0 0 1" damping=".01"/><joint name="bend" axis="0 1 0" damping=".01"/>
+        <geom type="capsule" size=".008" fromto="0 0 0 .04 0 0"/></body></body></worldbody></mujoco>)"));
+  run(sim, 100);
+  EXPECT_EQ(engine::contactCount(grasp::worldOf(sim.moment().scratch)), 0);
+}
+
+// A table with a post, and a block that only the post lets through: it rests on the table.
+TEST_F(RobotScenes, ExcludingAPartOfWhatStandsStillLeavesTheRest) {
+  const std::string block = R"(<mujoco><option timestep="0.001"/><worldbody><geom type="plane" size="1 1 1"/>
+    <body name="table" pos="0 0 .2"><geom type="box" size=".5 .5 .02"/><body name="post" pos="0 0 .1"><geom type="box" size=".1 .1 .1"/></body></body>
+    <body name="block" pos="0 0 .25"><freejoint/><geom type="box" size=".05 .05 .03"/></body></worldbody>)";
+  Simulation on_table(sceneOfText(block + R"(<contact><exclude body1="block" body2="post"/></contact></mujoco>)"));
+  for (int n = 0; n < 300; ++n) on_table.tick();
+  EXPECT_NEAR(measured(on_table, "block.p_z"), .25, 1e-6);
+  Simulation through_all(sceneOfText(
+      block +
+      R"(<contact><exclude body1="block" body2="post"/><exclude body1="block" body2="table"/><exclude body1="world" body2="block"/></contact></mujoco>)"));
+  run(through_all, 300);
+  EXPECT_NEAR(measured(through_all, "block.p_z"), .25 - 9.81 * .09 / 2, 1e-9);
+}
+
+TEST_F(RobotScenes, WhatBallsAndFreeBodiesCantHaveIsCounted) {
+  RobotImport import = readMjcf(write("robot.xml", R"(<mujoco><default><joint damping="1"/></default><worldbody>
+    <body><joint type="ball"/><geom size=".1"/></body><body pos="1 0 0"><joint type="free"/><geom size=".1"/></body></worldbody></mujoco>)"));
+  sceneOfRobot(import.robot, {}, import.notes);
+  ASSERT_EQ(import.notes.all().size(), 2u);
+  EXPECT_EQ(import.notes.all()[0].what, "ball joint damping");
+  EXPECT_EQ(import.notes.all()[1].what, "free joint damping");
+}
+
+// A trunk with a swinging arm in free fall: its momentum is that of one free body, and turns as little.
+TEST_F(RobotScenes, ARobotOnAFreeBaseFallsAsItsCentreOfMassDoes) {
+  Simulation sim(sceneOfText(R"(<mujoco><compiler angle="radian"/><option timestep="0.001"/><worldbody>
+    <body name="trunk" pos="0 0 2" euler=".3 .2 .1"><freejoint name="root"/><geom type="box" size=".1 .05 .03" mass="2"/>
+      <body name="arm" pos=".1 0 0"><joint name="elbow" axis="0 1 0" stiffness="3" springref="1"/>
+        <geom type="capsule" size=".02" fromto="0 0 0 .2 0 0" mass="1"/></body></body></worldbody></mujoco>)"));
+  const auto centre = [&] {
+    return Vec3((2 * Vec3(measured(sim, "trunk.p_x"), measured(sim, "trunk.p_y"), measured(sim, "trunk.p_z")) +
+                 sim.bodyPose(static_cast<int>(sim.scene().bodies.size()) - 1) * Vec3(.1, 0, 0)) /
+                3);
+  };
+  const Vec3 start = centre();
+  run(sim, 400);
+  EXPECT_GT(std::abs(measured(sim, "elbow.position")), .1);  // it does swing
+  // The bodies of a microgram between sliders add 3e-9 kg to 3 kg where they hang on the base; the sum of the path is of 4th order.
+  EXPECT_LT((centre() - start - Vec3(0, 0, -9.81 * .16 / 2)).norm(), 1e-8);
+}
+
 }  // namespace
 }  // namespace pincer::tasks
