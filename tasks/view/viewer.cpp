@@ -16,6 +16,12 @@ constexpr double kQuietTime = 0.4;   // without change, until a picture at its b
 
 double viewerSeconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
+// [rad], 0 .. pi; Eigen's own takes the processor's atan2.
+double turnBetween(const Quat& a, const Quat& b) {
+  const Quat way = a.conjugate() * b;
+  return 2 * math::atan2(way.vec().norm(), std::abs(way.w()));
+}
+
 // The first of pattern(1), pattern(2), ... that isn't there yet.
 std::string freshPath(const std::string& folder, const std::string& stem, const std::string& ending) {
   for (int i = 1;; ++i) {
@@ -155,7 +161,7 @@ std::vector<BodyRow> Viewer::bodyRows() const {
     if (!moves_[i]) continue;
     BodyRow row{.name = body_names_[i], .p_W = now.X_WB[i].p, .selected = choice_.selected == static_cast<int>(i), .contacts = {}};
     if (now.time > before.time) row.speed = (now.X_WB[i].p - before.X_WB[i].p).norm() / (now.time - before.time);
-    row.turn = start_X_WB_[i].q.angularDistance(now.X_WB[i].q);
+    row.turn = turnBetween(start_X_WB_[i].q, now.X_WB[i].q);
     if (row.selected) row.contacts = contactsOf(static_cast<int>(i));
     rows.push_back(std::move(row));
   }
