@@ -131,6 +131,13 @@ std::string htmlDetails(const char* title, const std::string& json) {
   return json.empty() ? "" : fmt::format("<details><summary>{}</summary><pre>{}</pre></details>\n", title, escaped(json));
 }
 
+std::string htmlReplay(const ReplayPage& replay) {
+  if (replay.name.empty()) return "";
+  return fmt::format(
+      "<p><a href=\"{}\">Play the session</a> in three dimensions; the page needs this file beside it, and nothing else.</p>\n",
+      escaped(replay.name));
+}
+
 std::string htmlHead(const std::string& title, const std::string& warning) {
   std::string html = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "

@@ -31,6 +31,9 @@ std::string htmlNotDrawn(const std::vector<std::string>& titles);
 // Something long, folded away; nothing if `json` is empty.
 std::string htmlDetails(const char* title, const std::string& json);
 
+// A sentence that leads to the page that plays the session; nothing if there is none.
+std::string htmlReplay(const ReplayPage& replay);
+
 std::string htmlHead(const std::string& title, const std::string& warning);
 std::string htmlFoot(const SessionInfo& info, const std::string& facts = "");  // what was run, and the end of the page
 

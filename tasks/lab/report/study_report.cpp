@@ -30,9 +30,9 @@ std::vector<Picture> studyPictures(const SessionReader& session, const StudySumm
 }
 
 std::string studyHtml(const StudySummary& s, const std::vector<Picture>& pictures, const std::string& figures_name,
-                      const std::string& errors) {
+                      const std::string& errors, const ReplayPage& replay) {
   const bool is_simulated = s.info.devices_json.find("\"simulated\"") != std::string::npos;
-  std::string html = htmlHead(fmt::format("{}, seed {}", s.info.task, s.info.seed), s.warning);
+  std::string html = htmlHead(fmt::format("{}, seed {}", s.info.task, s.info.seed), s.warning) + htmlReplay(replay);
   html += htmlFacts({{"task", s.info.task},
                      {"seed", std::to_string(s.info.seed)},
                      {"started (UTC)", s.started_utc},
@@ -60,7 +60,7 @@ ReportFiles writeStudyReport(const SessionReader& session, const std::string& ht
   ReportFiles files;
   const std::string figures_name = plotAndWrite(pictures, html_path, options, files);
   const std::string more = htmlNotDrawn(files.not_drawn) + deviceErrorsHtml(deviceErrors(session));
-  writeAtomically(html_path, studyHtml(summary, pictures, figures_name, more));
+  writeAtomically(html_path, studyHtml(summary, pictures, figures_name, more, options.replay));
   return files;
 }
 
