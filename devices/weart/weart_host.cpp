@@ -18,8 +18,8 @@
 namespace pincer::devices::weart {
 namespace {
 
-constexpr std::int64_t kMillisecond = 1'000'000;  // [ns]
-constexpr std::int64_t kPressLives = 100 * kMillisecond;
+constexpr std::int64_t kMs = 1'000'000;  // [ns]
+constexpr std::int64_t kPressLives = 100 * kMs;
 constexpr int kPeriod = 10;  // between two levels [ms]
 
 // Connected within `timeout` [s], or -1.
@@ -156,8 +156,8 @@ bool WeartHost::say(std::string_view text) {
 }
 
 bool WeartHost::hear(int milliseconds) {
-  const std::int64_t until = usb::monotonicNs() + milliseconds * kMillisecond;
-  for (std::int64_t left = milliseconds; left >= 0; left = (until - usb::monotonicNs()) / kMillisecond) {
+  const std::int64_t until = usb::monotonicNs() + milliseconds * kMs;
+  for (std::int64_t left = milliseconds; left >= 0; left = (until - usb::monotonicNs()) / kMs) {
     pollfd watched{socket_, POLLIN, 0};
     if (::poll(&watched, 1, static_cast<int>(left)) == 0) return true;
     std::array<char, 4096> bytes;
