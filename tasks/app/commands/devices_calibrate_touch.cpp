@@ -38,7 +38,7 @@ class TouchTaker {
 
   // True if there is one more.
   bool take(const Vec3& p_A, const Vec3& p_B) {
-    const Touch now{X_WA_ * p_A, X_WB_ * p_B};
+    const HandleTouch now{X_WA_ * p_A, X_WB_ * p_B};
     const bool moves = ticks_ == 0 || (now.a_W - first_.a_W).norm() > kTogether || (now.b_W - first_.b_W).norm() > kTogether;
     if (moves) {
       first_ = now;
@@ -51,16 +51,16 @@ class TouchTaker {
     touches_.push_back({sum_.a_W / ticks_, sum_.b_W / ticks_});
     return true;
   }
-  const std::vector<Touch>& touches() const { return touches_; }
+  const std::vector<HandleTouch>& touches() const { return touches_; }
 
  private:
-  bool isNew(const Touch& now) const {
-    return std::none_of(touches_.begin(), touches_.end(), [&](const Touch& t) { return (t.a_W - now.a_W).norm() < kFarther; });
+  bool isNew(const HandleTouch& now) const {
+    return std::none_of(touches_.begin(), touches_.end(), [&](const HandleTouch& t) { return (t.a_W - now.a_W).norm() < kFarther; });
   }
   Pose X_WA_, X_WB_;
-  Touch first_, sum_;
+  HandleTouch first_, sum_;
   int ticks_ = 0;
-  std::vector<Touch> touches_;
+  std::vector<HandleTouch> touches_;
 };
 
 std::vector<std::string> idsIn(const std::string& serials) {
@@ -76,7 +76,7 @@ DeviceCalibration calibrationOf(const std::string& id, const std::vector<std::st
   return uncalibratedHaply(id);
 }
 
-std::vector<Touch> takeTouches(HaplyHost& host, const Pose& X_WA, const Pose& X_WB) {
+std::vector<HandleTouch> takeTouches(HaplyHost& host, const Pose& X_WA, const Pose& X_WB) {
   TouchTaker taker(X_WA, X_WB);
   for (int waited = 0; taker.touches().size() < kTouches; ++waited) {
     if (interruptFlag()) return {};
@@ -112,7 +112,7 @@ int touchWith(HaplyHost& host, const CalibrateArguments& arguments, const ArmBas
       "above the other, one before the other. Forces are off.\n",
       kTouches);
   std::fflush(stdout);
-  const std::vector<Touch> touches = takeTouches(host, X_WA, scene.model.mounts[1].X_WD);
+  const std::vector<HandleTouch> touches = takeTouches(host, X_WA, scene.model.mounts[1].X_WD);
   if (interruptFlag()) return kExitInterrupted;
   const TouchFinding found = findBase(touches, scene.model.mounts[1].X_WD.p);
   constexpr double kDegree = std::numbers::pi / 180;

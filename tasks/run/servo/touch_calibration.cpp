@@ -32,19 +32,19 @@ Mat3 aboutZ(double psi) {
 
 class Fit {
  public:
-  Fit(std::span<const Touch> touches, const Vec3& centre) : touches_(touches), centre_(centre) {}
+  Fit(std::span<const HandleTouch> touches, const Vec3& centre) : touches_(touches), centre_(centre) {}
 
-  double errorAt(const Unknowns& x, const Touch& touch) const { return gap(x, touch).norm() - x[4]; }
+  double errorAt(const Unknowns& x, const HandleTouch& touch) const { return gap(x, touch).norm() - x[4]; }
   double squares(const Unknowns& x) const {
     double sum = 0;
-    for (const Touch& touch : touches_) sum += errorAt(x, touch) * errorAt(x, touch);
+    for (const HandleTouch& touch : touches_) sum += errorAt(x, touch) * errorAt(x, touch);
     return sum;
   }
   Unknowns from(double psi) const {
     Unknowns x = Unknowns::Zero();
     x[0] = psi;
     Vec3 mean = Vec3::Zero();
-    for (const Touch& touch : touches_) mean += gap(x, touch);
+    for (const HandleTouch& touch : touches_) mean += gap(x, touch);
     x.segment<3>(1) = mean / static_cast<double>(touches_.size());
     x[4] = kStartDistance;
     return x;
@@ -68,7 +68,7 @@ class Fit {
   Normal normal(const Unknowns& x, Unknowns& rhs) const {
     Normal N = Normal::Zero();
     rhs.setZero();
-    for (const Touch& touch : touches_) {
+    for (const HandleTouch& touch : touches_) {
       const Unknowns g = slope(x, touch);
       N += g * g.transpose();
       rhs += errorAt(x, touch) * g;
@@ -77,10 +77,10 @@ class Fit {
   }
 
  private:
-  Vec3 gap(const Unknowns& x, const Touch& touch) const {
+  Vec3 gap(const Unknowns& x, const HandleTouch& touch) const {
     return touch.a_W - centre_ - x.segment<3>(1) - aboutZ(x[0]) * (touch.b_W - centre_);
   }
-  Unknowns slope(const Unknowns& x, const Touch& touch) const {
+  Unknowns slope(const Unknowns& x, const HandleTouch& touch) const {
     const Vec3 g = gap(x, touch), n = g / std::max(g.norm(), 1e-12);
     Unknowns row;
     row[0] = -n.dot(Vec3::UnitZ().cross(aboutZ(x[0]) * (touch.b_W - centre_)));
@@ -89,13 +89,13 @@ class Fit {
     return row;
   }
 
-  std::span<const Touch> touches_;
+  std::span<const HandleTouch> touches_;
   Vec3 centre_;
 };
 
 }  // namespace
 
-TouchFinding findBase(std::span<const Touch> touches, const Vec3& reset_B_W) {
+TouchFinding findBase(std::span<const HandleTouch> touches, const Vec3& reset_B_W) {
   if (touches.size() < kFewestTouches)
     throw InputError(fmt::format("{} places are too few: hold the handles together at {} or more.", touches.size(), kFewestTouches));
   const Fit fit(touches, reset_B_W);

@@ -14,7 +14,7 @@
 
 namespace pincer::tasks {
 
-struct Touch {
+struct HandleTouch {
   Vec3 a_W, b_W;  // the handles' middles [m]
 };
 
@@ -31,7 +31,7 @@ struct TouchFinding {
 };
 
 // At least kFewestTouches touches, or throws InputError.
-TouchFinding findBase(std::span<const Touch> touches, const Vec3& reset_B_W);
+TouchFinding findBase(std::span<const HandleTouch> touches, const Vec3& reset_B_W);
 
 // Is the finding good for a session? A sentence with the remedy; empty: it is.
 std::string touchOddity(const TouchFinding& finding);

@@ -27,11 +27,11 @@ Vec3 aboutVertical(double psi, const Vec3& v) {
 }
 
 // Handles that touch at `count` places within 60 mm, in any direction from each other; each middle off by `noise` in any direction.
-std::vector<Touch> touchesOf(const Truth& truth, std::size_t count, double noise, std::mt19937_64& random) {
+std::vector<HandleTouch> touchesOf(const Truth& truth, std::size_t count, double noise, std::mt19937_64& random) {
   std::uniform_real_distribution<double> within(-1, 1);
   std::normal_distribution<double> normal;
   const auto any = [&] { return Vec3(within(random), within(random), within(random)); };
-  std::vector<Touch> touches;
+  std::vector<HandleTouch> touches;
   for (std::size_t i = 0; i < count; ++i) {
     const Vec3 a_W = 0.06 * any(), b_W = a_W - truth.distance * Vec3(normal(random), normal(random), normal(random)).normalized();
     const Vec3 told_W = truth.reset_W + aboutVertical(-truth.base.turn, b_W - truth.reset_W - truth.base.offset_W);
@@ -79,13 +79,13 @@ TEST(TouchCalibration, FindsTheBaseFromPlacesThatAreALittleOff) {
 TEST(TouchCalibration, SaysWhatThePlacesDoNotTell) {
   std::mt19937_64 random(3);
   const Truth truth;
-  std::vector<Touch> touches = touchesOf(truth, 12, 0, random);
+  std::vector<HandleTouch> touches = touchesOf(truth, 12, 0, random);
   EXPECT_EQ(touchOddity(findBase(touches, truth.reset_W)), "");
   touches[4].b_W.z() += 0.02;
   const TouchFinding odd = findBase(touches, truth.reset_W);
   EXPECT_EQ(odd.worst, 4u);
   EXPECT_TRUE(tests::contains(touchOddity(odd), "place 5")) << touchOddity(odd);
-  std::vector<Touch> alike;  // always side by side in the same way: distance and offset can't be told apart
+  std::vector<HandleTouch> alike;  // always side by side in the same way: distance and offset can't be told apart
   for (int i = 0; i < 12; ++i) {
     const Vec3 a_W(0.05 * std::sin(i), 0.05 * std::cos(2 * i), 0.01 * i);
     alike.push_back({a_W, a_W - Vec3(truth.distance, 0, 0)});
