@@ -31,6 +31,8 @@ class HaplyServer {
   double force(std::size_t arm);
   std::int64_t zeroSince(std::size_t arm);
   int connections() const;
+  // Gives back what ended connections have left: their threads. While connections() is 0.
+  void forget();
 
  private:
   struct Parts;

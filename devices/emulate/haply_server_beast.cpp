@@ -313,4 +313,13 @@ std::int64_t HaplyServer::zeroSince(std::size_t arm) {
 
 int HaplyServer::connections() const { return parts_->connections; }
 
+void HaplyServer::forget() {
+  std::list<std::thread> ended;
+  {
+    const std::lock_guard lock(parts_->one);
+    ended.swap(parts_->clients);
+  }
+  for (std::thread& thread : ended) thread.join();
+}
+
 }  // namespace pincer::devices::emulate

@@ -65,6 +65,14 @@ void addDeviceOptions(CLI::App& command, DeviceRunOptions& options) {
   command.add_option("--service", options.which.service, "Where Haply's service is: HOST:PORT, or HOST:PORT:EVENTS")->capture_default_str();
   command.add_option("--force-gate", options.which.force_gate, "Gain of the force gate of Haply's service (default: left as it is)")
       ->check(within({.min = 0, .max = 10, .remedy = "Its own default is 0.3."}));
+  command.add_option("--pressure", options.which.pressure,
+                     "HOST:PORT of WEART's Middleware: a TouchDIVER on index finger and thumb presses as the normal forces say; no place");
+  command.add_option("--pressure-hand", options.which.pressure_hand, "Which hand wears it")
+      ->check(CLI::IsMember({"right", "left"}))
+      ->capture_default_str();
+  command.add_option("--full-pressure", options.which.full_pressure, "Normal force of its highest level [N]")
+      ->check(within({.min = 0.1, .max = 100, .remedy = "The maker tells no newtons; 5 N is ours."}))
+      ->capture_default_str();
   command.add_flag("--yes", options.yes, "Switch forces on without asking; nobody's hand may be in danger");
 }
 

@@ -20,7 +20,8 @@ struct DeviceRunOptions {
   bool yes = false;
 };
 
-// Adds --devices, --arms, --displays, --watchdog, --recording, --firmware, --grips, --service, --force-gate and --yes.
+// Adds --devices, --arms, --displays, --watchdog, --recording, --firmware, --grips, --service, --force-gate, --pressure, --pressure-hand,
+// --full-pressure and --yes.
 void addDeviceOptions(CLI::App& command, DeviceRunOptions& options);
 
 // Null for those that aren't opened here: simulated ones and the mouse. Says what was found; makes `servo` one by the wall clock, watched where there

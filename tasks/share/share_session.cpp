@@ -38,21 +38,21 @@ SharedSession recordSession(const SessionReader& session, const ReplayOptions& o
                             const std::function<void(std::int64_t done, std::int64_t total)>& progress) {
   SharedSession shared;
   const std::size_t trials = session.trials().size();
-  const auto keep = [&](const std::string& title, const grasp::GraspModel& model, const TrialRecording& recorded) {
+  const auto keep = [&](std::int64_t trial, const std::string& of, const grasp::GraspModel& model, const TrialRecording& recorded) {
     if (recorded.history.size() == 0) return;  // interrupted before the first tick
-    shared.recordings.push_back(picturesOf(title, model, recorded.history, meshes));
+    shared.recordings.push_back(picturesOf(fmt::format("trial {}: {}", trial + 1, of), model, recorded.history, meshes));
+    shared.trials.push_back(trial);
     addHeight(shared.recordings.back(), model, recorded.history);
   };
   const auto hands = [&](HandsCycle& cycle, const TrialRecord& row) {
     const TrialRecording recorded = recordTrial(cycle, static_cast<std::size_t>(row.trial), trials, interrupted);
-    keep(fmt::format("trial {}: {}, {}", row.trial + 1, row.task, row.condition), cycle.trial().scene().model.grasp, recorded);
+    keep(row.trial, fmt::format("{}, {}", row.task, row.condition), cycle.trial().scene().model.grasp, recorded);
     return recorded.report;
   };
   const auto finger = [&](FingerTrial& trial) {
     const TrialRecording recorded = recordFinger(trial, interrupted);
-    keep(fmt::format("trial {}: {}", options.trial ? *options.trial + 1 : static_cast<std::int64_t>(shared.recordings.size()) + 1,
-                     session.info().task),
-         trial.pictured(), recorded);
+    const auto next = static_cast<std::int64_t>(shared.recordings.size());
+    keep(options.trial.value_or(next), session.info().task, trial.pictured(), recorded);
     return recorded.report;
   };
   shared.replay = replaySession(session, options, interrupted, progress, hands, finger);

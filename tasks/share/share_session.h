@@ -1,6 +1,8 @@
 // share_session: trials of a session as recordings for a page. The session is replayed, compared to the bit as `pincer replay` does, and seen.
 #pragma once
 #include <atomic>
+#include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "pincer/tasks/lab/sessions/replay.h"
@@ -10,6 +12,7 @@ namespace pincer::tasks {
 
 struct SharedSession {
   std::vector<PageRecording> recordings;  // a trial each
+  std::vector<std::int64_t> trials;       // which, from 0
   ReplayResult replay;
 };
 

@@ -84,14 +84,16 @@ def check_session(browser, pincer, folder):
     out = folder / "session"
     ran = run(pincer, "run", "sphere-pickup", "--repetitions", 1, "--friction", 0.9, "--condition", "cld+force", "--seed", 7, "--out", out, "--no-report")
     assert ran.returncode == 0, ran.stderr
-    page = folder / "session.html"
-    shared = run(pincer, "share", out, "--out", page)
-    assert shared.returncode == 0, shared.stderr
+    reported = run(pincer, "report", out / "session.db", "--web")
+    assert reported.returncode == 0, reported.stderr
+    page = out / "report_replay.html"
+    links = re.findall(r'<td><a href="([^"#]*)#shown=(\d+)">(\d+)</a></td>', (out / "report.html").read_text())
+    assert links == [(page.name, "1", "1")], links
     picture, said = opened(browser, page, "t=3&shown=1", folder / "session.png", False)
     assert not said, said
     index = json.loads(re.search(r'id="pincer-index">(.*?)</script>', page.read_text(), re.S)[1])
     trials = len(index["recordings"])
-    print(f"session: {shared.stdout.strip()}, trials {trials}, {100 * coloured(picture).mean():.1f} % coloured", flush=True)
+    print(f"session: {1e-6 * page.stat().st_size:.2f} MB, linked from its report, trials {trials}, {100 * coloured(picture).mean():.1f} % coloured", flush=True)
     assert page.stat().st_size < 5e6
     assert trials >= 1 and coloured(picture).mean() > 0.01
 

@@ -50,9 +50,10 @@ TEST_F(UsbCommands, DevicesTestKeepsToTheTorquesOfTheJoints) {
       load = std::max(load.load(), (arms[0]->plant().sample().J->transpose() * f_D).cwiseAbs().maxCoeff());
     });
   });
-  const AppResult test = runPincer({"devices", "test", "A1", "--force", "1", "--seconds", "2.5", "--watchdog", "100"});
+  const AppResult test = runPincer({"devices", "test", "A1", "--force", "0.5", "--seconds", "1", "--watchdog", "100", "--yes"});
   EXPECT_TRUE(contains(test.out, "pincer emu arm A1")) << test.out << test.error;
   EXPECT_GT(most, 0.02) << "it pushed: " << test.out;
+  EXPECT_TRUE(contains(test.out, "Verdict: ") && contains(test.out, "age of a sample")) << test.out;
   EXPECT_LE(load, 0.02 * 1.01) << "the arm moved between the command and this look";
 }
 

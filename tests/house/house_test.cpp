@@ -48,7 +48,7 @@ const std::map<std::string, std::vector<std::string>> kRooms = {
     {"contact", {"functions", "io", "mesh", "surface", "remesh", "curve", "shape"}},
     {"engine", {"motion", "solve", "tree", "world"}},
     {"grasp", {"coupling", "tick", "baseline", "passivity", "quality"}},
-    {"devices", {"arm", "cld", "usb", "falcon", "haply", "gate", "window", "emulate"}},
+    {"devices", {"arm", "cld", "usb", "falcon", "haply", "weart", "gate", "window", "emulate"}},
     {"tasks", {"run", "lab", "judge", "view", "share", "python", "app"}},
     {"tasks/run", {"process", "measure", "files", "robot", "session", "scene", "rollout", "tick", "servo"}},
     {"tasks/lab", {"participants", "study", "report", "finger", "experiments", "findings", "sessions", "sweep"}},

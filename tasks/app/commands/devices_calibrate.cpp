@@ -78,6 +78,8 @@ void requireNames(const DeviceCalibration& kept, const std::vector<NamedValue>& 
 }
 
 int calibrate(const CalibrateArguments& arguments) {
+  if (arguments.touch) return calibrateByTouch(arguments);
+  if (!arguments.calibrations.empty()) refuseUsage("--calibration goes with --touch; one arm's file is --load FILE");
   if (arguments.devices == "haply") return calibrateHaply(arguments);
   if (arguments.here || !arguments.align.empty() || !arguments.grip.empty())
     refuseUsage("--here, --align and --grip are of Inverse3: --devices haply");
@@ -103,7 +105,7 @@ int calibrate(const CalibrateArguments& arguments) {
 void addDevicesCalibrate(CLI::App& devices, int& exit_code) {
   auto arguments = std::make_shared<CalibrateArguments>();
   CLI::App* command = devices.add_subcommand("calibrate", "Shows, changes, saves and loads the calibration values that a device keeps");
-  command->add_option("serial", arguments->serial, "Of the device: pincer devices list")->required();
+  command->add_option("serial", arguments->serial, "Of the device: pincer devices list; of two with --touch")->required();
   command->add_option("--set", arguments->set, "NAME=VALUE [m or rad]; more than once for several");
   command->add_option("--save", arguments->save, "Writes all values to this file");
   command->add_option("--load", arguments->load, "Takes all values from this file first");
@@ -111,6 +113,10 @@ void addDevicesCalibrate(CLI::App& devices, int& exit_code) {
       ->check(CLI::IsMember({"usb", "haply"}))
       ->capture_default_str();
   command->add_flag("--here", arguments->here, "Of haply: the middle of the workspace becomes where the arm is now");
+  command->add_flag("--touch", arguments->touch,
+                    "Of two haply, INDEX,THUMB: where the second stands, from knobs held together at 12 places");
+  command->add_option("--calibration", arguments->calibrations, "With --touch: files of the two arms as they are known so far")
+      ->delimiter(',');
   command->add_option("--align", arguments->align, "Of haply: the grip's turn of now becomes this finger's in the scene")
       ->check(CLI::IsMember({"index", "thumb"}));
   command->add_option("--grip", arguments->grip, "Of haply: id of the VerseGrip that is the arm's handle");

@@ -10,7 +10,8 @@ struct CalibrateArguments {
   std::string serial, save, load;
   std::vector<std::string> set;
   std::string devices = "usb", service = "127.0.0.1:10001", grip, align;  // of haply but for the first
-  bool here = false;
+  std::vector<std::string> calibrations;                                  // of both arms, for `touch`
+  bool here = false, touch = false;
 };
 
 using NamedValue = std::pair<std::string, double>;
@@ -20,5 +21,7 @@ std::vector<NamedValue> changesOf(const CalibrateArguments& arguments);
 
 // An Inverse3 keeps nothing: its values are in the file alone.
 int calibrateHaply(const CalibrateArguments& arguments);
+// Finds where the second of two Inverse3 stands beside the first.
+int calibrateByTouch(const CalibrateArguments& arguments);
 
 }  // namespace pincer::tasks

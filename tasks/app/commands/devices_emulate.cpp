@@ -1,12 +1,14 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <chrono>
 #include <memory>
 #include <optional>
 #include <thread>
 
 #include "pincer/devices/emulate/haply_server.h"
+#include "pincer/devices/emulate/weart_middleware.h"
 #include "pincer/tasks/app/app.h"
 #include "pincer/tasks/app/commands/devices_commands.h"
 #include "pincer/tasks/app/interrupt.h"
@@ -78,6 +80,41 @@ int emulateHaply(const EmulateArguments& arguments) {
   return kExitOk;
 }
 
+// Prints each level that changed, so that a person sees what would be felt.
+int emulateWeart(int port, double seconds) {
+  std::unique_ptr<devices::emulate::WeartMiddleware> middleware;
+  try {
+    middleware = std::make_unique<devices::emulate::WeartMiddleware>(static_cast<std::uint16_t>(port));
+  } catch (const std::runtime_error& error) {
+    throw DeviceError(error.what());
+  }
+  print("WEART's Middleware, emulated: --pressure 127.0.0.1:{}. Ctrl-C ends it.\n", middleware->port());
+  std::fflush(stdout);
+  std::array<double, 2> shown{};
+  const auto until = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+  while (!interruptFlag() && (seconds == 0 || std::chrono::steady_clock::now() < until)) {
+    const std::array<double, 2> now{middleware->levelOf("INDEX"), middleware->levelOf("THUMB")};
+    if (now != shown) print("index {:.2f}  thumb {:.2f}\n", now[0], now[1]);
+    std::fflush(stdout);
+    shown = now;
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+  return kExitOk;
+}
+
+void addWeart(CLI::App& emulate, int& exit_code) {
+  struct Arguments {
+    int port = 13031;
+    double seconds = 0;
+  };
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* weart = emulate.add_subcommand("weart", "WEART's Middleware with a TouchDIVER, on this computer; prints what it presses");
+  weart->add_option("--port", arguments->port, "0: a free one")->check(CLI::Range(0, 65535))->capture_default_str();
+  weart->add_option("--seconds", arguments->seconds, "Ends by itself; 0: never [s]")->check(CLI::Range(0.0, 1e6))->capture_default_str();
+  weart->footer("\nExample:\n  pincer devices emulate weart");
+  weart->callback([arguments, &exit_code] { exit_code = emulateWeart(arguments->port, arguments->seconds); });
+}
+
 }  // namespace
 
 void addDevicesEmulate(CLI::App& devices, int& exit_code) {
@@ -101,6 +138,7 @@ void addDevicesEmulate(CLI::App& devices, int& exit_code) {
   haply->add_option("--seconds", arguments->seconds, "Ends by itself; 0: never [s]")->check(CLI::Range(0.0, 1e6))->capture_default_str();
   haply->footer("\nExample:\n  pincer devices emulate haply --hand");
   haply->callback([arguments, &exit_code] { exit_code = emulateHaply(*arguments); });
+  addWeart(*command, exit_code);
 }
 
 }  // namespace pincer::tasks

@@ -37,33 +37,25 @@ struct DevicesTestArguments {
   bool silence = false;
 };
 
-// Streams and commands for a while: zero force (or a small one along z), tactors on a slow circle.
+// Streams and commands for a while: no force, tactors on a slow circle.
 class DeviceTest final : public ServoCycle {
  public:
-  DeviceTest(UsbHost& host, std::vector<UsbArm*> arms, std::vector<UsbDisplay*> displays, const DevicesTestArguments& arguments)
-      : host_(host), arms_(std::move(arms)), displays_(std::move(displays)), arguments_(arguments), gates_(arms_.size()) {
-    for (UsbArm* arm : arms_) {
-      before_.push_back(arm->counts());
-      devices::GateLimits limits;
-      limits.watchdog_time = 1e-3 * kOldestSample * arguments.watchdog_ms;
-      limits_.push_back(devices::within(limits, arm->capabilities()));
-      arm->setDeadline(1e-3 * kArmDeadline * arguments.watchdog_ms);
-    }
+  DeviceTest(UsbHost& host, std::vector<UsbArm*> arms, std::vector<UsbDisplay*> displays, double seconds)
+      : host_(host), arms_(std::move(arms)), displays_(std::move(displays)), seconds_(seconds) {
+    for (UsbArm* arm : arms_) before_.push_back(arm->counts());
     for (UsbDisplay* display : displays_) before_.push_back(display->counts());
-    if (arguments.force == 0) return;
-    for (std::size_t i = 0; i < arms_.size(); ++i) devices::arm(gates_[i]), arms_[i]->arm();
   }
   bool tick(double now) override {
     const std::int64_t epoch = devices::usb::monotonicNs() - static_cast<std::int64_t>(1e9 * now);
     if (ticks_ == 0 || epoch < epoch_) host_.setEpoch(epoch_ = epoch);
-    for (std::size_t i = 0; i < arms_.size(); ++i) drive(i, now);
+    for (UsbArm* arm : arms_) arm->commandForce(Vec3::Zero());
     for (UsbDisplay* display : displays_) {
       const double angle = 2 * 3.14159265358979 * 0.5 * now;
       display->command(
           {false, 0.6 * Vec2(display->capabilities().reach.x() * math::cos(angle), display->capabilities().reach.y() * math::sin(angle))});
     }
     ++ticks_;
-    return now < arguments_.seconds;
+    return now < seconds_;
   }
   void cutForces() noexcept override {
     for (UsbArm* arm : arms_) arm->stop();
@@ -71,24 +63,12 @@ class DeviceTest final : public ServoCycle {
   // One line per device; whether all of them are well.
   bool report() {
     bool well = true;
-    for (std::size_t i = 0; i < arms_.size(); ++i) {
-      well &= line(*arms_[i], before_[i]);
-      if (gates_[i].trip == devices::Trip::kNone) continue;
-      print("  {}\n", devices::describe(limits_[i], gates_[i]));
-      well = false;
-    }
+    for (std::size_t i = 0; i < arms_.size(); ++i) well &= line(*arms_[i], before_[i]);
     for (std::size_t i = 0; i < displays_.size(); ++i) well &= line(*displays_[i], before_[arms_.size() + i]);
     return well;
   }
 
  private:
-  void drive(std::size_t i, double now) {
-    devices::GateInput in;
-    in.sample = arms_[i]->sample();
-    in.now = now;
-    in.f_D = Vec3(0, 0, arguments_.force);
-    arms_[i]->commandForce(devices::gateForce(limits_[i], in, gates_[i]));
-  }
   template <typename Device>
   bool line(Device& device, const LinkCounts& before) {
     const LinkCounts now = device.counts();
@@ -105,11 +85,34 @@ class DeviceTest final : public ServoCycle {
   UsbHost& host_;
   std::vector<UsbArm*> arms_;
   std::vector<UsbDisplay*> displays_;
-  const DevicesTestArguments& arguments_;
-  std::vector<devices::GateLimits> limits_;
-  std::vector<devices::GateState> gates_;
+  double seconds_;
   std::vector<LinkCounts> before_;
   std::int64_t epoch_ = 0, ticks_ = 0;
+};
+
+// Arms on USB as the ones of a hand.
+class ArmsOnUsb final : public HandDevices {
+ public:
+  ArmsOnUsb(UsbHost& host, std::vector<UsbArm*> arms, double watchdog) : host_(host), arms_(std::move(arms)) {
+    for (UsbArm* arm : arms_) arm->setDeadline(kArmDeadline * watchdog);
+  }
+  devices::Arm& arm(int finger) override { return *arms_[static_cast<std::size_t>(finger)]; }
+  devices::TactileDisplay* display(int) override { return nullptr; }
+  void setEpoch(std::int64_t ns) override { host_.setEpoch(ns); }
+  std::vector<std::string> describe() override { return {}; }
+
+ private:
+  UsbHost& host_;
+  std::vector<UsbArm*> arms_;
+};
+
+// A hand that wears no arms, for a display that needs none.
+class NoArms final : public HandDevices {
+ public:
+  devices::Arm& arm(int) override { throw DeviceError("no arm is worn"); }
+  devices::TactileDisplay* display(int) override { return nullptr; }
+  void setEpoch(std::int64_t) override {}
+  std::vector<std::string> describe() override { return {}; }
 };
 
 template <typename Device>
@@ -155,11 +158,33 @@ int testSilence(const DevicesTestArguments& arguments) {
   return kExitOk;
 }
 
-// Falcon or Inverse3: one arm, by itself: rest, a small push, ages of samples, verdict.
+// Arms by themselves: rest, a small push, ages of samples, a verdict each.
+int checkArms(HandDevices& devices, int arms, const DevicesTestArguments& arguments, const ServoOptions& servo) {
+  const ArmCheckOptions check{.force = std::min(std::abs(arguments.force), 0.5), .watchdog = servo.watchdog};
+  if (check.force > 0 && !operatorArms(arguments.arms, "The arm is going to move 15 mm by itself. Nobody may wear or hold it."))
+    return kExitOk;
+  ArmCheck cycle(devices, arms, check);
+  const ServoReport report = runServo(servo, cycle, interruptFlag());
+  cycle.cutForces();
+  print("{}\n", servoText(report, 1 / servo.rate));
+  bool fit = true;
+  for (const ArmFindings& found : cycle.findings()) {
+    print("{}\n", armCheckText(found));
+    const auto odd = oddities(found, check);
+    for (const std::string& sentence : odd) print("  {}\n", printableMessage(sentence));
+    print("Verdict: {}\n", odd.empty() ? "fit for a session" : "not fit for a session yet");
+    fit &= odd.empty();
+  }
+  if (report.interrupted) return kExitInterrupted;
+  return fit ? kExitOk : kExitDevice;
+}
+
+// Falcon or Inverse3: one arm.
 int testArm(const DevicesTestArguments& arguments) {
   DeviceRunOptions options = arguments.arms;
   options.which.fingers = 1;
   options.which.needs_displays = false;
+  options.which.pressure.clear();
   options.watchdog_ms = arguments.watchdog_ms;
   if (!arguments.serial.empty()) options.which.arms = {arguments.serial};
   ServoOptions servo;
@@ -168,23 +193,35 @@ int testArm(const DevicesTestArguments& arguments) {
   if (!waitUntil([&] { return devices->arm(0).state() == devices::DeviceState::kReady || interruptFlag(); }, kHoming))
     throw DeviceError(devices->arm(0).identity() +
                       " didn't become ready. Push a Falcon's grip all the way in and out once; calibrate an Inverse3.");
-  const ArmCheckOptions check{.force = arguments.force == 0 ? 0 : std::min(std::abs(arguments.force), 0.5), .watchdog = servo.watchdog};
-  if (check.force > 0 && !operatorArms(options, "The arm is going to move 15 mm by itself. Nobody may wear or hold it.")) return kExitOk;
-  ArmCheck cycle(*devices, 1, check);
-  const ServoReport report = runServo(servo, cycle, interruptFlag());
-  cycle.cutForces();
-  print("{}\n", servoText(report, 1 / servo.rate));
-  const ArmFindings& found = cycle.findings()[0];
-  print("{}\n", armCheckText(found));
-  const auto odd = oddities(found, check);
-  for (const std::string& sentence : odd) print("  {}\n", printableMessage(sentence));
-  print("Verdict: {}\n", odd.empty() ? "fit for a session" : "not fit for a session yet");
-  if (report.interrupted) return kExitInterrupted;
-  return odd.empty() ? kExitOk : kExitDevice;
+  return checkArms(*devices, 1, arguments, servo);
+}
+
+// Each thimble presses for a second at a third of its highest level, the others don't.
+int testPressure(const DevicesTestArguments& arguments) {
+  if (!operatorArms(arguments.arms, "The TouchDIVER is going to press index finger and thumb gently, a second each.")) return kExitOk;
+  DeviceOptions options = arguments.arms.which;
+  const auto hand = openPressedHand(std::make_unique<NoArms>(), options);
+  for (const std::string& line : hand->describe()) print("{}\n", line);
+  const double third = options.full_pressure / 3;
+  for (int finger = 0; finger < 2 && hand->complaint().empty() && !interruptFlag(); ++finger) {
+    print("{} now\n", finger == 0 ? "index finger" : "thumb");
+    std::fflush(stdout);
+    const auto pressed = [&] {
+      hand->pressure(finger)->press(third);
+      return interruptFlag() || !hand->complaint().empty();
+    };
+    waitUntil(pressed, 1);
+    hand->pressure(finger)->stop();
+  }
+  if (interruptFlag()) return kExitInterrupted;
+  const std::string complaint = hand->complaint();
+  print("Verdict: {}\n", complaint.empty() ? "the Middleware took all of it; whether it was felt is for you to say" : complaint);
+  return complaint.empty() ? kExitOk : kExitDevice;
 }
 
 int testDevices(const DevicesTestArguments& arguments) {
   if (arguments.silence) return testSilence(arguments);
+  if (arguments.arms.devices == "weart") return testPressure(arguments);
   if (arguments.arms.devices != "usb") return testArm(arguments);
   const std::atomic<bool>& interrupted = interruptFlag();
   const auto usb = startUsb();
@@ -198,13 +235,17 @@ int testDevices(const DevicesTestArguments& arguments) {
                           ? "No device is ready on USB. See what is there: pincer devices list"
                           : fmt::format("No device {} is ready on USB. See what is there: pincer devices list", arguments.serial));
   }
-  DeviceTest test(host, arms, displays, arguments);
+  DeviceTest test(host, arms, displays, arguments.seconds);
   const ServoOptions servo{.clock = ServoClock::kReal, .watchdog = 1e-3 * arguments.watchdog_ms};
   const ServoReport report = runServo(servo, test, interrupted);
   test.cutForces();
   print("{}\n", servoText(report, 1 / servo.rate));
-  if (!test.report()) return kExitDevice;
-  return report.interrupted ? kExitInterrupted : kExitOk;
+  const bool well = test.report();
+  if (report.interrupted) return kExitInterrupted;
+  if (arms.empty()) return well ? kExitOk : kExitDevice;
+  ArmsOnUsb hand(host, arms, servo.watchdog);
+  const int verdict = checkArms(hand, static_cast<int>(arms.size()), arguments, servo);
+  return verdict == kExitOk && !well ? kExitDevice : verdict;
 }
 
 }  // namespace
@@ -212,23 +253,26 @@ int testDevices(const DevicesTestArguments& arguments) {
 void addDevicesTest(CLI::App& devices, int& exit_code) {
   auto arguments = std::make_shared<DevicesTestArguments>();
   arguments->arms.devices = "usb";
-  CLI::App* command = devices.add_subcommand("test", "Streams and commands for a few seconds, and counts what goes wrong");
+  arguments->arms.which.pressure = "127.0.0.1:13031";
+  CLI::App* command = devices.add_subcommand("test", "Streams, rests, pushes a little; counts what goes wrong, and gives a verdict");
   command->add_option("serial", arguments->serial, "Of the device (default: all)");
   command->add_option("--seconds", arguments->seconds, "How long [s]")->check(CLI::Range(0.1, 3600.0))->capture_default_str();
-  command->add_option("--force", arguments->force, "Pushes along the arm's z axis, through the gate [N]; nobody may wear it")
-      ->check(CLI::Range(-1.0, 1.0))
+  command->add_option("--force", arguments->force, "Pulls the arm to and fro, through the gate, so hard at most [N]; nobody may wear it")
+      ->check(CLI::Range(0.0, 0.5))
       ->capture_default_str();
   command->add_option("--watchdog", arguments->watchdog_ms, "So long may the program stall before forces are cut [ms]")
       ->check(CLI::Range(2.0, 100.0))
       ->capture_default_str();
   command->add_option("--devices", arguments->arms.devices, "Which kind; of falcon and haply one arm at a time")
-      ->check(CLI::IsMember({"usb", "falcon", "haply"}))
+      ->check(CLI::IsMember({"usb", "falcon", "haply", "weart"}))
       ->capture_default_str();
   command->add_option("--service", arguments->arms.which.service, "Where Haply's service is: HOST:PORT, or HOST:PORT:EVENTS")
       ->capture_default_str();
+  command->add_option("--pressure", arguments->arms.which.pressure, "Where WEART's Middleware is: HOST:PORT")
+      ->default_str("127.0.0.1:13031");
   command->add_option("--firmware", arguments->arms.which.firmware, "The Falcon's image, out of its maker's driver");
   command->add_flag("--silence", arguments->silence, "Of haply: when does the arm let go by itself, once commands end?");
-  command->add_flag("--yes", arguments->arms.yes, "Of falcon and haply: push without asking; nobody may hold the arm");
+  command->add_flag("--yes", arguments->arms.yes, "Push without asking; nobody may wear or hold the arm");
   command->footer("\nThe tactors move; without --force the arms don't.\n\nExample:\n  pincer devices test --seconds 10");
   command->callback([arguments, &exit_code] { exit_code = testDevices(*arguments); });
 }

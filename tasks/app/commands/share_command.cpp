@@ -6,23 +6,19 @@
 #include <memory>
 #include <optional>
 
-#include "pincer/contact/error.h"
-#include "pincer/contact/io/atomic_file.h"
 #include "pincer/contact/io/counted.h"
 #include "pincer/contact/io/printable.h"
 #include "pincer/tasks/app/app.h"
 #include "pincer/tasks/app/commands/commands.h"
+#include "pincer/tasks/app/commands/share_page.h"
 #include "pincer/tasks/app/interrupt.h"
 #include "pincer/tasks/app/print.h"
 #include "pincer/tasks/app/progress.h"
 #include "pincer/tasks/app/usage.h"
-#include "pincer/tasks/run/process/interrupted.h"
 #include "pincer/tasks/run/scene/builtin_scenes.h"
 #include "pincer/tasks/run/scene/scene_ranges.h"
 #include "pincer/tasks/run/scene/sim_run.h"
-#include "pincer/tasks/run/session/build_info.h"
 #include "pincer/tasks/share/share_scene.h"
-#include "pincer/tasks/share/share_session.h"
 #include "pincer/tasks/share/web_page.h"
 
 namespace pincer::tasks {
@@ -55,28 +51,6 @@ std::optional<std::string> sessionAt(const std::string& path) {
   return begin == kBegin ? std::optional(path) : std::nullopt;
 }
 
-std::string programText() {
-  SessionInfo info;
-  tellBuild(info);
-  return programOf(info);
-}
-
-int writePage(WebPage& page, const MeshTable& meshes, const std::string& out) {
-  page.made_by = programText();
-  const std::string html = htmlOf(page, meshes);
-  writeAtomically(out, html);
-  print("{}: {}, {:.2f} MB\n", printablePath(out), counted(static_cast<std::int64_t>(page.recordings.size()), "recording"),
-        1e-6 * static_cast<double>(html.size()));
-  if (html.size() > kLargestPage) {
-    print(
-        stderr,
-        "pincer: this is more than {:.0f} MB even with {:.0f} pictures a second. Share one trial (--trial), a shorter run (--duration), or "
-        "meshes of fewer triangles (pincer mesh simplify).\n",
-        1e-6 * static_cast<double>(kLargestPage), kFewestPictures);
-  }
-  return kExitOk;
-}
-
 int shareScene(const ShareArguments& arguments) {
   if (arguments.trial || arguments.other_version) {
     refuseUsage(fmt::format("share: --trial and --other-version are for sessions, and {} is a scene", printable(arguments.source)));
@@ -93,40 +67,20 @@ int shareScene(const ShareArguments& arguments) {
   Progress progress("share", simulation.scene().ticks());
   page.recordings.push_back(recordScene(simulation, name, meshes, interruptFlag(), [&](std::int64_t done) { progress.update(done); }));
   page.notes.push_back(fmt::format("state_hash {} after {}.", hashText(simulation.state().world), counted(simulation.ticks(), "tick")));
-  return writePage(page, meshes, arguments.out.empty() ? name + ".html" : arguments.out);
+  writePage(page, meshes, arguments.out.empty() ? name + ".html" : arguments.out);
+  return kExitOk;
 }
 
 int shareSession(const ShareArguments& arguments, const std::string& path) {
   if (arguments.scene.duration) refuseUsage("share: --duration is for scenes; a session is as long as it was");
   SessionReader session(path);
   session.heed(interruptFlag());
-  MeshTable meshes;
   ReplayOptions options;
   options.other_version = arguments.other_version;
   if (arguments.trial) options.trial = *arguments.trial - 1;
-  std::unique_ptr<Progress> line;
-  SharedSession shared = recordSession(session, options, meshes, interruptFlag(), [&](std::int64_t done, std::int64_t total) {
-    if (!line) line = std::make_unique<Progress>("trials", total);
-    line->update(done);
-  });
-  line.reset();
-  throwIf(interruptFlag());
-  if (shared.recordings.empty()) throw InputError(fmt::format("{}: no trial of it can be replayed.", printablePath(path)));
-  WebPage page;
-  page.title = arguments.title.empty() ? session.info().task : arguments.title;
-  page.recordings = std::move(shared.recordings);
-  for (const std::string& note : shared.replay.notes) page.notes.push_back(note);
-  const bool same = !shared.replay.first;
-  const std::string verdict =
-      same ? fmt::format("Replayed from its session and the same to the bit: {}, {}.", counted(shared.replay.trials, "trial"),
-                         counted(shared.replay.samples, "sample"))
-           : fmt::format("The replay differs from the session in trial {} at {:.3f} s ({}), and isn't what was recorded.",
-                         shared.replay.first->trial + 1, shared.replay.first->time, shared.replay.first->what);
-  page.notes.push_back(verdict);
-  if (!same) print(stderr, "pincer: {}\n", verdict);
   const std::string beside = (fs::path(path).parent_path() / "replay.html").string();
-  const int code = writePage(page, meshes, arguments.out.empty() ? beside : arguments.out);
-  return same ? code : kExitCheckFailed;
+  const SessionPage page = writeSessionPage(session, options, arguments.title, arguments.out.empty() ? beside : arguments.out);
+  return page.same ? kExitOk : kExitCheckFailed;
 }
 
 }  // namespace

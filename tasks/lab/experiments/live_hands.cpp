@@ -50,6 +50,9 @@ void LiveHands::apply(const std::vector<FingerOutputs>& outputs, Cue cue, double
     const FingerOutputs& output = outputs[static_cast<std::size_t>(i)];
     devices_.arm(i).commandForce(output.f_D);
     if (devices::TactileDisplay* display = devices_.display(i)) display->command(output.tactile);
+    // No force, no pressure: a gate that tripped ends both.
+    const double normal_force = output.f_D.isZero(0) ? 0 : trial_.scratch().fingers[static_cast<std::size_t>(i)].normal_force;
+    if (devices::PressureDisplay* pressure = devices_.pressure(i)) pressure->press(normal_force);
   }
 }
 
@@ -63,7 +66,10 @@ void LiveHands::readIntent() {
 }
 
 void LiveHands::stop() noexcept {
-  for (int i = 0; i < kHandFingers; ++i) devices_.arm(i).stop();
+  for (int i = 0; i < kHandFingers; ++i) {
+    devices_.arm(i).stop();
+    if (devices::PressureDisplay* pressure = devices_.pressure(i)) pressure->stop();
+  }
 }
 
 }  // namespace pincer::tasks

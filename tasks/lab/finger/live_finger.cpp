@@ -17,7 +17,12 @@ LiveFinger::LiveFinger(const FingerPlace& place, HandDevices& devices, AnswerBox
   devices_.arm(0).arm();
 }
 
-LiveFinger::~LiveFinger() { devices_.arm(0).stop(); }
+LiveFinger::~LiveFinger() { stop(); }
+
+void LiveFinger::stop() noexcept {
+  devices_.arm(0).stop();
+  if (devices::PressureDisplay* pressure = devices_.pressure(0)) pressure->stop();
+}
 
 // The servo's zero on the system's clock: the least over the ticks, because a tick may come late but never early.
 void LiveFinger::advanceTo(double now) {
@@ -38,6 +43,7 @@ const FingerInputs& LiveFinger::sample() {
 FingerDeed LiveFinger::apply(const FingerOutputs& outputs, Cue cue, double) {
   if (cue != Cue::kNone) devices_.sound(static_cast<DeviceTone>(static_cast<int>(cue) - 1));
   devices_.arm(0).commandForce(outputs.f_D);
+  if (devices::PressureDisplay* pressure = devices_.pressure(0)) pressure->press(outputs.f_D.norm());
   devices::TactileCommand command = outputs.tactile;
   if (!command.parked) command.place_L.x() = devices::transmitted(transmission_, command.place_L.x(), transmission_state_);
   if (devices::TactileDisplay* display = devices_.display(0)) display->command(command);

@@ -20,7 +20,7 @@ class LiveFinger final : public WornFinger {
   FingerDeed apply(const FingerOutputs& outputs, Cue cue, double now) override;
   void setTransmission(const devices::VirtualTransmission& transmission) override { transmission_ = transmission; }
   double tactorPlace() const override { return tactor_place_; }
-  void stop() noexcept override { devices_.arm(0).stop(); }
+  void stop() noexcept override;
 
  private:
   HandDevices& devices_;

@@ -47,18 +47,27 @@ std::string number(double value, double scale, int digits) {
   return std::isfinite(value) ? fmt::format("{:.{}f}", scale * value, digits) : "–";
 }
 
-std::string trialList(const std::vector<TrialRecord>& trials) {
+// The trial's number, which leads to where the page plays it.
+std::string trialCell(std::int64_t trial, const ReplayPage& replay) {
+  const auto found = std::find(replay.trials.begin(), replay.trials.end(), trial);
+  if (replay.name.empty() || found == replay.trials.end()) return fmt::format("<td>{}</td>", trial + 1);
+  return fmt::format("<td><a href=\"{}#shown={}\">{}</a></td>", escaped(replay.name), found - replay.trials.begin() + 1, trial + 1);
+}
+
+std::string trialList(const std::vector<TrialRecord>& trials, const ReplayPage& replay) {
   std::string html = "<h2>All trials</h2>\n<div class=\"wide\"><table>\n" +
                      htmlRow({"trial", "task", "participant", "condition", "µₛ", "outcome", "squeezes", "lifts", "tries > 5 mm", "time [s]",
                               "slips", "drops", "peak grip [N]", "grip ratio [-]", "offset [mm]", "error [deg]", "regrasps"},
                              "th");
   for (const TrialRecord& t : trials) {
     const auto text = [](std::int64_t n) { return std::to_string(n); };
-    html += htmlRow({text(t.trial + 1), t.training ? t.task + " (training)" : t.task, text(t.participant + 1), conditionLabel(t.condition),
-                     number(t.mu_s, 1, 2), t.outcome, text(t.squeezes), text(t.lifts), text(t.tries_5mm), number(t.duration, 1, 2),
-                     text(t.slips), text(t.drops), number(t.peak_grip, 1, 2), number(t.grip_ratio, 1, 2),
-                     number(t.offset_at_squeeze, 1e3, 1), number(t.error, 57.29577951308232, 1), text(t.regrasps)},
-                    "td", fmt::format(" id=\"trial-{}\"", t.trial + 1));
+    std::string row =
+        htmlRow({t.training ? t.task + " (training)" : t.task, text(t.participant + 1), conditionLabel(t.condition), number(t.mu_s, 1, 2),
+                 t.outcome, text(t.squeezes), text(t.lifts), text(t.tries_5mm), number(t.duration, 1, 2), text(t.slips), text(t.drops),
+                 number(t.peak_grip, 1, 2), number(t.grip_ratio, 1, 2), number(t.offset_at_squeeze, 1e3, 1),
+                 number(t.error, 57.29577951308232, 1), text(t.regrasps)},
+                "td", fmt::format(" id=\"trial-{}\"", t.trial + 1));
+    html += row.insert(row.find('>') + 1, trialCell(t.trial, replay));
   }
   return html +
          "</table></div>\n<p class=\"note\">Grip ratio: grip while held over the smallest that holds, m g / (2 µₛ). Offset: of the "
@@ -69,14 +78,15 @@ std::string trialList(const std::vector<TrialRecord>& trials) {
 }  // namespace
 
 std::string reportHtml(const SessionSummary& s, const std::vector<TrialRecord>& trials, const std::vector<Picture>& pictures,
-                       const std::string& figures_name, const std::string& devices) {
+                       const std::string& figures_name, const std::string& devices, const ReplayPage& replay) {
   const std::string title = fmt::format("{}, seed {}", s.info.task, s.info.seed);
   std::string html = htmlHead(title, s.warning);
   for (const std::string& words : findingWords(s)) html += fmt::format("<p class=\"finding\">{}</p>\n", escaped(words));
+  html += htmlReplay(replay);
   html += (s.cells.empty() ? "" : "<h2>Per condition and friction</h2>\n") + cellTable(s) + pairTable(s);
   for (const Picture& picture : pictures) html += htmlFigure(picture, figures_name);
   html += devices;
-  if (!trials.empty()) html += trialList(trials);
+  if (!trials.empty()) html += trialList(trials, replay);
   return html + htmlFoot(s.info, facts(s));
 }
 

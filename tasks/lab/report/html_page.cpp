@@ -195,6 +195,13 @@ std::string htmlSurvey(const std::vector<SurveyRecord>& answers) {
   return html + "</table></div>\n<p class=\"note\">People's own words and ratings, as they gave them; no test is made of them.</p>\n";
 }
 
+std::string htmlReplay(const ReplayPage& replay) {
+  if (replay.name.empty()) return "";
+  return fmt::format(
+      "<p><a href=\"{}\">Play the session</a> in three dimensions; the page needs this file beside it, and nothing else.</p>\n",
+      escaped(replay.name));
+}
+
 std::string htmlHead(const std::string& title, const std::string& warning) {
   std::string html = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "

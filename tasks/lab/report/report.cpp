@@ -82,7 +82,7 @@ ReportFiles writeReport(const SessionReader& session, const std::string& html_pa
   ReportFiles files;
   const std::string figures_name = plotAndWrite(pictures, html_path, options, files);
   const std::string more = htmlNotDrawn(files.not_drawn) + htmlSurvey(session.survey()) + deviceErrorsHtml(deviceErrors(session));
-  writeAtomically(html_path, reportHtml(summary, trials, pictures, figures_name, more));
+  writeAtomically(html_path, reportHtml(summary, trials, pictures, figures_name, more, options.replay));
   return files;
 }
 

@@ -6,6 +6,8 @@
 // Files appear whole or not at all and replace older ones. Needs gnuplot. Throws InputError (path or program, cause, remedy). A session
 // that was killed or aborted gets its report too; it says so at the top.
 #pragma once
+#include <atomic>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -14,9 +16,16 @@
 
 namespace pincer::tasks {
 
+// A page that plays the session (tasks/share), for links to it.
+struct ReplayPage {
+  std::string name;                  // as an address, relative to the report; empty: there is none
+  std::vector<std::int64_t> trials;  // which trial each of its recordings is, from 0
+};
+
 struct ReportOptions {
   std::string gnuplot = "gnuplot";                 // the plotting program, a name in PATH or a path
   const std::atomic<bool>* interrupted = nullptr;  // ends the report with Interrupted; null: never
+  ReplayPage replay = {};
 };
 
 struct ReportFiles {
@@ -41,6 +50,6 @@ std::string plotAndWrite(std::vector<Picture>& pictures, const std::string& html
 
 // The page itself. `figures_name`: the figures' directory relative to the page; `devices`: HTML of what the devices did.
 std::string reportHtml(const SessionSummary& summary, const std::vector<TrialRecord>& trials, const std::vector<Picture>& pictures,
-                       const std::string& figures_name, const std::string& devices = "");
+                       const std::string& figures_name, const std::string& devices = "", const ReplayPage& replay = {});
 
 }  // namespace pincer::tasks

@@ -45,9 +45,10 @@ std::string studyFacts(const StudySummary& s) {
 }
 
 std::string studyHtml(const StudySummary& s, const std::vector<Picture>& pictures, const std::string& figures_name,
-                      const std::string& errors) {
+                      const std::string& errors, const ReplayPage& replay) {
   std::string html = htmlHead(fmt::format("{}, seed {}", s.info.task, s.info.seed), s.warning);
   html += fmt::format("<p class=\"finding\">{}</p>\n", escaped(studyFinding(s)));
+  html += htmlReplay(replay);
   html += "<h2>Per condition</h2>\n<div class=\"wide\"><table>\n" + htmlRow(studyTableHeads(s), "th");
   for (const StudyCondition& c : s.conditions) html += htmlRowOfIntervals(studyTableRow(s, c));
   html += fmt::format("</table></div>\n<p class=\"note\">{}</p>\n", escaped(studyNote(s)));
@@ -65,7 +66,7 @@ ReportFiles writeStudyReport(const SessionReader& session, const std::string& ht
   ReportFiles files;
   const std::string figures_name = plotAndWrite(pictures, html_path, options, files);
   const std::string more = htmlNotDrawn(files.not_drawn) + htmlSurvey(session.survey()) + deviceErrorsHtml(deviceErrors(session));
-  writeAtomically(html_path, studyHtml(summary, pictures, figures_name, more));
+  writeAtomically(html_path, studyHtml(summary, pictures, figures_name, more, options.replay));
   return files;
 }
 

@@ -20,6 +20,8 @@ class ChildProcess {
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
 
+  pid_t process() const { return child_; }
+
   // Waits for its end. Returns its exit code, or 128 + the signal that ended it. Throws Interrupted once `interrupted` says so.
   int wait(const std::function<bool()>& interrupted);
   // Waits for its next line, without the line's end. False: it has no more to say. Throws Interrupted.

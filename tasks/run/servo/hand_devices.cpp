@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <utility>
 
 #include "pincer/contact/error.h"
 #include "pincer/tasks/run/servo/hand_devices_parts.h"
@@ -21,7 +22,9 @@ bool hasMotors(DeviceChoice choice) {
   return choice == DeviceChoice::kUsb || choice == DeviceChoice::kFalcon || choice == DeviceChoice::kHaply;
 }
 
-std::unique_ptr<HandDevices> openHandDevices(const DeviceOptions& options) {
+namespace {
+
+std::unique_ptr<HandDevices> openArms(const DeviceOptions& options) {
   switch (options.choice) {
     case DeviceChoice::kUsb:
       return openUsbHand(options);
@@ -37,6 +40,13 @@ std::unique_ptr<HandDevices> openHandDevices(const DeviceOptions& options) {
       return openReplayHand(options);
   }
   throw DeviceError("unknown devices");
+}
+
+}  // namespace
+
+std::unique_ptr<HandDevices> openHandDevices(const DeviceOptions& options) {
+  auto hand = openArms(options);
+  return options.pressure.empty() ? std::move(hand) : openPressedHand(std::move(hand), options);
 }
 
 }  // namespace pincer::tasks

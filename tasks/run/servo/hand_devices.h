@@ -10,6 +10,7 @@
 
 #include "pincer/devices/arm/arm.h"
 #include "pincer/devices/cld/tactile_display.h"
+#include "pincer/devices/weart/pressure_display.h"
 #include "pincer/tasks/run/servo/device_calibration.h"
 
 namespace pincer::tasks {
@@ -32,6 +33,8 @@ class HandDevices {
   virtual devices::Arm& arm(int finger) = 0;
   // Null where the finger wears none.
   virtual devices::TactileDisplay* display(int finger) = 0;
+  // Likewise; beside a tactile display or without.
+  virtual devices::PressureDisplay* pressure(int) { return nullptr; }
   // The zero of the samples' times, on the system's monotonic clock [ns].
   virtual void setEpoch(std::int64_t ns) = 0;
   // Moves what has no clock of its own to `now` [s since the epoch].
@@ -65,6 +68,9 @@ struct DeviceOptions {
   std::vector<std::string> grips;           // haply: ids of VerseGrips, per finger; empty: the finger's turn isn't measured
   std::string service = "127.0.0.1:10001";  // haply: where its service is, HOST:PORT or HOST:PORT:EVENTS
   std::optional<double> force_gate;         // haply: gain of its force gate; absent: left as it is
+  std::string pressure;                     // HOST:PORT of WEART's Middleware, whose TouchDIVER the fingers wear besides; empty: none
+  std::string pressure_hand = "right";      // which it is on: right or left
+  double full_pressure = 5;                 // force of its highest level [N]
 };
 
 // Throws DeviceError. `kSim` and `kMouse` aren't opened here: a simulated participant brings its own devices, the mouse belongs to the viewer.

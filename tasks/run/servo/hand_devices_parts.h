@@ -21,5 +21,7 @@ std::unique_ptr<HandDevices> openUsbHand(const DeviceOptions& options);
 std::unique_ptr<HandDevices> openFalconHand(const DeviceOptions& options);
 std::unique_ptr<HandDevices> openHaplyHand(const DeviceOptions& options);
 std::unique_ptr<HandDevices> openReplayHand(const DeviceOptions& options);
+// The same hand with a TouchDIVER besides.
+std::unique_ptr<HandDevices> openPressedHand(std::unique_ptr<HandDevices> hand, const DeviceOptions& options);
 
 }  // namespace pincer::tasks

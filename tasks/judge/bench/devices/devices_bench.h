@@ -21,6 +21,7 @@ std::vector<Measurement> displayMeasurements();                                 
 std::vector<Measurement> armMeasurements();                                      // the simulated arm
 std::vector<Measurement> gateMeasurements();                                     // the limiter
 std::vector<Measurement> haplyMeasurements(const DevicesBenchOptions& options);  // Inverse3 over the emulated service
+std::vector<Measurement> weartMeasurements();                                    // TouchDIVER over the emulated Middleware
 std::vector<Measurement> usbMeasurements(const DevicesBenchOptions& options);
 
 }  // namespace pincer::tasks

@@ -120,7 +120,8 @@ double msAfterSigstop(MeasureContext& context) {
                                          "--seconds",
                                          "1.5",
                                          "--force",
-                                         "0.3"};
+                                         "0.3",
+                                         "--yes"};
   eachLine(command, context,
            [&](const std::string& line) { std::sscanf(line.c_str(), "stopped: every motor without force after %lf ms", &ms); });
   return ms;

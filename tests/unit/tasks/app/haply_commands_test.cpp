@@ -1,12 +1,16 @@
 // The program with Haply's service, emulated in this process: list, test, calibrate, and a whole session that replays to the bit.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
+#include <numbers>
 #include <optional>
 
 #include "pincer/contact/error.h"
 #include "pincer/devices/emulate/haply_server.h"
 #include "pincer/tasks/lab/experiments/haply_wearer.h"
+#include "pincer/tasks/lab/experiments/pickup_object.h"
+#include "pincer/tasks/lab/experiments/pickup_scene.h"
 #include "pincer/tasks/run/servo/arm_check.h"
 #include "pincer/tasks/run/servo/haply_calibration.h"
 #include "pincer/tests/support/error_of.h"
@@ -74,6 +78,36 @@ TEST(HaplyCommands, CalibrateWritesWhereAnArmStandsToAFile) {
   EXPECT_EQ(
       runPincer({"devices", "calibrate", "049D", "--devices", "haply", "--set", "peak_force=9", "--set", "idle_after=0.05"}).exit_code, 3);
   EXPECT_EQ(runPincer({"devices", "calibrate", "049D", "--here"}).exit_code, 2);
+}
+
+// The emulated hands hold both knobs, 30 mm apart, at one place after another; the thumb's arm stands 20 mm and 8 degrees off.
+TEST(HaplyCommands, TouchFindsWhereTheSecondArmStands) {
+  const TemporaryDirectory folder;
+  const tasks::SpherePickupOptions options;
+  const tasks::HandScene scene = tasks::makePickupScene(options, tasks::makePickupObject(options), tasks::PickupTrialSpec{});
+  const Pose X_WA = scene.model.mounts[0].X_WD, nominal = scene.model.mounts[1].X_WD;
+  const double turn = 8 * std::numbers::pi / 180;
+  const Pose X_WB{quatFromRotationVector({0, 0, turn}) * nominal.q, nominal.p + Vec3(0.012, -0.016, 0.004)};
+  const Vec3 middle_W = 0.5 * (X_WA.p + X_WB.p);
+  double time = 0;
+  HaplyServer server({}, 0, 0, [&](HaplyService& service) {
+    const double k = std::floor((time += 1e-3) / 0.6);
+    const Vec3 direction = Vec3(std::sin(2 * k), std::cos(3 * k), std::sin(5 * k + 1)).normalized();
+    const Vec3 place_W = middle_W + 0.03 * Vec3(std::sin(1.1 * k), std::sin(1.7 * k + 1), std::sin(2.3 * k + 2));
+    const auto hold = [&](std::size_t arm, const Pose& X_WD, const Vec3& p_W) {
+      service.plant(arm).arm().setHand({.p_D = X_WD.inverse() * p_W, .stiffness = 4000, .damping = 40, .mass = 0.07});
+    };
+    hold(0, X_WA, place_W + 0.015 * direction);
+    hold(1, X_WB, place_W - 0.015 * direction);
+  });
+  const AppResult touch = runPincer(
+      {"devices", "calibrate", "049D,04BA", "--devices", "haply", "--touch", "--save", folder / "B.json", "--service", server.place()});
+  ASSERT_EQ(touch.exit_code, 0) << touch.out << touch.error;
+  const tasks::ArmBase base = tasks::armBaseIn(tasks::readCalibration(folder / "B.json"));
+  EXPECT_LT((base.offset_W - Vec3(0.012, -0.016, 0.004)).norm(), 0.5e-3) << touch.out;
+  EXPECT_NEAR(base.turn, turn, 0.2 * std::numbers::pi / 180) << touch.out;
+  EXPECT_EQ(runPincer({"devices", "calibrate", "049D", "--devices", "haply", "--touch"}).exit_code, 2);
+  EXPECT_EQ(runPincer({"devices", "calibrate", "A,B", "--touch"}).exit_code, 2);
 }
 
 TEST(HaplyCalibration, AllowsMoreForceOnlyOnceTheArmsOwnDeadlineWasMeasured) {

@@ -67,7 +67,20 @@ TEST(Report, HoldsTheTableAndEveryFigureAndNeedsNothingElse) {
     EXPECT_TRUE(has(html, fact)) << fact;
   }
   EXPECT_FALSE(has(html, "class=\"warning\""));
+  EXPECT_FALSE(has(html, "Play the session")) << "nobody made such a page";
   expectLinksToTrials(html, 3);  // two conditions, two figures where the tactors moved
+}
+
+TEST(Report, LeadsFromEachTrialToWhereAPagePlaysIt) {
+  const TemporaryDirectory dir;
+  writeSession(dir / "a.db");
+  const std::string html =
+      readFile(writeReport(SessionReader(dir / "a.db"), dir / "r.html", {.replay = {.name = "a & b.html", .trials = {1, 4}}}).html);
+  EXPECT_TRUE(has(html, "<a href=\"a &amp; b.html\">Play the session</a>"));
+  EXPECT_TRUE(has(html, "<tr id=\"trial-2\"><td><a href=\"a &amp; b.html#shown=1\">2</a></td>"));
+  EXPECT_TRUE(has(html, "<tr id=\"trial-5\"><td><a href=\"a &amp; b.html#shown=2\">5</a></td>"));
+  EXPECT_TRUE(has(html, "<tr id=\"trial-1\"><td>1</td>")) << "the page doesn't have it";
+  EXPECT_EQ(count(html, "#shown="), 2);
 }
 
 TEST(Report, SaysThatTheSessionWasNotCompleted) {

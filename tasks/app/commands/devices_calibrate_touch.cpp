@@ -1,0 +1,155 @@
+// devices calibrate A,B --touch: where the second Inverse3 stands beside the first, from handles that are held together.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <numbers>
+#include <stdexcept>
+#include <vector>
+
+#include "pincer/contact/error.h"
+#include "pincer/devices/haply/haply_host.h"
+#include "pincer/tasks/app/app.h"
+#include "pincer/tasks/app/commands/devices_calibrate.h"
+#include "pincer/tasks/app/interrupt.h"
+#include "pincer/tasks/app/print.h"
+#include "pincer/tasks/app/usage.h"
+#include "pincer/tasks/lab/experiments/pickup_object.h"
+#include "pincer/tasks/lab/experiments/pickup_scene.h"
+#include "pincer/tasks/run/servo/hand_devices_parts.h"
+#include "pincer/tasks/run/servo/haply_calibration.h"
+#include "pincer/tasks/run/servo/touch_calibration.h"
+
+namespace pincer::tasks {
+namespace {
+
+using devices::haply::HaplyHost;
+
+constexpr std::size_t kTouches = 12;
+constexpr double kTogether = 1e-3;    // both handles within so much [m]
+constexpr int kStillTicks = 300;      // [ms]
+constexpr double kFarther = 0.015;    // from every place before [m]
+constexpr int kNextWithin = 120'000;  // for the next place [ms]
+
+// Takes a place whenever both handles rest where they haven't rested before: both hands are busy holding them.
+class TouchTaker {
+ public:
+  TouchTaker(const Pose& X_WA, const Pose& X_WB) : X_WA_(X_WA), X_WB_(X_WB) {}
+
+  // True if there is one more.
+  bool take(const Vec3& p_A, const Vec3& p_B) {
+    const HandleTouch now{X_WA_ * p_A, X_WB_ * p_B};
+    const bool moves = ticks_ == 0 || (now.a_W - first_.a_W).norm() > kTogether || (now.b_W - first_.b_W).norm() > kTogether;
+    if (moves) {
+      first_ = now;
+      sum_ = {Vec3::Zero(), Vec3::Zero()};
+      ticks_ = 0;
+    }
+    sum_.a_W += now.a_W;
+    sum_.b_W += now.b_W;
+    if (++ticks_ < kStillTicks || !isNew(now)) return false;
+    touches_.push_back({sum_.a_W / ticks_, sum_.b_W / ticks_});
+    return true;
+  }
+  const std::vector<HandleTouch>& touches() const { return touches_; }
+
+ private:
+  bool isNew(const HandleTouch& now) const {
+    return std::none_of(touches_.begin(), touches_.end(), [&](const HandleTouch& t) { return (t.a_W - now.a_W).norm() < kFarther; });
+  }
+  Pose X_WA_, X_WB_;
+  HandleTouch first_, sum_;
+  int ticks_ = 0;
+  std::vector<HandleTouch> touches_;
+};
+
+std::vector<std::string> idsIn(const std::string& serials) {
+  const std::size_t comma = serials.find(',');
+  if (comma == std::string::npos) refuseUsage("--touch is of two Inverse3: pincer devices calibrate INDEX,THUMB --devices haply --touch");
+  return {serials.substr(0, comma), serials.substr(comma + 1)};
+}
+
+DeviceCalibration calibrationOf(const std::string& id, const std::vector<std::string>& files) {
+  for (const std::string& path : files) {
+    if (DeviceCalibration calibration = readCalibration(path); calibration.serial == id) return calibration;
+  }
+  return uncalibratedHaply(id);
+}
+
+std::vector<HandleTouch> takeTouches(HaplyHost& host, const Pose& X_WA, const Pose& X_WB) {
+  TouchTaker taker(X_WA, X_WB);
+  for (int waited = 0; taker.touches().size() < kTouches; ++waited) {
+    if (interruptFlag()) return {};
+    if (waited > kNextWithin)
+      throw DeviceError(fmt::format("No new place came within {} s: only {} of {}.", kNextWithin / 1000, taker.touches().size(), kTouches));
+    const devices::ArmSample a = host.arm(0).sample(), b = host.arm(1).sample();
+    if (!a.valid || !b.valid) throw DeviceError("An Inverse3 is lost. " + host.complaint());
+    if (taker.take(a.p_DF, b.p_DF)) {
+      print("Place {} of {}. Go on to another, at least {:.0f} mm away.\n", taker.touches().size(), kTouches, 1e3 * kFarther);
+      std::fflush(stdout);
+      waited = 0;
+    }
+    waitUntil([] { return false; }, 1e-3);
+  }
+  return taker.touches();
+}
+
+void keepBase(const TouchFinding& found, DeviceCalibration& calibration) {
+  calibration.values["base_x"] = found.base.offset_W.x();
+  calibration.values["base_y"] = found.base.offset_W.y();
+  calibration.values["base_z"] = found.base.offset_W.z();
+  calibration.values["base_turn"] = found.base.turn;
+}
+
+int touchWith(HaplyHost& host, const CalibrateArguments& arguments, const ArmBase& base_of_A, DeviceCalibration& calibration) {
+  host.waitReady(10);
+  const SpherePickupOptions options;
+  const HandScene scene = makePickupScene(options, makePickupObject(options), PickupTrialSpec{});
+  const Pose& X_WD = scene.model.mounts[0].X_WD;
+  const Pose X_WA{quatFromRotationVector({0, 0, base_of_A.turn}) * X_WD.q, X_WD.p + base_of_A.offset_W};
+  print(
+      "Hold the two knobs together, still, at {} places all over the workspace. At each turn the pair differently: side by side, one\n"
+      "above the other, one before the other. Forces are off.\n",
+      kTouches);
+  std::fflush(stdout);
+  const std::vector<HandleTouch> touches = takeTouches(host, X_WA, scene.model.mounts[1].X_WD);
+  if (interruptFlag()) return kExitInterrupted;
+  const TouchFinding found = findBase(touches, scene.model.mounts[1].X_WD.p);
+  constexpr double kDegree = std::numbers::pi / 180;
+  print("knobs {:.1f} mm apart; the places fit within {:.2f} mm (rms), the worst, {}, within {:.2f} mm\n", 1e3 * found.distance,
+        1e3 * found.residual, found.worst + 1, 1e3 * found.worst_error);
+  print("sure of the offset within {:.2f} mm, of the turn within {:.2f} degrees\n", 1e3 * found.sure_offset, found.sure_turn / kDegree);
+  keepBase(found, calibration);
+  for (const char* name : {"base_x", "base_y", "base_z", "base_turn"}) print("{:<20} {:.6f}\n", name, calibration.values[name]);
+  if (const std::string odd = touchOddity(found); !odd.empty()) {
+    print("{}\n", odd);
+    return kExitDevice;
+  }
+  if (!arguments.save.empty()) writeCalibration(calibration, arguments.save);
+  return kExitOk;
+}
+
+}  // namespace
+
+int calibrateByTouch(const CalibrateArguments& arguments) {
+  if (arguments.devices != "haply" || arguments.here || !arguments.align.empty() || !arguments.set.empty() || !arguments.load.empty())
+    refuseUsage(
+        "--touch stands alone: pincer devices calibrate INDEX,THUMB --devices haply --touch --calibration A.json,B.json --save B.json");
+  const std::vector<std::string> ids = idsIn(arguments.serial);
+  const DeviceCalibration first = calibrationOf(ids[0], arguments.calibrations);
+  DeviceCalibration second = calibrationOf(ids[1], arguments.calibrations);
+  const auto place = devices::haply::servicePlaceOf(arguments.service);
+  if (!place) refuseUsage(fmt::format("--service {}: it isn't HOST:PORT or HOST:PORT:EVENTS on this computer", arguments.service));
+  try {
+    HaplyHost host({.service = *place, .arms = {haplyArmOf(first, ""), haplyArmOf(second, "")}});
+    return touchWith(host, arguments, armBaseIn(first), second);
+  } catch (const DeviceError&) {
+    throw;
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::runtime_error& error) {
+    throw DeviceError(error.what());
+  }
+}
+
+}  // namespace pincer::tasks
