@@ -125,9 +125,19 @@ class WatchdogThread {
   std::thread thread_;
 };
 
+// Forces are cut where the exception is met, before the watchdog's thread is waited for, which takes up to kLook.
+bool tickOrCut(ServoCycle& cycle, double now) {
+  try {
+    return cycle.tick(now);
+  } catch (...) {
+    cycle.cutForces();
+    throw;
+  }
+}
+
 bool timedTick(ServoCycle& cycle, double now, ServoReport& report) {
   const std::int64_t start = nowNs();
-  const bool more = cycle.tick(now);
+  const bool more = tickOrCut(cycle, now);
   report.duration.add(1e-9 * static_cast<double>(nowNs() - start));
   ++report.ticks;
   return more;
@@ -191,7 +201,7 @@ ServoReport runServo(const ServoOptions& options, ServoCycle& cycle, const std::
     const auto run = options.clock == ServoClock::kVirtual ? runVirtual : runByTheClock;
     report.interrupted = run(options, cycle, interrupted, report);
   } catch (...) {
-    cycle.cutForces();
+    cycle.cutForces();  // for a failure between ticks too; after a tick's it changes nothing
     throw;
   }
   report.wall = 1e-9 * static_cast<double>(nowNs() - start);
