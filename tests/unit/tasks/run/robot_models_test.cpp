@@ -16,7 +16,7 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr int kTicks = 1000;
+constexpr int kModelTicks = 1000;
 constexpr double kEvery = 0.2, kLast = 10;  // [s]: when targets change
 
 // Each drive is told something new of its range five times a second, or up to one unit where it has none.
@@ -45,14 +45,14 @@ TEST_P(RobotModels, StaySolvedAndFiniteWhateverTheirDrivesAreTold) {
   tellAtRandom(scene);
   Simulation sim(std::move(scene));
   int unsolved = 0;
-  for (int n = 0; n < kTicks; ++n) {
+  for (int n = 0; n < kModelTicks; ++n) {
     const std::uint32_t status = sim.tick().status;
     unsolved += (status & engine::kSolverNotConverged) != 0;
     ASSERT_EQ(status & ~engine::kSolverNotConverged, 0u) << "tick " << n;
     for (const engine::BodyState& body : sim.state().world.bodies) ASSERT_TRUE(body.X_WI.p.allFinite() && body.v_W.allFinite());
   }
   // Parts that stops and drives press against each other may contradict each other (docs/robots.md).
-  EXPECT_LE(unsolved, kTicks / 100);
+  EXPECT_LE(unsolved, kModelTicks / 100);
 }
 
 INSTANTIATE_TEST_SUITE_P(Menagerie, RobotModels,
