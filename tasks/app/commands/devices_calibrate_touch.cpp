@@ -26,29 +26,33 @@ namespace {
 using devices::haply::HaplyHost;
 
 constexpr std::size_t kTouches = 12;
-constexpr double kTogether = 1e-3;    // both handles within so much [m]
-constexpr int kStillTicks = 300;      // [ms]
-constexpr double kFarther = 0.015;    // from every place before [m]
-constexpr int kNextWithin = 120'000;  // for the next place [ms]
+constexpr double kTogether = 1e-3;   // both handles within so much [m]
+constexpr double kStill = 0.3;       // for so long [s]
+constexpr int kFewestSamples = 30;   // in that time
+constexpr double kFarther = 0.015;   // from every place before [m]
+constexpr double kNextWithin = 120;  // for the next place [s]
+
+double secondsNow() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 // Takes a place whenever both handles rest where they haven't rested before: both hands are busy holding them.
 class TouchTaker {
  public:
   TouchTaker(const Pose& X_WA, const Pose& X_WB) : X_WA_(X_WA), X_WB_(X_WB) {}
 
-  // True if there is one more.
-  bool take(const Vec3& p_A, const Vec3& p_B) {
+  // True if there is one more. `time` [s] by any clock: on a busy machine samples come late.
+  bool take(const Vec3& p_A, const Vec3& p_B, double time) {
     const HandleTouch now{X_WA_ * p_A, X_WB_ * p_B};
-    const bool moves = ticks_ == 0 || (now.a_W - first_.a_W).norm() > kTogether || (now.b_W - first_.b_W).norm() > kTogether;
+    const bool moves = samples_ == 0 || (now.a_W - first_.a_W).norm() > kTogether || (now.b_W - first_.b_W).norm() > kTogether;
     if (moves) {
       first_ = now;
       sum_ = {Vec3::Zero(), Vec3::Zero()};
-      ticks_ = 0;
+      since_ = time;
+      samples_ = 0;
     }
     sum_.a_W += now.a_W;
     sum_.b_W += now.b_W;
-    if (++ticks_ < kStillTicks || !isNew(now)) return false;
-    touches_.push_back({sum_.a_W / ticks_, sum_.b_W / ticks_});
+    if (++samples_ < kFewestSamples || time - since_ < kStill || !isNew(now)) return false;
+    touches_.push_back({sum_.a_W / samples_, sum_.b_W / samples_});
     return true;
   }
   const std::vector<HandleTouch>& touches() const { return touches_; }
@@ -59,7 +63,8 @@ class TouchTaker {
   }
   Pose X_WA_, X_WB_;
   HandleTouch first_, sum_;
-  int ticks_ = 0;
+  double since_ = 0;
+  int samples_ = 0;
   std::vector<HandleTouch> touches_;
 };
 
@@ -78,16 +83,18 @@ DeviceCalibration calibrationOf(const std::string& id, const std::vector<std::st
 
 std::vector<HandleTouch> takeTouches(HaplyHost& host, const Pose& X_WA, const Pose& X_WB) {
   TouchTaker taker(X_WA, X_WB);
-  for (int waited = 0; taker.touches().size() < kTouches; ++waited) {
+  double last = secondsNow();
+  while (taker.touches().size() < kTouches) {
     if (interruptFlag()) return {};
-    if (waited > kNextWithin)
-      throw DeviceError(fmt::format("No new place came within {} s: only {} of {}.", kNextWithin / 1000, taker.touches().size(), kTouches));
+    const double time = secondsNow();
+    if (time - last > kNextWithin)
+      throw DeviceError(fmt::format("No new place came within {:.0f} s: only {} of {}.", kNextWithin, taker.touches().size(), kTouches));
     const devices::ArmSample a = host.arm(0).sample(), b = host.arm(1).sample();
     if (!a.valid || !b.valid) throw DeviceError("An Inverse3 is lost. " + host.complaint());
-    if (taker.take(a.p_DF, b.p_DF)) {
+    if (taker.take(a.p_DF, b.p_DF, time)) {
       print("Place {} of {}. Go on to another, at least {:.0f} mm away.\n", taker.touches().size(), kTouches, 1e3 * kFarther);
       std::fflush(stdout);
-      waited = 0;
+      last = time;
     }
     waitUntil([] { return false; }, 1e-3);
   }

@@ -80,7 +80,7 @@ TEST(HaplyCommands, CalibrateWritesWhereAnArmStandsToAFile) {
   EXPECT_EQ(runPincer({"devices", "calibrate", "049D", "--here"}).exit_code, 2);
 }
 
-// The emulated hands hold both knobs, 30 mm apart, at one place after another; the thumb's arm stands 20 mm and 8 degrees off.
+// The emulated hands hold both knobs, 30 mm apart, at one place after another, all within reach; the thumb's arm stands 20 mm and 8 degrees off.
 TEST(HaplyCommands, TouchFindsWhereTheSecondArmStands) {
   const TemporaryDirectory folder;
   const tasks::SpherePickupOptions options;
@@ -93,7 +93,7 @@ TEST(HaplyCommands, TouchFindsWhereTheSecondArmStands) {
   HaplyServer server({}, 0, 0, [&](HaplyService& service) {
     const double k = std::floor((time += 1e-3) / 0.6);
     const Vec3 direction = Vec3(std::sin(2 * k), std::cos(3 * k), std::sin(5 * k + 1)).normalized();
-    const Vec3 place_W = middle_W + 0.03 * Vec3(std::sin(1.1 * k), std::sin(1.7 * k + 1), std::sin(2.3 * k + 2));
+    const Vec3 place_W = middle_W + 0.02 * Vec3(std::sin(1.1 * k), std::sin(1.7 * k + 1), std::sin(2.3 * k + 2));
     const auto hold = [&](std::size_t arm, const Pose& X_WD, const Vec3& p_W) {
       service.plant(arm).arm().setHand({.p_D = X_WD.inverse() * p_W, .stiffness = 4000, .damping = 40, .mass = 0.07});
     };
