@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 #include "pincer/contact/error.h"
 
@@ -93,23 +94,41 @@ class Fit {
   Vec3 centre_;
 };
 
+// The best of several turns to start from.
+Unknowns bestOf(const Fit& fit) {
+  Unknowns best = fit.solved(fit.from(0));
+  for (const double psi : kStartTurns) {
+    const Unknowns x = fit.solved(fit.from(psi));
+    if (x[4] > 0 && (best[4] <= 0 || fit.squares(x) < fit.squares(best))) best = x;
+  }
+  return best;
+}
+
+// The place without which the others fit best, and how far it is from their fit. (The largest error of a common fit may be a sound place's.)
+void findWorst(std::span<const HandleTouch> touches, const Vec3& reset_B_W, TouchFinding& found) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < touches.size(); ++i) {
+    std::vector<HandleTouch> others(touches.begin(), touches.end());
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+    const Fit fit(others, reset_B_W);
+    const Unknowns x = bestOf(fit);
+    if (fit.squares(x) >= least) continue;
+    least = fit.squares(x);
+    found.worst = i;
+    found.worst_error = std::abs(fit.errorAt(x, touches[i]));
+  }
+}
+
 }  // namespace
 
 TouchFinding findBase(std::span<const HandleTouch> touches, const Vec3& reset_B_W) {
   if (touches.size() < kFewestTouches)
     throw InputError(fmt::format("{} places are too few: hold the handles together at {} or more.", touches.size(), kFewestTouches));
   const Fit fit(touches, reset_B_W);
-  Unknowns best = fit.solved(fit.from(0));
-  for (const double psi : kStartTurns) {
-    const Unknowns x = fit.solved(fit.from(psi));
-    if (x[4] > 0 && (best[4] <= 0 || fit.squares(x) < fit.squares(best))) best = x;
-  }
+  const Unknowns best = bestOf(fit);
   TouchFinding found{{best.segment<3>(1), best[0]}, best[4]};
   found.residual = std::sqrt(fit.squares(best) / static_cast<double>(touches.size()));
-  for (std::size_t i = 0; i < touches.size(); ++i) {
-    const double error = std::abs(fit.errorAt(best, touches[i]));
-    if (error > found.worst_error) found.worst = i, found.worst_error = error;
-  }
+  findWorst(touches, reset_B_W, found);
   Unknowns unused;
   const Normal inverse = (fit.normal(best, unused) + 1e-12 * Normal::Identity()).ldlt().solve(Normal::Identity());
   constexpr double kSmallest = 20e-6;  // of an encoder's steps: a fit that is better than they are is luck [m]

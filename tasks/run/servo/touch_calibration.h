@@ -24,8 +24,8 @@ struct TouchFinding {
   ArmBase base;            // of B
   double distance = 0;     // d [m]
   double residual = 0;     // rms of | .. | - d [m]
-  std::size_t worst = 0;   // the place that fits worst
-  double worst_error = 0;  // of it [m]
+  std::size_t worst = 0;   // the place without which the others fit best
+  double worst_error = 0;  // | .. | - d of it, by the others' fit [m]
   double sure_offset = 0;  // standard errors, from the residual: of t, the longest of its axes [m]
   double sure_turn = 0;    // of psi [rad]
 };

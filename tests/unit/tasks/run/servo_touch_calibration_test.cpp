@@ -1,4 +1,5 @@
 // Where an arm stands, from handles that are held together.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -30,10 +31,10 @@ Vec3 aboutVertical(double psi, const Vec3& v) {
 std::vector<HandleTouch> touchesOf(const Truth& truth, std::size_t count, double noise, std::mt19937_64& random) {
   std::uniform_real_distribution<double> within(-1, 1);
   std::normal_distribution<double> normal;
-  const auto any = [&] { return Vec3(within(random), within(random), within(random)); };
+  const auto any = [&] { return Vec3{within(random), within(random), within(random)}; };  // braces: from left to right
   std::vector<HandleTouch> touches;
   for (std::size_t i = 0; i < count; ++i) {
-    const Vec3 a_W = 0.06 * any(), b_W = a_W - truth.distance * Vec3(normal(random), normal(random), normal(random)).normalized();
+    const Vec3 a_W = 0.06 * any(), b_W = a_W - truth.distance * Vec3{normal(random), normal(random), normal(random)}.normalized();
     const Vec3 told_W = truth.reset_W + aboutVertical(-truth.base.turn, b_W - truth.reset_W - truth.base.offset_W);
     touches.push_back({a_W + noise * any(), told_W + noise * any()});
   }
@@ -43,7 +44,7 @@ std::vector<HandleTouch> touchesOf(const Truth& truth, std::size_t count, double
 Truth someTruth(std::mt19937_64& random) {
   std::uniform_real_distribution<double> within(-1, 1);
   Truth truth;
-  truth.base = {0.05 * Vec3(within(random), within(random), within(random)), 29 * kDegree * within(random)};
+  truth.base = {0.05 * Vec3{within(random), within(random), within(random)}, 29 * kDegree * within(random)};
   truth.distance = 0.03 + 0.01 * within(random);
   return truth;
 }
@@ -81,10 +82,13 @@ TEST(TouchCalibration, SaysWhatThePlacesDoNotTell) {
   const Truth truth;
   std::vector<HandleTouch> touches = touchesOf(truth, 12, 0, random);
   EXPECT_EQ(touchOddity(findBase(touches, truth.reset_W)), "");
-  touches[4].b_W.z() += 0.02;
-  const TouchFinding odd = findBase(touches, truth.reset_W);
-  EXPECT_EQ(odd.worst, 4u);
-  EXPECT_TRUE(tests::contains(touchOddity(odd), "place 5")) << touchOddity(odd);
+  for (std::size_t i = 0; i < touches.size(); ++i) {
+    std::vector<HandleTouch> one_off = touches;
+    one_off[i].b_W += 0.02 * (touches[i].b_W - touches[i].a_W).normalized();
+    const TouchFinding odd = findBase(one_off, truth.reset_W);
+    EXPECT_EQ(odd.worst, i);
+    EXPECT_TRUE(tests::contains(touchOddity(odd), fmt::format("place {} by", i + 1))) << touchOddity(odd);
+  }
   std::vector<HandleTouch> alike;  // always side by side in the same way: distance and offset can't be told apart
   for (int i = 0; i < 12; ++i) {
     const Vec3 a_W(0.05 * std::sin(i), 0.05 * std::cos(2 * i), 0.01 * i);
