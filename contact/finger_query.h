@@ -27,7 +27,7 @@ struct CoreTracker {
   bool warm = false;  // there was a query
 };
 
-// What a finger that isn't a sphere remembers from query to query; a plain value, like SurfaceTracker.
+// Memory of a finger that isn't a sphere from query to query; a plain value, like SurfaceTracker.
 struct FingerTracker {
   static constexpr int kFeet = 4;
   CoreTracker main;                     // the deepest place of the core

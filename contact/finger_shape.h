@@ -41,7 +41,7 @@ Vec3 nearestOnCore(const FingerShape& finger, const Vec3& p_F, const Vec3& d_F);
 // `normal_F`: along the support points of the directions between the two normals. Exact for spheres; others to about 1e-4 of it [m].
 double arcOverSkin(const FingerShape& finger, const Vec3& from_F, const Vec3& normal_F, const Vec3& to_F);
 
-// What is wrong with it, as a sentence; empty if nothing is.
+// Its fault, as a sentence; empty if there is none.
 std::string problemWith(const FingerShape& finger);
 
 }  // namespace pincer::contact

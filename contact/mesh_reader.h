@@ -18,7 +18,7 @@
 
 namespace pincer::contact {
 
-// What becomes of triangles of zero area: an error, or kept for a repair to see. A kept one may use a vertex twice.
+// Treatment of triangles of zero area: an error, or kept for a repair to see. A kept one may use a vertex twice.
 enum class Degenerate : std::uint8_t { reject, keep };
 
 struct ReadOptions {

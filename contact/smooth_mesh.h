@@ -64,7 +64,7 @@ class SmoothMesh {
 
   const std::vector<std::int32_t>& foldedTriangles() const;  // whose patch folds over: contact there may be held (kQueryHeldDirection)
   double tightestConcaveRadius() const;                      // of the surface [m]; infinity where it is convex
-  // What a finger of radius `r` [m] will not feel well, one sentence each with remedy; complements inspect() (mesh_report.h).
+  // Shortcomings that a finger of radius `r` [m] will feel, one sentence each with remedy; complements inspect() (mesh_report.h).
   std::vector<std::string> findings(double r) const;
 
  private:

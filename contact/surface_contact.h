@@ -38,7 +38,7 @@ struct SurfaceContact {
   std::uint32_t feature = 0;  // the tracker's slot: the same for as long as this contact is followed
 };
 
-// What the answer took; the same input takes the same.
+// Work that the answer took; the same input takes the same.
 struct QueryCost {
   int iterations = 0;    // Newton steps of the followed contacts
   int longest_walk = 0;  // the most that one of them took

@@ -189,7 +189,7 @@ inline std::span<const ColliderModel> collidersOf(const WorldModel& model, const
   return {model.colliders.data() + body.first_collider, static_cast<std::size_t>(body.collider_count)};
 }
 
-// What the builder is told about one of several shapes of a body.
+// One of several shapes of a body, as the builder is told.
 struct ColliderSpec {
   std::string name;
   contact::Shape shape;
@@ -205,7 +205,7 @@ struct GivenInertia {
   Mat3 I_BBcm = Mat3::Zero();  // about the centre of mass, in B's axes [kg m^2]
 };
 
-// What the builder is told about a body; B's pose and velocity at the start live in BodyStart.
+// A body, as the builder is told; B's pose and velocity at the start live in BodyStart.
 struct BodySpec {
   std::string name;
   contact::Shape shape;  // if `shapes` is empty

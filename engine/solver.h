@@ -22,7 +22,7 @@ struct SolverOptions {
   // By how much contacts that contradict each other may give way, see SolveResult [m/s].
   double largest_give = 0;
   bool thorough = true;  // of up to sixty contacts: whether the costlier methods are tried after Newton's
-  // What the iterations of all solves of a tick may cost [s], 0 or 1e-6 .. 10; 0: no limit. Counted in multiplications, not measured, so
+  // Most that the iterations of all solves of a tick may cost [s], 0 or 1e-6 .. 10; 0: no limit. Counted in multiplications, not measured, so
   // that results don't depend on what else the machine does. Where it runs out the best iterate counts, flagged and energy-safe.
   double budget = 0;
 };

@@ -27,7 +27,7 @@ struct PointState {
   Vec3 turn_rate_W = Vec3::Zero();  // [rad/s]
 };
 
-// What a contact remembers from tick to tick. Sorted by id.
+// A contact's memory from tick to tick. Sorted by id.
 struct ContactMemory {
   std::uint64_t id = 0;                     // see contactId
   ContactVector r = ContactVector::Zero();  // impulse in C (t1, t2, n, torsion, rolling) [N s]; warm start
@@ -47,7 +47,7 @@ struct ContactMemory {
 // For how many ticks a contact that opens by next to nothing keeps its impulse and its offset.
 constexpr int kOpenTicks = 8;
 
-// What a drive did in the last tick.
+// A drive's work in the last tick.
 enum class DriveMemory : unsigned char { kWithin, kLow, kHigh, kUnsure };  // its limits; at one of them; it may be either
 // Deed of dry friction: held, or braked what moves. kLocks: it held with half of its force to spare, and nothing touched what it holds.
 enum class BrakeMemory : unsigned char { kHolds, kForward, kBackward, kLocks };

@@ -18,7 +18,7 @@
 
 namespace pincer::engine {
 
-// What a driven body does at the end of the tick: pose of its frame B, velocity of B's origin, angular velocity.
+// Motion of a driven body at the end of the tick: pose of its frame B, velocity of B's origin, angular velocity.
 using MotionInput = DrivenPlace;
 
 // Where a driven point's target is at the end of the tick, and a force on the point over the tick.
@@ -38,13 +38,13 @@ struct BodyForce {
   Vec3 tau_W = Vec3::Zero();  // [N m]
 };
 
-// What pushes bodies besides contacts and joints, the same all through the tick.
+// Loads on bodies besides contacts and joints, the same all through the tick.
 struct AppliedForces {
   std::span<const BodyForce> forces{};  // one per body, or none; those of static and driven bodies do nothing
   std::optional<Vec3> gravity_W{};      // in place of WorldOptions::gravity_W [m/s^2]
 };
 
-// What the caller asks for at the end of the tick.
+// Motions and loads that the caller asks for at the end of the tick.
 struct StepInputs {
   std::span<const PointInput> points{};    // one per point
   std::span<const MotionInput> motions{};  // one per driven body, in the order of the bodies; missing ones rest where they are
@@ -52,7 +52,7 @@ struct StepInputs {
   std::span<const DriveInput> controls{};  // one per drive; missing ones stay as they were
 };
 
-// What happened that a caller may have to know; each bit says what was dropped and what to change.
+// Events that a caller may have to know; each bit says what was dropped and what to change.
 enum StepStatus : std::uint32_t {
   kStepOk = 0,
   // impulses are the best iterate, energy-safe. Loosen solver.tolerance, or look for contacts that contradict each other
@@ -111,7 +111,7 @@ struct ContactReport {
   bool sliding = false;
 };
 
-// What acted on a joint in the last tick, its mean over it [N, N m]; along its coordinate.
+// Load on a joint in the last tick, its mean over it [N, N m]; along its coordinate.
 struct JointReport {
   double stop_force = 0;      // of its limits
   double friction_force = 0;  // of its dry friction

@@ -10,7 +10,7 @@
 //        its tip [kg, N s/m]: half a tick's acceleration from the last velocity to the present one and half to the coming one's mean
 //   S    energy stored in the world above the least that it held [J] (stored in springs, motion and height);  R  reserve [J]
 //   D_i  finger i's share of sum O - B [J]: as much as it gave or would give itself. What the damping can't dissipate stays in B: carried over
-// What alpha_max leaves undone is withheld (`bound`): the forces that would pay out are scaled down, all alike, to what B allows; direction kept.
+// Energy that alpha_max leaves is withheld (`bound`): the forces that would pay out are scaled down, all alike, to what B allows; direction kept.
 // A finger slower than `still_speed` isn't damped: no damping has an effect there, and nothing is divided by its speed.
 //
 // The arm's own friction is what makes sampled walls passive at all (Colgate & Schenkel); its dissipation is credit, so that a coupling within
@@ -75,7 +75,7 @@ void observePorts(const PassivityOptions& options, std::span<const Vec3> p_WF, d
 // Changes the wanted forces on the users [N].
 void controlPorts(const PassivityOptions& options, double h, PassivityState& state, std::span<Vec3> f_W);
 
-// What the devices will hold until the next tick [N], after every other limit.
+// Forces that the devices will hold until the next tick [N], after every other limit.
 void holdPorts(std::span<const Vec3> f_W, PassivityState& state);
 
 }  // namespace pincer::grasp

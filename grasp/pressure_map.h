@@ -21,7 +21,7 @@ namespace pincer::grasp {
 // Place of a taxel over the skin from the pad's centre, (distal, radial) [m]; row 0 is the most proximal, column 0 at negative radial.
 Vec2 taxelPlace(const PressureGrid& grid, int row, int column);
 
-// What is spread: one contact's force, in the directions of the skin there.
+// One contact's force to be spread, in the directions of the skin there.
 struct PadForce {
   Vec2 place = Vec2::Zero();  // [m]
   Taxel force;                // [N]

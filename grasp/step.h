@@ -19,7 +19,7 @@ struct FingerInput {
   Vec3 f_W = Vec3::Zero();       // force on the proxy besides the coupling [N]
 };
 
-// What a finger remembers besides its proxy.
+// A finger's memory besides its proxy.
 struct FingerState {
   bool seen = false;             // a tick has been
   Quat q_WF = Quat::Identity();  // orientation at the end of the last tick
@@ -28,7 +28,7 @@ struct FingerState {
   double normal_force = 0;       // of the last tick [N]
 };
 
-// What fingers remember of the shapes near them, each of as many as it has places for: a thousand fingers among a thousand bodies have room.
+// Fingers' memory of the shapes near them, each of as many as it has places for: a thousand fingers among a thousand bodies have room.
 struct FollowedShapes {
   static constexpr int kMost = 8;  // places of a finger; of more shapes that are near the nearest have them
   int per_finger = 0;              // 0 where all fingers are spheres and there is no mesh
@@ -49,7 +49,7 @@ struct Taxel {
   Vec2 tangential = Vec2::Zero();
 };
 
-// What a finger feels after a tick.
+// A finger's report after a tick.
 struct FingerReport {
   bool touching = false;
   int body = -1;                    // that carries the largest force, -1 if none

@@ -38,7 +38,7 @@ void forEachEdge(std::span<const HalfEdge> half_edges, Visit&& visit) {
   }
 }
 
-// Whether the surface ends at this edge, branches there, has two triangles that face opposite ways, or goes on as it should.
+// State of an edge: the surface ends there, branches, has two triangles that face opposite ways, or goes on as it should.
 inline bool isBoundary(std::span<const HalfEdge> edge) { return edge.size() == 1; }
 inline bool isBranching(std::span<const HalfEdge> edge) { return edge.size() > 2; }
 inline bool isReversed(std::span<const HalfEdge> edge) { return edge.size() == 2 && edge[0].forward == edge[1].forward; }

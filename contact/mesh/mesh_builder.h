@@ -30,7 +30,7 @@ class MeshBuilder {
   std::size_t vertices() const { return mesh_.vertices.size(); }
   std::size_t normals() const { return mesh_.normals.size(); }
   std::size_t faces() const { return faces_.size(); }
-  // What the next one is called in messages.
+  // The next one's name in messages.
   std::size_t nextVertex() const { return vertices() + first_index_; }
   std::size_t nextNormal() const { return normals() + first_index_; }
   std::size_t nextFace() const { return faces() + first_index_; }

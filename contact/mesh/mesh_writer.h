@@ -25,7 +25,7 @@ std::string formatMesh(const TriangleMesh& mesh, MeshFormat format, const WriteO
 // Writes the file in the format that its name ends with. Throws InputError if there is none, or if writing fails.
 void writeMesh(const std::filesystem::path& path, const TriangleMesh& mesh, const WriteOptions& options = {});
 
-// What of this mesh the format can't hold, one phrase each; empty if it comes back whole.
+// Parts of this mesh that the format can't hold, one phrase each; empty if it comes back whole.
 std::vector<std::string> lossesOf(const TriangleMesh& mesh, MeshFormat format, const WriteOptions& options = {});
 
 }  // namespace pincer::contact

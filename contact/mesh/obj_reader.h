@@ -13,7 +13,7 @@
 
 namespace pincer::contact {
 
-// Whether a line of a polygon mesh may begin with this word.
+// True if a line of a polygon mesh may begin with this word.
 bool isObjKeyword(std::string_view word);
 
 TriangleMesh readObj(MeshFile& file, const ReadOptions& options);

@@ -12,7 +12,7 @@ namespace pincer::contact {
 
 namespace {
 
-// What the letters before "OFF" announce.
+// Meaning of the letters before "OFF".
 struct OffKind {
   bool texture = false, colour = false, normal = false, other_dimension = false, known = false;
 };

@@ -13,7 +13,7 @@
 
 namespace pincer::contact {
 
-// Whether a file's first word is the header of an OFF file, of any kind.
+// True if a file's first word is the header of an OFF file, of any kind.
 bool isOffHeader(std::string_view word);
 
 TriangleMesh readOff(MeshFile& file, const ReadOptions& options);

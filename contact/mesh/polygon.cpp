@@ -26,7 +26,7 @@ std::vector<Vec2> inPlane(const std::vector<Vec3>& polygon, const Vec3& n) {
   return flat;
 }
 
-// Whether a, b, c turn left by more than round-off.
+// True if a, b, c turn left by more than round-off.
 bool turnsLeft(const Vec2& a, const Vec2& b, const Vec2& c) {
   const double longest2 = std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
   return cross(b - a, c - a) > kFlat * longest2;

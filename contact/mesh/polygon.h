@@ -14,7 +14,7 @@ namespace pincer::contact {
 
 using CornerTriple = std::array<int, 3>;
 
-// Whether the triangle's height over its longest edge is below round-off of its corners: it has no direction then.
+// True if the triangle's height over its longest edge is below round-off of its corners: it has no direction then.
 bool hasZeroArea(const Vec3& p0, const Vec3& p1, const Vec3& p2);
 
 // Corners of `polygon` (at least 3), three per triangle, in the polygon's orientation. Empty if there is no such set: the polygon has no

@@ -27,7 +27,7 @@ std::span<const HalfEdge> edgeBetween(const std::vector<HalfEdge>& half_edges, s
   return first ? edgeAt(half_edges, static_cast<std::size_t>(first - half_edges.data())) : std::span<const HalfEdge>();
 }
 
-// Whether two triangles with the same vertices face the same way: one is the other, turned on.
+// True if two triangles with the same vertices face the same way: one is the other, turned on.
 bool faceSameWay(const Triangle& a, const Triangle& b) {
   const auto at = static_cast<std::size_t>(std::find(b.begin(), b.end(), a[0]) - b.begin());
   return b[(at + 1) % 3] == a[1];

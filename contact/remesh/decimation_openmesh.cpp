@@ -241,7 +241,7 @@ class MoveRules : public OpenMesh::Decimater::ModBaseT<Kernel> {
     return true;
   }
 
-  // What was as bad before may stay so.
+  // A triangle that was as bad before may stay so.
   bool isFit(const Corners& before, const Corners& after) const {
     const auto p = placesOf(before), q = placesOf(after);
     const Vec3 old_facet = facetOf(p).normalized(), facet = facetOf(q).normalized();

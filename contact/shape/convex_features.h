@@ -40,7 +40,7 @@ struct Facet {
   double line_radius = 0;  // of a segment: of the round wall that it is a line of, or of the rounding about it [m]; 0: a sharp edge
   double rim_radius = 0;   // of a polygon that stands for the end of a cylinder [m]; otherwise 0
 
-  // Whether the edge from corner i to the next is one of the solid's, not a chord of its rim.
+  // True if the edge from corner i to the next is one of the solid's, not a chord of its rim.
   bool isStraight(int i) const { return !(rim_radius > 0) || (corners[static_cast<std::size_t>(i)].edge & 31) == kFlatEdge; }
   void add(const Vec3& p, int vertex, int edge) {
     if (count < kMost)

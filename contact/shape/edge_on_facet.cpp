@@ -8,7 +8,7 @@
 namespace pincer::contact {
 namespace {
 
-// What is left of the line q + t u: ends that are outside by less than the slack stay where they are, others move to the crossing.
+// The rest of the line q + t u: ends that are outside by less than the slack stay where they are, others move to the crossing.
 struct Range {
   double from, to, slack;  // [m]
 

@@ -107,7 +107,7 @@ class MeshOnMesh {
     }
     // How steep `n`, out of the solid, is on the flatter of the two (cosine): a point below the edge along n lies so much of its way behind it.
     double leastSlope(const Vec3& n) const { return std::min(n.dot(n_own), n.dot(n_other)); }
-    // Whether both triangles lie on n's side of the edge.
+    // True if both triangles lie on n's side of the edge.
     bool lieAbove(const Vec3& n) const { return n.dot(own) >= -kEdgeSlack && n.dot(other) >= -kEdgeSlack; }
   };
 

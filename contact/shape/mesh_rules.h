@@ -20,7 +20,7 @@ struct MeshScale {
   double slack() const { return 1e-6 * size; }  // beside a triangle, or in front of it
   // A point at depth `distance` < 0 has the nearest way out; another counts as one when it is no more than four times as long (so long is
   // the way over an edge of 30 degrees), or longer by a hundredth of the size (a body that rests with its corner at a rim is pushed up, not aside).
-  // What is refused for that still counts where a pair that overlaps has nothing else (contact_candidates.h).
+  // A point that is refused for that still counts where a pair that overlaps has nothing else (contact_candidates.h).
   bool isWayOut(double phi, double distance) const { return phi >= 4 * std::min(distance, 0.0) - kLonger * size; }
   // Of a point at `phi` < 0 under an edge along a normal that is as steep as `slope` (cosine) on the flatter of the edge's two faces, whose
   // signed distance from the surface is `distance`: whether it is behind the surface (before that face, where the normal leans that way), and

@@ -96,7 +96,7 @@ class PadQuery {
     return (features.triangle(slot.triangle).n - main.n_B).squaredNorm() < kSameNormal * kSameNormal;
   }
 
-  // Whether the flat triangles are the surface where the smooth one is touched: they answer with its normal in more than one place, no shallower, and there
+  // True if the flat triangles are the surface where the smooth one is touched: they answer with its normal in more than one place, no shallower, and there
   // and halfway between two of these the surface has their gap.
   bool isFlat(const PairPoints& patch, const SurfaceContact& main) {
     const double same_gap = 1e-6 * size_;

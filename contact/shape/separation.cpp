@@ -34,7 +34,7 @@ class Search {
     const double gap = gapAlong(a_, b_, n);
     if (gap > best_.gap) best_ = {n, gap};
   }
-  // Whether the normal of a face that is near `n` is the best of all: what lies on a face is known from four points.
+  // True if the normal of a face that is near `n` is the best of all: what lies on a face is known from four points.
   bool isOnFaceNear(const Vec3& n) {
     const Kinks kinks = kinksNear(n, kNear, 0);
     for (int i = 0; i < kinks.normal_count; ++i) offer(kinks.normals[static_cast<std::size_t>(i)]);
@@ -83,7 +83,7 @@ class Search {
     const DirectionGuess way_out = guessWayOut(a_, b_, size_);
     if (way_out.found) climb(way_out.n);
   }
-  // Whether no other direction can have a greater gap than the best, see separation.h.
+  // True if no other direction can have a greater gap than the best, see separation.h.
   bool isOnlyOne() const {
     constexpr double kSamePlane = 1e-8;  // of the size
     const double depth = -best_.gap;
@@ -92,7 +92,7 @@ class Search {
     const Vec3 far = a_.support(best_.n) - b_.support(-best_.n);
     return best_.n.dot(far) > depth + 2 * depth / seen_.radius * far.norm();
   }
-  // What the nearest points leave to be done.
+  // The search that the nearest points leave to be done.
   void finish() {
     if (!isProvedOnFace() && round_) polish();
   }
@@ -177,7 +177,7 @@ class Search {
     }
     if (std::isfinite(radius) && radius > seen_.radius) seen_ = {radius, best_.gap};
   }
-  // Whether the disc shows that nothing around the best is better by more than round-off.
+  // True if the disc shows that nothing around the best is better by more than round-off.
   bool isProved() const { return seen_.radius > kWider * std::max(-best_.gap, 0.0) && best_.gap > seen_.gap - 4 * kGapRounding * size_; }
 
   void offerBoth(const Vec3& n) {

@@ -48,7 +48,7 @@ Separation separate(const PosedSolid& a, const PosedSolid& b, double size, doubl
 // Source: S. Gottschalk, M. Lin, D. Manocha, "OBBTree", SIGGRAPH 1996, sec. 5.
 Separation separateBoxes(const PosedSolid& a, const PosedSolid& b);
 
-// What Bullet's EPA says of solids that overlap. `found` is false where it has no answer.
+// Answer of Bullet's EPA for solids that overlap. `found` is false where it has no answer.
 struct DirectionGuess {
   Vec3 n = Vec3::UnitZ();
   bool found = false;

@@ -127,7 +127,7 @@ MeshPlace meshPlaceOf(const SurfaceNet& net, const FoundPoint& point) {
   return isFlatPatch(net, t) ? MeshPlace::flat : MeshPlace::smooth;
 }
 
-// Whether another point with a like normal is deeper.
+// True if another point with a like normal is deeper.
 bool isShadowed(const FoundPoints& points, const FoundPoint& point) {
   return std::any_of(points.points.begin(), points.points.begin() + points.count, [&](const FoundPoint& other) {
     return &other != &point && other.n_W.dot(point.n_W) > kLikeNormals &&

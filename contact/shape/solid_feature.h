@@ -30,10 +30,10 @@ class SolidFeature {
   Vec3 nearest(const Vec3& p) const;
   double rho() const { return rho_; }  // [m]
   bool isSharp() const { return !(rho_ > 0); }
-  // Whether the point `c` of F is where F ends and something less is touched: on a face's outline, at the end of a wall
+  // True if the point `c` of F is where F ends and something less is touched: on a face's outline, at the end of a wall
   // or edge. And where that was before a face was moved.
   bool isEnd(const Vec3& c, double slack) const;
-  // Whether a round wall isn't there along `d`: its cylinder is cut off by a flat.
+  // True if a round wall isn't there along `d`: its cylinder is cut off by a flat.
   bool isCutOff(const Vec3& d) const { return kind_ == Kind::segment && circle_ * d.x() > flat_ * d.head<2>().norm(); }
   Vec3 moveOut(const Vec3& c) const { return kind_ == Kind::face ? Vec3(c + lift_ * face_.n) : c; }
   std::uint32_t name() const { return name_; }  // the same for as long as it is this one, below 2^16

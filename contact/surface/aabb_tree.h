@@ -36,7 +36,7 @@ class AabbTree {
   template <class Visit>
   void visitNear(const Vec3& p, const double& bound2, Visit&& visit) const;
 
-  // Whether the box of any leaf meets [low, high].
+  // True if the box of any leaf meets [low, high].
   bool meetsBox(const Vec3& low, const Vec3& high) const {
     bool meets = false;
     visitBox(low, high, 1, [&](std::int32_t) { meets = true; });

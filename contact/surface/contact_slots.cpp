@@ -8,7 +8,7 @@
 
 namespace pincer::contact {
 
-// What most ticks are: the only contact that is followed has moved on within its patch, nothing else has come near, and nothing is eased.
+// The usual tick: the only contact that is followed has moved on within its patch, nothing else has come near, and nothing is eased.
 [[gnu::flatten]] bool SurfaceTouch::followAlone(SurfaceContacts& found) {
   int slot = -1;
   for (int i = 0; i < kMaxSurfaceContacts; ++i) {
@@ -92,7 +92,7 @@ bool SurfaceTouch::isOtherSide(int slot, const ShellContact& contact) const {
   return contact.h < 0 && tangentContact(s_.net, cache_, C_, footOf(slot)).h > kWellAbove * r_;
 }
 
-// Whether the contact is the slot's moved on, or another one that the walk has slid down to. Around an edge the overlap d changes by d / h of
+// True if the contact is the slot's moved on, or another one that the walk has slid down to. Around an edge the overlap d changes by d / h of
 // the centre's way at most, on anything rounder and in any hollow that the finger fits into by less, straight down by all of it.
 bool SurfaceTouch::continues(const SurfaceSlot& kept, const ShellContact& contact) const {
   constexpr double kSlack = 2;     // for shading normals, which turn faster than the surface here and there
@@ -106,7 +106,7 @@ bool SurfaceTouch::continues(const SurfaceSlot& kept, const ShellContact& contac
 
 void SurfaceTouch::lose(int slot) { lost_.push_back(slot); }
 
-// What was lost in overlap stands for its plane, and gives way as the finger moves.
+// A contact that was lost in overlap stands for its plane, and gives way as the finger moves.
 void SurfaceTouch::fadeLost() {
   for (const int slot : lost_) {
     if (list_.isFull()) return;
@@ -279,7 +279,7 @@ void SurfaceTouch::keepCentre(const ShellContact& main) {
   tracker_.status = status_;
 }
 
-// What the list tells goes on from here.
+// The list's story goes on from here.
 void SurfaceTouch::keepParts() {
   LookParts& parts = lookParts();
   parts.p_BC = C_;

@@ -76,7 +76,7 @@ class FacingTree {
     std::array<Lanes, 3> centre() const { return {0.5f * (low[0] + high[0]), 0.5f * (low[1] + high[1]), 0.5f * (low[2] + high[2])}; }
   };
 
-  // What single precision may move a distance to `p` by, and some more [m].
+  // Largest error of single precision in a distance to `p`, and some more [m].
   double rounding(const Vec3& p) const { return 4e-7 * (p.cwiseAbs().maxCoeff() + extent_); }
 
  private:

@@ -17,7 +17,7 @@ struct FlatPoint {
 FlatPoint closestOnTriangle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p);
 FlatPoint closestOnFacet(const SurfaceNet& net, std::int32_t triangle, const Vec3& p);
 
-// Whether no triangle beside this place leads nearer to `p`, and `p` is in front of it. `flat` is the triangle's closest point.
+// True if no triangle beside this place leads nearer to `p`, and `p` is in front of it. `flat` is the triangle's closest point.
 bool isFlatMinimum(const SurfaceNet& net, std::int32_t triangle, const FlatPoint& flat, const Vec3& p);
 
 // How far `p` has to move at least until the triangle has such a place [m]; 0 if it has one.

@@ -12,7 +12,7 @@ namespace {
 constexpr double kBesideKnown = 0.966;  // cosine of 15 degrees: a normal that far from a patch's still belongs to it
 constexpr double kAround = 1.0 / 16;    // of r: what lies nearer to a contact than this differs by no more than kApart in its normal
 
-// Whether the place is on an edge or a vertex that this triangle has too.
+// True if the place is on an edge or a vertex that this triangle has too.
 bool isOnFeatureOf(const SurfaceNet& net, const Foot& foot, std::int32_t triangle) {
   if (*std::min_element(foot.b.begin(), foot.b.end()) > 0) return false;
   const auto& v = net.mesh().triangles[static_cast<std::size_t>(triangle)];
@@ -46,7 +46,7 @@ void SurfaceTouch::addFurther() {
   if (!(near.due > gone_) || isEveryonesTurn()) examineDue(near);
 }
 
-// Those that are due and have their turn, until so much has been tried as a query may try; the next one goes on from there.
+// Tries the places that are due and have their turn, until so much has been tried as a query may try; the next one goes on from there.
 void SurfaceTouch::examineDue(NearParts& near) {
   bool are_all = isEveryonesTurn();
   examineTurns(near, are_all);
@@ -81,10 +81,10 @@ void SurfaceTouch::examineTurns(NearParts& near, bool are_all) {
   }
 }
 
-// What is left waits for the next query; not where everyone has a turn, but for the places that can be remembered.
+// The rest waits for the next query; not where everyone has a turn, but for the places that can be remembered.
 bool SurfaceTouch::hasTriedEnough() const { return seen_.isFull() || (walked_ >= kMostWalked && !isEveryonesTurn()); }
 
-// Whether what the last look found is still all that there can be: near enough, and what it left out still belongs to the same contacts.
+// True if what the last look found is still all that there can be: near enough, and what it left out still belongs to the same contacts.
 bool SurfaceTouch::isLookGood() const {
   const SurfaceLook& look = tracker_.look;
   if (!(wayFromLook() < look.horizon) || (look.is_alone && !isAlone())) return false;
@@ -108,7 +108,7 @@ bool SurfaceTouch::isLookGoodFor(int slot, const Vec3& n) const {
   return true;
 }
 
-// Whether a followed contact with the normal `n` is still the one that the look saw in that slot.
+// True if a followed contact with the normal `n` is still the one that the look saw in that slot.
 bool SurfaceTouch::staysOn(const SurfaceLook& look, int slot, const Vec3& n) {
   return n.dot(look.n[at(slot)]) > (look.is_alone ? LoneContact::kCosBeta : kHalfApart);
 }
@@ -131,7 +131,7 @@ bool SurfaceTouch::lookAlone() {
 // The last look found that there is no other contact here.
 bool SurfaceTouch::isVouched() const { return lost_.empty() && wayFromLook() < tracker_.look.vouched && isLookGood(); }
 
-// Whether addFurther() would do nothing, if the look is good.
+// True if addFurther() would do nothing, if the look is good.
 bool SurfaceTouch::isNothingDue() {
   const SurfaceLook& look = tracker_.look;
   if (look.is_alone) return wayFromLook() < look.vouched;
@@ -148,7 +148,7 @@ bool SurfaceTouch::isLookEnding() const {
          std::any_of(list_.begin(), list_.end(), [&](const FollowedContact& f) { return hasTurnedHalf(f.slot, f.contact.n); });
 }
 
-// Whether a contact's normal has turned by half of what it may until the look ends.
+// True if a contact's normal has turned by half of what it may until the look ends.
 bool SurfaceTouch::hasTurnedHalf(int slot, const Vec3& n) const {
   constexpr double kQuarterApart = 0.999876;  // cosine of half of kHalfApart's angle
   const SurfaceLook& look = tracker_.look;
@@ -192,7 +192,7 @@ SurfaceLook SurfaceTouch::lookAtEnd() const {
   return look;
 }
 
-// Whether the look ahead can take over, and does.
+// True if the look ahead can take over, and does.
 bool SurfaceTouch::takeAhead() {
   if (!(tracker_.ahead.horizon > 0)) return false;
   tracker_.look = tracker_.ahead;
@@ -206,7 +206,7 @@ bool SurfaceTouch::takeAhead() {
   return isLookGood();
 }
 
-// Whether the contact's normal turns by less than kHalfApart over a look's horizon, as far as its patch tells; on edges it turns fast.
+// True if the contact's normal turns by less than kHalfApart over a look's horizon, as far as its patch tells; on edges it turns fast.
 bool SurfaceTouch::turnsSlowly(const ShellContact& contact) const {
   constexpr double kMostTurn = 0.04;  // [rad]
   if (*std::min_element(contact.foot.b.begin(), contact.foot.b.end()) <= 0) return false;
@@ -218,7 +218,7 @@ bool SurfaceTouch::turnsSlowly(const ShellContact& contact) const {
   return true;
 }
 
-// What is due when is forgotten where the tracker comes from elsewhere than from the last query with this cache: set back, or copied.
+// Due times are forgotten where the tracker comes from elsewhere than from the last query with this cache: set back, or copied.
 LookParts& SurfaceTouch::lookParts() {
   LookParts& parts = cache_.partsOf(tracker_);
   if (parts.gone != tracker_.gone || parts.p_BC != tracker_.p_BC_last) {
@@ -257,7 +257,7 @@ void SurfaceTouch::examine(const Turns& turns, NearPart& near) {
   if (const auto foot = s_.search.minimumOn(s_.net, near.place, C_, reach)) tryPlace(*foot);
 }
 
-// Whether a contact stands for this patch: beside it, with a normal that the patch's could be. (Not any of its cone's: along a groove that
+// True if a contact stands for this patch: beside it, with a normal that the patch's could be. (Not any of its cone's: along a groove that
 // holds the other wall's.)
 bool SurfaceTouch::stands(const Foot& foot, const Vec3& S, const Vec3& n, std::int32_t triangle, const PatchBounds& part) const {
   if (foot.triangle == triangle || isOnFeatureOf(s_.net, foot, triangle)) return true;
@@ -271,7 +271,7 @@ bool SurfaceTouch::stands(const Foot& foot, const Vec3& S, const Vec3& n, std::i
   });
 }
 
-// Whether a try has led to a place that stands for it.
+// True if a try has led to a place that stands for it.
 bool SurfaceTouch::wasSeen(std::int32_t triangle, const PatchBounds& part) const {
   return std::any_of(seen_.begin(), seen_.end(), [&](const TriedPlace& s) { return stands(s.foot, s.S, s.n, triangle, part); });
 }

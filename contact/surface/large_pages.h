@@ -6,7 +6,7 @@
 
 namespace pincer::contact {
 
-// Of what lies there now, as far as it fills whole large pages; takes some 5 ms per MB. What isn't granted is left as it is.
+// Asks for large pages under the memory that lies there now, as far as it fills whole ones; takes some 5 ms per MB. Memory that isn't granted is left as it is.
 void preferLargePages(const void* begin, std::size_t bytes);
 
 template <class T>

@@ -35,7 +35,7 @@ void LoneContact::setWay(double way) {
   zone_lanes_ = atLeast(std::max(zone_, reach_ + way_));
 }
 
-// Whether a ball may touch the graph within rho, or what is above it.
+// True if a ball may touch the graph within rho, or what is above it.
 bool LoneContact::isBeside(double across, double up, double distance2, double R) const {
   const double zone = zone_ + R;
   return across < rho_ + R && h_ - up + R + (across + R) * kTanBeta >= 0 && distance2 < zone * zone;

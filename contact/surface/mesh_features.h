@@ -37,7 +37,7 @@ class MeshFeatures {
     bool ownsEdge(int i) const { return owned >> (3 + i) & 1; }
     const Vec3& corner(int i) const { return p[static_cast<std::size_t>(i % 3)]; }
     std::int32_t vertex(int i) const { return vertices[static_cast<std::size_t>(i % 3)]; }
-    // Whether `q` lies over the triangle, or beside it by less than `slack` [m].
+    // True if `q` lies over the triangle, or beside it by less than `slack` [m].
     bool isUnder(const Vec3& q, double slack) const;
   };
   Triangle triangle(std::int32_t t) const;
@@ -56,7 +56,7 @@ class MeshFeatures {
   // The nearest point of the surface to `q` that is nearer than `bound` > 0 [m]. Allocates nothing.
   Nearest nearest(const Vec3& q, double bound) const;
 
-  // Whether the surface around the vertex lies above the plane through it across the unit vector `n`, but for directions that fall by less
+  // True if the surface around the vertex lies above the plane through it across the unit vector `n`, but for directions that fall by less
   // than `slack` (sine).
   bool liesAbove(std::int32_t vertex, const Vec3& n, double slack) const;
 

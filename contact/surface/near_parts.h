@@ -53,7 +53,7 @@ struct LookParts {
   double gone = 0;
 };
 
-// Whether `parts` are those of the look, as far as they have come.
+// True if `parts` are those of the look, as far as they have come.
 inline bool areOf(const NearParts& parts, std::uint64_t net, const SurfaceLook& look) {
   return parts.net == net && parts.look.p_BC == look.p_BC && parts.look.reach == look.reach && parts.look.n == look.n;
 }

@@ -69,7 +69,7 @@ struct FacingTest {
     sine = static_cast<float>(std::sqrt(std::max(0.0, 1 - cone.cosine * cone.cosine)) + kRounding);
   }
   bool isFull() const { return cosine < 0; }
-  // Whether a point of the ball may face C; `along` = a.D, or -a.D for one that has C straight behind it.
+  // True if a point of the ball may face C; `along` = a.D, or -a.D for one that has C straight behind it.
   bool mayFace(double along, double distance2, double R) const {
     if (distance2 <= R * R || isFull()) return true;
     const double across = std::sqrt(std::max(0.0, distance2 - along * along));

@@ -21,7 +21,7 @@ Quadratic evaluateQuadratic(const std::array<Vec3, 3>& n, double s) {
   return {n[0] * (q * q) + n[1] * (2 * q * s) + n[2] * (s * s), 2 * ((n[1] - n[0]) * q + (n[2] - n[1]) * s)};
 }
 
-// What is left of R across the normal `N`.
+// The part of R across the normal `N`.
 Vec3 residual(const Vec3& R, const Vec3& N) { return R - R.dot(N) / N.squaredNorm() * N; }
 
 EdgeFoot describe(const SharpEdge& edge, const Vec3& C, double s) {

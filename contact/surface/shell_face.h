@@ -60,7 +60,7 @@ constexpr double kLeastCosine = 0.2;       // between Newton's step and T
 
 FaceStep faceStep(const PatchPoint& x, const Vec3& C, StepKind kind);
 
-// Whether J is positive: a solution here is a place that the finger stays at, none that it slides away from to either side.
+// True if J is positive: a solution here is a place that the finger stays at, none that it slides away from to either side.
 bool isStable(const PatchPoint& x, const Vec3& C);
 
 }  // namespace pincer::contact

@@ -233,7 +233,7 @@ void ShellWalk::settleOnEdge(int edge, double s) {
   accept(contact.n, contact.h);
 }
 
-// Whether the residual leads from the edge that the foot is on into its face. By the edge's normals it may seem so where the patch is kinked.
+// True if the residual leads from the edge that the foot is on into its face. By the edge's normals it may seem so where the patch is kinked.
 bool ShellWalk::leadsInside(int edge) const {
   const FaceStep step = faceStep(evaluate(cell().patch, foot_.b[1], foot_.b[2]), C_, StepKind::alongResidual);
   return step.db[static_cast<std::size_t>((edge + 2) % 3)] > 0;

@@ -28,7 +28,7 @@ struct Foot {
   std::array<double, 3> b = {1.0 / 3, 1.0 / 3, 1.0 / 3};
 };
 
-// What a walk took.
+// Work that a walk took.
 struct WalkCost {
   int steps = 0;      // within faces, and visits of edges and vertices
   int crossings = 0;  // of edges

@@ -70,7 +70,7 @@ Middles setSmoothEdges(Patch& p) {
   return {middleOf(p.b300, p.b030, handles, p.n200, p.n020, normal), middleOf(p0, p1, others, n0, n1, normals)};
 }
 
-// Whether the triangle is the first of an edge's: as that one sees it the edge is computed, so that the two sides share it to the last bit.
+// True if the triangle is the first of an edge's: as that one sees it the edge is computed, so that the two sides share it to the last bit.
 bool isFirst(std::int32_t triangle, const Neighbour& other) { return other.triangle < 0 || triangle < other.triangle; }
 
 void setSharpEdge(const SurfaceNet& net, std::int32_t triangle, int i, SurfaceCell& cell) {
@@ -270,7 +270,7 @@ Vec3 SurfaceNet::facetNormal(std::int32_t triangle) const {
   return (vertex(triangle, 1) - p).cross(vertex(triangle, 2) - p).normalized();
 }
 
-// Whether the two sides of an inner edge do.
+// True if the two sides of an inner edge do.
 bool SurfaceNet::haveOtherNormals(std::int32_t triangle, int edge) const {
   const Neighbour other = neighbour(triangle, edge);
   const int next = (edge + 1) % 3, other_next = (other.edge + 1) % 3;

@@ -1,6 +1,6 @@
 // surface_net: the patches of a mesh and how they hang together.
 //
-// What is kept is the mesh, its neighbours and its corner normals, about 60 bytes per triangle; a patch is built from them when it is
+// Kept are the mesh, its neighbours and its corner normals, about 60 bytes per triangle; a patch is built from them when it is
 // first touched. Of the shading variants
 //   smooth            has cubic edges that both sides share (edge_cubic.h), and a centre by its medians, of the same cubics:
 //                       b_111 = (27 m - sum of corners - 3 sum of handles) / 6,   m  mean of the medians' places after 2/3 of their way [m],
@@ -86,7 +86,7 @@ class SurfaceNet {
   // Asks memory for the numbers of the triangles around one. Always inlined: to the compiler it is without effect, and it drops calls of such.
   [[gnu::always_inline]] void fetchAround(std::int32_t triangle) const;
 
-  // What a triangle's edges and corners lead to, side by side in memory, for they are asked for together.
+  // Neighbours across a triangle's edges and corners, side by side in memory, for they are asked for together.
   struct Links {
     std::array<std::int32_t, 3> across;   // 8 triangle + 4 if sharp + edge, -1 at a border
     std::array<std::int32_t, 3> normals;  // places in normals_
@@ -123,7 +123,7 @@ bool SurfaceNet::visitCorners(const CellCorner& start, Visit&& visit) const {
 //   kappa = -(n1 - n0) . (p1 - p0) / |p1 - p0|^2
 double concaveCurvature(const Patch& patch, int edge);
 
-// What one look at every patch tells of a surface.
+// Figures of a surface from one look at every patch.
 struct NetFindings {
   std::vector<std::int32_t>
       folded;  // triangles with (Su x Sv) . N <= 0 somewhere on a grid of 28 points: contact there may be held or jump

@@ -35,7 +35,7 @@ struct PatchBounds {
   FacingTest cone;
 
   Vec3 middle() const { return {centre[0], centre[1], centre[2]}; }
-  // Whether a place of it may be nearer to `p` than `bound` and face it.
+  // True if a place of it may be nearer to `p` than `bound` and face it.
   bool mayHold(const Vec3& p, double bound, Facing facing) const;
   // How far `p` has to move at least for that, to the front [m].
   double approach(const Vec3& p, double bound) const;
@@ -79,7 +79,7 @@ class SurfaceSearch {
   // (lone_contact.h). Allocates nothing.
   double wayAlone(const Vec3& p, const Vec3& n, double h, double reach, double least, double most) const;
 
-  // Whether the flat triangles hide `a` from `b`. Allocates nothing.
+  // True if the flat triangles hide `a` from `b`. Allocates nothing.
   bool isHidden(const SurfaceNet& net, const Vec3& a, const Vec3& b) const;
 
   std::size_t memoryBytes() const { return tree_.memoryBytes() + groups_.capacity() * sizeof(PatchGroup); }

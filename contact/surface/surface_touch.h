@@ -143,7 +143,7 @@ class SurfaceTouch {
   // How high the centre was over it at the last query [m].
   double heightBefore(const SurfaceSlot& kept) const { return (tracker_.p_BC_last - kept.p_BS).dot(kept.n_B); }
   static std::size_t at(int i) { return static_cast<std::size_t>(i); }
-  // Whether a contact leaves its slot to a nearer one.
+  // True if a contact leaves its slot to a nearer one.
   bool mayYield(const FollowedContact& f) const { return f.is_new || (!f.fades && f.shown() > r_); }
   bool follows() const {
     return std::any_of(list_.begin(), list_.end(), [](const FollowedContact& f) { return !f.fades; });
@@ -153,7 +153,7 @@ class SurfaceTouch {
       return !other.fades && (placeOf(other.contact) - placeOf(contact)).norm() < kOnePlace * r_;
     });
   }
-  // What it overlaps by beyond what the finger can have come closer.
+  // Its overlap beyond the way that the finger can have come closer [m].
   double easeOfNew(const ShellContact& contact) const { return eases_ && was_used_ ? std::max(0.0, r_ - contact.h - moved_) : 0; }
   void addNew(const ShellContact& contact) { list_.push_back({contact, takeSlot(), true, false, easeOfNew(contact)}); }
   int takeSlot();
@@ -163,7 +163,7 @@ class SurfaceTouch {
   int deepestLost() const;
   // How high the centre is over what a lost slot stands for, as far as it has been eased away [m].
   double lostHeight(int slot) const { return planeOf(slot).h + keptIn(slot).ease; }
-  // Whether a slot that was lost still pushes, and nothing has taken it.
+  // True if a slot that was lost still pushes, and nothing has taken it.
   bool isFading(int slot) const {
     return std::find(lost_.begin(), lost_.end(), slot) != lost_.end() && !isTaken(slot) && lostHeight(slot) + moved_ < r_;
   }

@@ -16,7 +16,7 @@ namespace pincer::contact {
 
 class Turns {
  public:
-  // Those on the way from `from` to `to` >= `from` >= 0 [m]; a period of 0: everyone's.
+  // Turns on the way from `from` to `to` >= `from` >= 0 [m]; a period of 0: everyone's.
   Turns(double from, double to, double period) : period_(period) {
     PINCER_ASSERT(!(from < 0) && !(to < from));  // what isn't finite is handed on
     if (!(period > 0)) return;

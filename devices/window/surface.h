@@ -31,11 +31,11 @@ class Surface {
   virtual void makeCurrent() = 0;
   // Address of an OpenGL function; the surface must be current in some thread.
   virtual GlFunction (*loader() const)(const char* name) = 0;
-  // Whether framebuffer 0 is what a person sees. If not there is none.
+  // True if framebuffer 0 is what a person sees. If not there is none.
   virtual bool isWindow() const = 0;
   // Shows what was drawn to framebuffer 0.
   virtual void present() = 0;
-  // What happened since the last call; valid until the next.
+  // Events since the last call; valid until the next.
   virtual std::span<const InputEvent> poll() = 0;
   virtual bool closed() const = 0;  // the person has closed it
   virtual void toggleFullScreen() = 0;

@@ -4,7 +4,7 @@
 //
 // Nodes are eliminated in the order of least degree, ties by number: a function of the structure alone, so the same bits every time. Chains
 // and trees (stacks, fingers around an object) cost a time proportional to their length. Pivots are searched within blocks.
-// What follows from the structure is kept for as long as the structure stays the same.
+// Results of the structure are kept for as long as the structure stays the same.
 // Source: A. George, J. Liu, SIAM Review 31 (1989) 1-19 (minimum degree); G. Golub, C. Van Loan, Matrix Computations, 4th ed., section 4.5.
 #pragma once
 #include <cstdint>

@@ -22,7 +22,7 @@ class ContactEquations {
  public:
   ContactEquations(const ScaledProblem& problem, EquationForm form, SolverScratch& scratch);
 
-  // What contact i's equation is: x_i = b_i;  epsilon x_i + (W^ x)_i = b_i;  or E x_i + P (W^ x)_i = b_i, row-major with stride 4.
+  // Contact i's equation: x_i = b_i;  epsilon x_i + (W^ x)_i = b_i;  or E x_i + P (W^ x)_i = b_i, row-major with stride 4.
   void decouple(int i) { terms_[i].coupling = Coupling::kNone; }
   void identify(int i, double epsilon);
   void setGeneral(int i, const double* E, const double* P);

@@ -47,7 +47,7 @@ void solveFew(const ContactProblem& problem, const SolverOptions& options, Solve
     solveFewContacts(problem, options, start.residual, scratch, r, u, result);
 }
 
-// What isn't solved brings no energy in.
+// An unsolved problem brings no energy in.
 void settleEnergy(const ContactProblem& problem, SolverScratch& scratch, double* r, double* u, SolveResult& result) {
   if (result.converged || result.yields || !removeAddedEnergy(problem, r, u)) return;
   const ContactError error = errorOf(problem, r, scratch, u);

@@ -32,7 +32,7 @@ namespace pincer::engine {
 // Fewer are always solved to the tolerance: bodies that are pinched must not creep.
 constexpr int kManyContacts = 12;
 
-// What moves slower than this, of more than kFewContacts, is at rest [m/s]: with the default accuracy a millimetre in a day.
+// A contact that moves slower than this, of more than kFewContacts, is at rest [m/s]: with the default accuracy a millimetre in a day.
 inline double restErrorOf(const SolverOptions& options) { return 0.01 * options.accuracy; }
 
 // Solves `problem`. `r` holds the warm start on entry (zeros are fine) and the impulses on return: in the cones to 1e-12 relative, whatever
@@ -47,7 +47,7 @@ inline SolveResult solveContacts(const ContactProblem& problem, const SolverOpti
   return result;
 }
 
-// Whether a calm problem's warm start, put into the cones, is as good as rest asks for: then r stays, and u and `result` are its. Where it is, what contacts ask for needn't be
+// True if a calm problem's warm start, put into the cones, is as good as rest asks for: then r stays, and u and `result` are its. Where it is, what contacts ask for needn't be
 // made consistent, and stays what it was, to the bit.
 bool restsAsItIs(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch, double* r, double* u,
                  SolveResult& result);

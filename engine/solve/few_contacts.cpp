@@ -84,7 +84,7 @@ class FewSearch {
     return SolveMethod::kNotConverged;
   }
 
-  // What is within the tolerance already, brought to round-off.
+  // An answer within the tolerance already, brought to round-off.
   SolveMethod polish(const SolverOptions& options) {
     constexpr int kPolishSteps = 2;
     keepBest();
@@ -145,7 +145,7 @@ class FewSearch {
     return best_.residual <= std::max(0.5 * options.tolerance, contentResidual(options, problem_.speed));
   }
 
-  // Whether contacts that contradict each other have an answer if they give way a little.
+  // True if contacts that contradict each other have an answer if they give way a little.
   bool giveWay(const SolverOptions& options) {
     if (!(options.largest_give > 0)) return false;
     restartFromBest();
@@ -160,7 +160,7 @@ class FewSearch {
     return true;
   }
 
-  // Whether Newton's last iterate shows walls that close on a body.
+  // True if Newton's last iterate shows walls that close on a body.
   bool isSqueezedNow() {
     double* const r = scratch_.step.data();
     for (int i = 0; i < problem_.contactCount(); ++i)
@@ -202,7 +202,7 @@ class FewSearch {
   double give_ = 0;
 };
 
-// What squeezes without end: as if contacts were soft. Those impulses never stay: they are as large as round-off lets them be.
+// Contacts that squeeze without end: as if contacts were soft. Those impulses never stay: they are as large as round-off lets them be.
 void yieldToWalls(const ContactProblem& problem, const SolverOptions& options, EquationForm form, SolverScratch& scratch, double* r,
                   double* u, SolveResult& result) {
   const double start = errorOf(problem, r, scratch, u).residual;

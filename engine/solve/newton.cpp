@@ -237,7 +237,7 @@ int iterateProximally(const ScaledProblem& problem, double tolerance, int rounds
 
 namespace {
 
-// Whether `current` is the answer with u + epsilon (r - r_c); `u` is working memory.
+// True if `current` is the answer with u + epsilon (r - r_c); `u` is working memory.
 bool isSolved(const ScaledProblem& problem, const Centre& centre, double tolerance, const Iterate& current, double* u) {
   Iterate given{current.r, u};
   for (int row = 0; row < problem.rowCount(); ++row) u[row] = current.u[row] + centre.epsilon * (current.r[row] - centre.r[row]);

@@ -138,7 +138,7 @@ class Groove {
     return impulses(0.5 * (low.sigma + high.sigma), r) && act(r[0], r[1]);
   }
 
-  // Whether f comes nearest to 0 in the middle, without a change of its sign.
+  // True if f comes nearest to 0 in the middle, without a change of its sign.
   static bool turnsBack(const Point& x, const Point& y, const Point& z) {
     return x.sigma < y.sigma && y.sigma < z.sigma && (x.f < 0) == (y.f < 0) && (y.f < 0) == (z.f < 0) && std::abs(y.f) < std::abs(x.f) &&
            std::abs(y.f) <= std::abs(z.f);
@@ -197,7 +197,7 @@ class PointSearch {
     int wall;
     Vec3 r;
   };
-  // Whether the impulses of these walls alone are the answer.
+  // True if the impulses of these walls alone are the answer.
   bool isAnswer(std::initializer_list<Pushed> pushed) {
     std::fill(r_, r_ + problem_.rowCount(), 0.0);
     for (const Pushed& p : pushed) std::copy(p.r.data(), p.r.data() + kTorsionRow, r_ + problem_.firstRow(p.wall));

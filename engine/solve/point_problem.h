@@ -18,7 +18,7 @@
 
 namespace pincer::engine {
 
-// Whether `problem` is of that kind: two to four contacts of three rows, one mover that doesn't turn.
+// True if `problem` is of that kind: two to four contacts of three rows, one mover that doesn't turn.
 bool isPointProblem(const ContactProblem& problem);
 
 // Impulses with a residual of no more than `enough`, and their velocities; `residual` is theirs. The contacts are weighed (residual.h). False, and all

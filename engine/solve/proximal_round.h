@@ -13,7 +13,7 @@
 //
 //   minimise over y   |y|^2 / 2 + sum_i e_i |P_K(r_ci - (u_i + s_i e_n) / e_i)|^2 / 2,     r_i(y) = P_K(r_ci - (u_i + s_i e_n) / e_i)
 //
-// What is then wrong with r is the give, and by how much the shift has changed.
+// The error of r is then the give, and by how much the shift has changed.
 // Sources: P. Alart, A. Curnier, Comput. Methods Appl. Mech. Engrg. 92 (1991) 353-375; R. Rockafellar, SIAM J. Control Optim. 14 (1976) 877-898 (proximal
 // point); line search: V. Acary, M. Bremond, O. Huber, in Advanced Topics in Nonsmooth Dynamics (2018) 375-457; frozen shift: V. Acary, F. Cadoux,
 // C. Lemarechal, J. Malick, ZAMM 91 (2011) 155-175; its energy: A. Castro, F. Permenter, X. Han, IEEE Trans. Robot. 39 (2023) 1301-1320.

@@ -96,7 +96,7 @@ class Search {
     if (problem_.calm && error_.speed <= restErrorOf(options_)) return true;
     return isWithinTolerance() && (!problem_.strict || error_.residual <= exactResidual(options_.tolerance, referenceSpeed(problem_)));
   }
-  // What is enough [m/s].
+  // Error that is small enough [m/s].
   double limit() const {
     if (problem_.contactCount() <= kFewContacts || options_.accuracy == 0) return restErrorOf(options_);
     return std::max(kShareOfSlip * slip_, options_.accuracy);
@@ -149,7 +149,7 @@ class Search {
     if (isSqueezed(problem_, scratch_.weight, scratch_.best_r.data())) soften(round);
   }
 
-  // What is enough already, brought to round-off.
+  // An answer that is good enough already, brought to round-off.
   void polish(ProximalRound& round) {
     const double tolerance = kStrictness * options_.tolerance;
     for (int n = 0; n < kPolishRounds && best_.residual > tolerance && !isSpent(); ++n) {
@@ -244,7 +244,7 @@ class Search {
     }
   }
 
-  // What slides by sweeps and by descents in turn, the rest by descents.
+  // Sliding contacts by sweeps and by descents in turn, the rest by descents.
   void goAround(ProximalRound& round, double epsilon, int failures) {
     if (slides() && failures % 2 == 1) return smooth();
     descend(round, epsilon);

@@ -251,7 +251,7 @@ class SmallProblem {
     return true;
   }
 
-  // What sticks is linear, with the symmetric W.
+  // Sticking contacts are linear, with the symmetric W.
   bool eliminate([[maybe_unused]] bool blocks, [[maybe_unused]] bool all_stick) {
     if constexpr (rows == 3) {
       if (blocks) return all_stick ? eliminateSymmetric(J_, b_) : eliminateBlocks(J_, b_);

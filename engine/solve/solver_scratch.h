@@ -26,7 +26,7 @@ struct ContactTerms {
   double E[kSize], P[kSize], R[kSize], K_inverse[kSize], G[kSize];
 };
 
-// What memory has to be there for.
+// Sizes that memory has to be there for.
 struct SolverSize {
   int contacts, movers;  // at most
   int places;            // of blocks: the squared number of movers of each contact, summed

@@ -14,7 +14,7 @@ namespace pincer::engine {
 
 constexpr double kLargestSqueeze = 1e5;  // a wedge of a thousandth of a degree
 
-// Whether the impulses `r` squeeze like that. `weight`: of the contacts, weighContacts (residual.h).
+// True if the impulses `r` squeeze like that. `weight`: of the contacts, weighContacts (residual.h).
 bool isSqueezed(const ContactProblem& problem, const std::vector<double>& weight, const double* r);
 
 }  // namespace pincer::engine

@@ -85,7 +85,7 @@ void Sweeps::relax(int i) {
   const double *const q_i = problem_.q.data() + first, *const way_i = way_ + first;
   withForm(problem_, i, [&](auto rows, const auto& form) {
     for (int k = 0; k < rows; ++k) work_of_way_ += q_i[k] * way_i[k];
-    // What pushes on nothing and doesn't close: so are many of a heap's contacts, and most rows needn't be looked at.
+    // Contacts that push on nothing and don't close: so are many of a heap's contacts, and most rows needn't be looked at.
     if (r_i[kNormalRow] == 0 && normalVelocityOf(form, q_i[kNormalRow], y_) >= 0) return std::fill(change_i, change_i + rows, 0.0);
     double u[kMaxContactRows], r[kMaxContactRows];
     velocityOf(form, rows, q_i, y_, u);

@@ -16,7 +16,7 @@ ImpliedInertia softLaw(const ElementTick& t) {
 
 ImpliedInertia stiffLaw(const ElementTick& t, double m) {
   const double stiff = t.h * t.h * t.k;
-  // What was off by then goes on with at most a third of its rate, turned round (predict.cpp, shareOfEnd).
+  // The error of that moment goes on with at most a third of its rate, turned round (predict.cpp, shareOfEnd).
   const double theta = stiff > 0 ? std::max(0.5, 0.75 - (m + 0.25 * t.h * t.d) / stiff) : 0.5;
   const double spring = t.k * t.h * (t.e + t.h * t.rate - t.way);
   return {t.h * t.d + stiff * theta, -spring - t.h * t.d * (t.rate - t.end_rate)};

@@ -13,7 +13,7 @@ struct Carrier {
   Vec3 p_O, w_W, a_W, alpha_W;
 };
 
-// What a coordinate's rate adds: the turn or slide past its carrier, whose axis turns with that; its own rate changes as its leader's polynomial bends.
+// Acceleration that a coordinate's rate adds: the turn or slide past its carrier, whose axis turns with that; its own rate changes as its leader's polynomial bends.
 void accelerate(const TreeModel& tree, const TreePlace& place, const TreeLink& link, const Carrier& carrier, std::span<const double> u,
                 const LinkPlace& moved, LinkBias& out) {
   const Vec3 r_W = moved.p_OJ - carrier.p_O;

@@ -245,7 +245,7 @@ void advanceTree(const TreeModel& tree, const TreeBase& base, const TreeGain& ga
   for (std::size_t c = 0; c < u.size(); ++c) {
     const double u_end = course.u_free[c] + gain.gained[c], way = wayOf(course, gain, c, u[c]);
     const bool lands = gain.closing && gain.gained[c] != 0;
-    // What the way is besides that of the rates at the start grows with the square of the time.
+    // The part of the way beyond that of the rates at the start grows with the square of the time.
     course.step[c] = share == 1 ? way : lands ? share * way : t * u[c] + share * share * (way - gain.h * u[c]);
     u_out[c] = lands ? u_end : u[c] + share * (u_end - u[c]);
   }

@@ -28,7 +28,7 @@ struct DriveTick {
 
 constexpr double kFineTurn = 0.01;  // [rad]: the error goes with the fifth power
 
-// What pushes a tree.
+// Loads on a tree.
 struct TreePush {
   Vec3 gravity_W = Vec3::Zero();
   std::span<const LinkForce> forces{};  // one per link, or none
@@ -99,7 +99,7 @@ inline double wayOf(const TreeCourse& course, const TreeGain& gain, std::size_t 
 void advanceTree(const TreeModel& tree, const TreeBase& base, const TreeGain& gain, double t, std::span<const double> q,
                  std::span<const double> u, TreeCourse& course, std::span<double> q_out, std::span<double> u_out);
 
-// What an element gave along its length over the tick, where that goes by `rate_end` in the end [N s, N m s]; the drive's constant force comes on top.
+// Impulse of an element along its length over the tick, where that goes by `rate_end` in the end [N s, N m s]; the drive's constant force comes on top.
 inline double impulseOf(const ElementCourse& element, double rate_end) {
   return element.implied.impulse - element.implied.mass * (rate_end - element.rate);
 }

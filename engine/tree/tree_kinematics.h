@@ -12,7 +12,7 @@
 
 namespace pincer::engine {
 
-// What carries the links: pose and motion of its frame.
+// The links' carrier: pose and motion of its frame.
 struct TreeBase {
   Pose X_WB;
   Motion motion;

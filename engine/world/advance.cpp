@@ -59,7 +59,7 @@ bool spreadClosing(const WorldModel& model, const Contact& c, WorldScratch& scra
   return scratch.bodies[side.index].closing = true;
 }
 
-// What lands goes by its velocity at the end, and so must what it stops in turn, or they would end in each other by half of the way that was stopped.
+// A landing body goes by its velocity at the end, and so must one that it stops in turn, or they would end in each other by half of the way that was stopped.
 void spreadClosing(const WorldModel& model, WorldScratch& scratch) {
   std::vector<Contact>& contacts = scratch.contacts;
   bool spreads = std::any_of(contacts.begin(), contacts.end(), [](const Contact& c) { return c.active() && c.closing; });
@@ -85,7 +85,7 @@ void gatherImpulses(const WorldModel& model, WorldScratch& scratch) {
     if (something_sleeps && model.bodies[i].dynamic && scratch.sleep.idle[i]) continue;
     BodyScratch& body = scratch.bodies[i];
     rest(body);
-    // What joints and contacts give to bodies in joints is gathered first.
+    // Impulses of joints and contacts on bodies in joints are gathered first.
     body.angular_impulse_W = model.bodies[i].joint_group < 0 ? body.free_angular_impulse_W : Vec3(Vec3::Zero());
   }
   for (JointRowScratch& row : scratch.joint_rows) rest(row);
@@ -137,7 +137,7 @@ void advanceBody(const BodyModel& body, double h, BodyScratch& scratch, BodyStat
   if (scratch.touched) scratch.end = {s.v_W, angularVelocity(body.rotation, s.X_WI.q, s.L_W)};
 }
 
-// What is gone in a tick with the velocities `old` and `now` at its ends, of `now` that share; what lands goes by `now` alone.
+// Way in a tick with the velocities `old` and `now` at its ends, of `now` that share; what lands goes by `now` alone.
 double wayOf(const PointScratch& scratch, double share_of_end, double h, double old, double now) {
   const double theta = scratch.closing ? 1 : share_of_end;
   return h * ((1 - theta) * old + theta * now);
@@ -193,7 +193,7 @@ void advancePoint(const std::array<AxisForm, 3>& forms, double h, PointScratch& 
   }
   s.p_target_W = scratch.p_target_W;
   s.v_target_W = scratch.v_target_W;
-  // What moved by its end velocity alone begins the next tick so too: half of each, for a tip without mass nor damping, diverges.
+  // A body that moved by its end velocity alone begins the next tick so too: half of each, for a tip without mass nor damping, diverges.
   s.touching = scratch.touched && !scratch.closing;
 }
 

@@ -11,7 +11,7 @@
 namespace pincer::engine {
 namespace {
 
-// Whether `plane` is a half-space that is further than `margin` from b's bounding sphere.
+// True if `plane` is a half-space that is further than `margin` from b's bounding sphere.
 bool isOver(const BodyModel& plane, const BodyModel& b, const BodyScratch& s_plane, const BodyScratch& sb, double margin) {
   return plane.is_plane && s_plane.R_WB_mid.col(2).dot(sb.X_WI_mid.p - s_plane.X_WB_mid.p) > b.bounding_radius + margin;
 }
@@ -60,7 +60,7 @@ void collidePair(const WorldModel& model, const WorldState& state, const BodyPai
   PINCER_ASSERT(model.bodies[pair.a].dynamic || model.bodies[pair.b].dynamic);
   const BodyModel &a = model.bodies[pair.a], &b = model.bodies[pair.b];
   const BodyScratch &sa = scratch.bodies[pair.a], &sb = scratch.bodies[pair.b];
-  // What closes within the tick must be seen at its middle: the far end of a sheet that slaps down as well.
+  // A gap that closes within the tick must be seen at its middle: the far end of a sheet that slaps down as well.
   const double speed = (sa.start.v_W - sb.start.v_W).norm();
   const double turning = model.has_corners ? cornerSpeed(a, sa) + cornerSpeed(b, sb) : 0;
   const double margin = model.options.contact_margin + h * std::max(speed, 0.5 * (speed + turning)) + sa.flung + sb.flung;

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kMostLonger = 10;  // beyond, the last part's impulses were those of a hit rather than of weights
 
-// What is the same for all contacts of this part of a tick.
+// Data that all contacts of this part of a tick share.
 struct Rates {
   double tangent, normal;  // share of what is missing that is made good, over the tick [1/s]
   double turn;             // how much of the turn since the middle of the last part of a tick is to come
@@ -49,7 +49,7 @@ double impactBias(const WorldModel& model, const WorldScratch& scratch, const Co
   return scratch.bounce * bounceRestitution(c.material.restitution, u_n, gapAcceleration(model, scratch, c), model.options.h) * u_n;
 }
 
-// Whether a contact that landed in the last tick now only rolls on, round a rim or along an edge: all its normal velocity comes from the turn of
+// True if a contact that landed in the last tick now only rolls on, round a rim or along an edge: all its normal velocity comes from the turn of
 // its arms, which it meets from the middle of the landing to that of this tick, twice `turn`.
 bool rollsOn(double u_n, double turn) {
   constexpr double kAlike = 0.2;  // of the turn: it changes from tick to tick
@@ -64,13 +64,13 @@ double normalBias(const WorldModel& model, const Rates& rates, const WorldScratc
   const double u_n = c.v_start_C[kNormalRow];
   if (memory && memory->active) {
     const double turn = turnOfNormal(rates, c, *memory);
-    // What landed in the last tick still has the speed that it landed with: it is stopped like a new contact.
+    // A contact that landed in the last tick still has the speed that it landed with: it is stopped like a new contact.
     if (!memory->closing || rollsOn(u_n, turn)) return std::max(rates.normal * c.phi, -largestCorrection(model, c)) + turn;
   }
   const double phi_start = c.phi - 0.5 * scratch.h * u_n;
   c.closing = std::abs(u_n) > kClosingSpeed;  // also what hops and comes down within the tick
   const double lands = phi_start > 0 ? phi_start / scratch.h : std::max(rates.normal * phi_start, -largestCorrection(model, c));
-  // What has just left turns away as it did while it touched.
+  // A contact that has just left turns away as it did while it touched.
   if (memory && !memory->active)
     return std::max(lands, std::max(rates.normal * c.phi, -largestCorrection(model, c)) + turnOfNormal(rates, c, *memory));
   return lands;

@@ -3,7 +3,7 @@
 //
 //   phi_0 / h + n . v_free > kFarTimes v      v  the fastest free motion of anything that moves [m/s]
 //
-// Whether they really stay open is looked at after the solve; where one doesn't, it is solved with the others after all. So the answer is that of all contacts.
+// Their staying open is looked at after the solve; where one doesn't, it is solved with the others after all. So the answer is that of all contacts.
 #pragma once
 #include "pincer/engine/model.h"
 #include "pincer/engine/world/scratch.h"

@@ -124,7 +124,7 @@ BodyState heldBodyAt(const WorldModel& model, const JointGroup& g, const JointGr
   const HeldScratch& held = group.held;
   const double share = t / h, end_rate = held.free_rate + held.gained_rate;
   if (scratch.closing) return stateAt(model, g, held, placeAt(model, g, held, s.X_WI, t * end_rate), end_rate);
-  // What the free course is besides the mean of its rates goes with the square of the time, as that does.
+  // The part of the free course beyond the mean of its rates goes with the square of the time, as that does.
   const double gained = held.gained_way * held.gained_rate, bent = held.free_way - h * held.start_rate + gained;
   const double way = t == h ? held.free_way + gained : t * held.start_rate + share * share * bent;
   return stateAt(model, g, held, placeAt(model, g, held, s.X_WI, way), held.start_rate + share * (end_rate - held.start_rate));

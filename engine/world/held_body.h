@@ -6,7 +6,7 @@
 //
 // Without contact that is solved to round-off (motion/one_freedom.h). Contacts see the velocity that it leads to and one column of F (joints.h):
 // (n x r, n)/sqrt(I') or (n, 0)/sqrt(I'), I' = I c h/(1 - exp(-c h)), c = d/I: of an impulse that comes during the tick the damper takes its part.
-// What they add to th' is taken as a constant push, as for free bodies (decision 3): half of it acts on the way, with a damper a little more. The body is placed on its joint by the coordinate: nothing
+// Their change of th' is taken as a constant push, as for free bodies (decision 3): half of it acts on the way, with a damper a little more. The body is placed on its joint by the coordinate: nothing
 // drifts, nothing is projected. Joints that bind several bodies: joints.h.
 #pragma once
 #include "pincer/engine/state.h"
@@ -19,7 +19,7 @@ namespace pincer::engine {
 void predictHeldBody(const WorldModel& model, const WorldState& state, const JointGroup& g, WorldScratch& scratch,
                      JointGroupScratch& group);
 
-// What the gathered contact impulses do, the joint's answer included.
+// Effect of the gathered contact impulses, the joint's answer included.
 void gatherHeldBody(const WorldModel& model, const JointGroup& g, WorldScratch& scratch, JointGroupScratch& group);
 
 // To the end of this part of the tick.

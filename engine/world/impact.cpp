@@ -25,7 +25,7 @@ std::span<const ContactMemory> memories(const WorldState& state) {
   return {state.contacts.data(), static_cast<std::size_t>(state.contact_count)};
 }
 
-// Whether a contact of the pair pushed in the last tick.
+// True if a contact of the pair pushed in the last tick.
 bool isTouching(const WorldModel& model, const WorldState& state, int a, int b) {
   const std::uint64_t first = contactId(model.shape_bits, {SideKind::kBody, 0, a}, {SideKind::kBody, 0, b}, 0);
   const auto all = memories(state);
@@ -45,7 +45,7 @@ bool isOfBodies(const Contact& c, int a, int b) {
   return c.a.kind == SideKind::kBody && c.b.kind == SideKind::kBody && c.a.index == a && c.b.index == b;
 }
 
-// Whether two bodies that go `way` past each other in a tick have to be swept.
+// True if two bodies that go `way` past each other in a tick have to be swept.
 bool isFarFor(const WorldModel& model, int a, int b, const Vec3& way) {
   const double slow = kSlowWay * std::min(model.bodies[a].inner_radius, model.bodies[b].inner_radius);
   return way.squaredNorm() > slow * slow;
@@ -59,7 +59,7 @@ double normalVelocity(const WorldScratch& scratch, const Contact& c) {
   return c.n_W().dot(v_a - v_b);
 }
 
-// Whether the pair touches without closing: it has hit in this tick, and now slides.
+// True if the pair touches without closing: it has hit in this tick, and now slides.
 bool hasLanded(const WorldScratch& scratch, const ImpactPair& pair) {
   return std::any_of(scratch.contacts.begin(), scratch.contacts.end(), [&](const Contact& c) {
     if (!isOfBodies(c, pair.a, pair.b)) return false;
@@ -79,7 +79,7 @@ bool mayBounce(const WorldModel& model, const WorldState& state, const WorldScra
   return !isTouching(model, state, c.a.index, c.b.index);
 }
 
-// Those that bounce, or are too fast.
+// Contacts that bounce, or are too fast.
 void holdBackHits(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
   for (const auto* pairs : {&scratch.fast_pairs, &scratch.pushed_pairs}) {
     for (const ImpactPair& pair : *pairs) {
@@ -129,7 +129,7 @@ void holdBackLandings(const WorldModel& model, const WorldState& state, WorldScr
   });
 }
 
-// Whether contacts push some body so hard that it goes far for what it is, which its velocity at the start didn't show.
+// True if contacts push some body so hard that it goes far for what it is, which its velocity at the start didn't show.
 bool somethingIsPushed(const WorldModel& model, const WorldScratch& scratch) {
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
     const BodyScratch& body = scratch.bodies[i];
@@ -204,7 +204,7 @@ void sharpenSingleImpact(WorldScratch& scratch) {
   c.impulse_W = c.R_WC * c.r.head<3>();
 }
 
-// Whether the gathered impulses bring in more kinetic energy than the round-off of what they move.
+// True if the gathered impulses bring in more kinetic energy than the round-off of what they move.
 bool addsEnergy(const WorldModel& model, const WorldScratch& scratch) {
   double energy = 0, moved = 0;
   const auto add = [&](const Vec3& impulse, const Vec3& before, const Vec3& change) {

@@ -21,7 +21,7 @@
 
 namespace pincer::engine {
 
-// What lands without bouncing, fast and on a part that didn't touch (a corner of a block that rocks), cuts the tick as well, at most kMostLandings
+// A contact that lands without bouncing, fast and on a part that didn't touch (a corner of a block that rocks), cuts the tick as well, at most kMostLandings
 // times: taken with the rest of the tick its impulse would act at another place and time than the landing, first order.
 constexpr int kMostLandings = 2;     // by which a tick is cut; what lands after them lands at its end
 constexpr double kAlongWith = 0.25;  // of hardLanding: what closes faster lands with what lands hard
@@ -46,14 +46,14 @@ void notePushedPairs(const WorldModel& model, const WorldState& state, WorldScra
 // Takes the contacts of pairs that may hit each other in this tick out of scratch.contacts, and notes the pairs. `landings`: those that land, too.
 void holdBackImpacts(const WorldModel& model, const WorldState& state, bool landings, WorldScratch& scratch);
 
-// Whether there are any that bounce or are too fast.
+// True if there are any that bounce or are too fast.
 bool impactsWait(const WorldModel& model, const WorldState& state, const WorldScratch& scratch);
 
 // When the first of the noted pairs closes [s] after the start of this part of the tick, on the path that the solved contacts give;
 // infinity if none does. Call gatherImpulses before.
 double timeOfImpact(const WorldModel& model, const WorldState& state, WorldScratch& scratch);
 
-// Whether the contact pushed in the last part of a tick.
+// True if the contact pushed in the last part of a tick.
 bool pushedBefore(const WorldState& state, std::uint64_t id);
 
 // The speed from which a landing cuts the tick [m/s].

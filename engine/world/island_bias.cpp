@@ -79,7 +79,7 @@ class BiasFit {
     return largest;
   }
 
-  // What is left of b is w (A z + b); z itself nobody needs.
+  // The rest of b is w (A z + b); z itself nobody needs.
   void minimise() {
     MoverMatrix matrix(problem_, memory_);
     matrix.fits() ? solveDirectly(matrix) : descend();
@@ -129,7 +129,7 @@ class BiasFit {
     }
   }
 
-  // What no motion gives, at most [m/s].
+  // Largest gap speed that no motion gives [m/s].
  public:
   double largestLeft() const {
     double largest = 0;

@@ -22,7 +22,7 @@ enum class PushingBy : std::uint8_t {
   kWedged,    // those that `r` has in their cones, all of them as if they stuck: of a point in a groove that locks (wedge.h)
 };
 
-// Whether the problem's contacts may contradict each other around a loop of bodies.
+// True if the problem's contacts may contradict each other around a loop of bodies.
 bool mayContradict(const ContactProblem& problem);
 
 // Where mayContradict(problem): fits bias_C and the stick offsets of the island's contacts, and corrects problem.q through `q`. `r`: impulses of

@@ -62,7 +62,7 @@ void putContactsAside(const WorldState& state, WorldScratch& scratch) {
   }
 }
 
-// What doesn't move by contacts is idle while it stands.
+// A body that doesn't move by contacts is idle while it stands.
 void noteStanding(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
   scratch.sleep.gravity_W = scratch.gravity_W;
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
@@ -72,7 +72,7 @@ void noteStanding(const WorldModel& model, const WorldState& state, WorldScratch
   }
 }
 
-// Whether the driven body is where its input leads it, and stays there.
+// True if the driven body is where its input leads it, and stays there.
 bool stands(const WorldModel& model, std::size_t body, const WorldState& state, const StepInputs& inputs) {
   const BodyState& s = state.bodies[body];
   const auto motion = static_cast<std::size_t>(model.bodies[body].motion);
@@ -104,7 +104,7 @@ void wake(int group, WorldScratch& scratch) {
   PINCER_ASSERT(sleep.bodies >= 0);
 }
 
-// Whether something that moves is beside one of the island's bodies, by a contact that isn't of the island because it can't close (far_contacts.h).
+// True if something that moves is beside one of the island's bodies, by a contact that isn't of the island because it can't close (far_contacts.h).
 bool isBesideMotion(const WorldModel& model, const WorldScratch& scratch, const Island& island) {
   if (scratch.far_contacts == 0) return false;
   const auto moves = [&](const Side& side) {

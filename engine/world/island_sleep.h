@@ -27,7 +27,7 @@ void fallAsleep(const WorldModel& model, const WorldState& state, WorldScratch& 
 
 inline bool isSomethingAsleep(const WorldScratch& scratch) { return scratch.sleep.bodies > 0; }
 
-// Whether the tick neither moves the body nor looks for contacts with others of which that is true.
+// True if the tick neither moves the body nor looks for contacts with others of which that is true.
 inline bool isIdle(const WorldScratch& scratch, int body) {
   return isSomethingAsleep(scratch) && scratch.sleep.idle[static_cast<std::size_t>(body)];
 }

@@ -136,7 +136,7 @@ int numberOf(const WorldModel& model, const WorldScratch& scratch, const Side& s
   return s.number[mover];
 }
 
-// Whether neither side moves faster than what counts as rest of many contacts.
+// True if neither side moves faster than what counts as rest of many contacts.
 bool isCalm(const WorldModel& model, const Contact& c) {
   const double limit = 2 * restErrorOf(model.options.solver), limit2 = limit * limit;
   const auto is_slow = [&](const Motion& m, const Vec3& arm_W) {
@@ -182,7 +182,7 @@ bool hasManySides(const IslandScratch& s, const Island& island) {
   });
 }
 
-// What the contacts of the island are to the movers.
+// The island's contacts as the movers see them.
 void fillSides(const WorldModel& model, WorldScratch& scratch, Island& island, IslandScratch& s) {
   const int *const order = s.order.data() + island.place, *const from_row = scratch.first_row.data();
   const Contact* const contacts = scratch.contacts.data();
@@ -265,7 +265,7 @@ int nextSettling(const Island& island, bool rings, double tolerance) {
   return island.settling - 1;
 }
 
-// Whether fingertips hold with more contacts than one each, as pads do.
+// True if fingertips hold with more contacts than one each, as pads do.
 bool isHeldByPads(const IslandScratch& s, const Island& island, const WorldScratch& scratch) {
   if (island.contacts > kFewContacts || island.contacts <= island.movers) return false;
   const int* const order = s.order.data() + island.place;

@@ -24,7 +24,7 @@ struct Island {
   bool calm = true;             // all that moves of it is as good as at rest
   bool has_many_sides = false;  // its contacts' are in many_sides
   // Filled by solveIslands, without a value before.
-  // What the solver sees: of one among several islands in IslandScratch, of the only one the world's own (scratch.h), uncopied.
+  // The solver's view: of one among several islands in IslandScratch, of the only one the world's own (scratch.h), uncopied.
   int rows;
   int* first_row;
   double *mu, *q, *r, *u;

@@ -1,4 +1,4 @@
-// What joined bodies are to contacts: the factor F of their inverse mass.
+// Joined bodies as contacts see them: the factor F of their inverse mass.
 #include <algorithm>
 #include <cmath>
 

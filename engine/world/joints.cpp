@@ -107,7 +107,7 @@ double rate(const JointRow& row, const Motion& a, const Motion& b) {
   return row.n_W.dot(a.v_W - b.v_W) + row.ang_a_W.dot(a.w_W) - row.ang_b_W.dot(b.w_W);
 }
 
-// What an impulse on `body` does to the row's velocity.
+// Change of the row's velocity by an impulse on `body`.
 double response(const JointRow& row, int body, const Vec3& mlin_W, const Vec3& mang_W) {
   double sum = 0;
   if (row.a == body) sum += row.n_W.dot(mlin_W) + row.ang_a_W.dot(mang_W);

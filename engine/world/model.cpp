@@ -129,7 +129,7 @@ void listPairs(WorldModel& model, const std::vector<IndexPair>& excluded) {
   }
 }
 
-// What a body's own contacts may come to: those of a brick in a wall, of a ball in a heap, and near misses.
+// Most contacts of a body's own: those of a brick in a wall, of a ball in a heap, and near misses.
 int contactsOf(const contact::Shape& shape) {
   if (std::holds_alternative<contact::Sphere>(shape)) return 8;
   return std::holds_alternative<contact::Capsule>(shape) ? 10 : 24;

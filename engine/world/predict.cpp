@@ -60,13 +60,13 @@ void predictDriven(const BodyState& s, const Vec3& w_W, const MotionInput& in, d
   out.free = in.motion;
   // Predicted as that of a dynamic body: what rests on it has its acceleration, and the gap between them must not show it.
   out.X_WI_mid = {quatFromRotationVector(0.5 * h * w_W) * s.X_WI.q, s.X_WI.p + 0.5 * h * s.v_W};
-  // What slides on it is measured against the way that it goes, not against the mean of two velocities.
+  // A body that slides on it is measured against the way that it goes, not against the mean of two velocities.
   out.end.v_W = 2 / h * (in.X_WB.p - s.X_WI.p) - s.v_W;
   out.end.w_W = 2 / h * rotationVectorOf(in.X_WB.q * s.X_WI.q.conjugate()) - w_W;
 }
 
 // One axis of a driven point: (effective mass) v+ = momentum + contact impulse, with the spring-damper's impulse over the tick inside.
-// What the axis knows at the start: error e = p - target, velocity v, the target's motion over the tick, the force f.
+// The axis at the start: error e = p - target, velocity v, the target's motion over the tick, the force f.
 struct AxisInput {
   double m, k, d, e, v, v_target, v_target_end, target_step, f, h;
 };

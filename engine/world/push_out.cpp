@@ -82,7 +82,7 @@ double wantedWay(const WorldModel& model, const WorldScratch& scratch, const Con
   return std::min(std::max(-kNormalCorrection * share * phi, buried), largest);
 }
 
-// Whether it pushes otherwise than before.
+// True if it pushes otherwise than before.
 bool relax(const WorldModel& model, WorldScratch& scratch, const Contact& c, PushedContact& pushed) {
   const PushSide a(model, scratch, c.a, c.arm_a_W, c.n_W()), b(model, scratch, c.b, c.arm_b_W, -c.n_W());
   const double mobility = a.mobility() + b.mobility();
@@ -146,7 +146,7 @@ void pushOut(const WorldModel& model, WorldState& state, WorldScratch& scratch) 
     scratch.pushed_contacts[i] = {gapAfter(state, scratch, c), 0};
     if (isDeep(model, c, scratch.pushed_contacts[i].gap)) markBodies(c, scratch);
   }
-  // What stands comes last: between it and something heavier a light body must not end deeper in it than it was.
+  // A standing body comes last: between it and something heavier a light body must not end deeper in it than it was.
   for (int sweep = 0; sweep < kPushSweeps; ++sweep) {
     for (const bool standing : {false, true}) sweepPushes(model, standing, scratch);
   }

@@ -17,7 +17,7 @@ namespace pincer::engine {
 
 constexpr double kDeepSpeed = 1e-3;  // up to which the contact solve itself undoes an overlap [m/s]
 
-// Whether the contact's overlap is undone here, were it deep.
+// True if the contact's overlap is undone here, were it deep.
 bool isPushedOut(const WorldModel& model, const Contact& c);
 
 // Pushes the bodies of `state` apart where contacts of the part of the tick just done are deep.

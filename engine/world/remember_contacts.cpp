@@ -1,4 +1,4 @@
-// What each contact remembers of a tick.
+// Each contact's memory of a tick.
 #include <algorithm>
 
 #include "pincer/contact/functions/invariants.h"

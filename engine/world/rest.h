@@ -20,7 +20,7 @@ bool same(const BodyState& a, const BodyState& b);
 bool same(const ContactMemory& a, const ContactMemory& b);
 bool same(const MotionInput& a, const MotionInput& b);
 
-// Whether the tick from `state` with these inputs ends where it starts.
+// True if the tick from `state` with these inputs ends where it starts.
 bool repeatsItself(const WorldState& state, const WorldScratch& scratch, const StepInputs& inputs);
 
 // Notes how a tick with these inputs ended. `calm`: nothing happened in it that state and inputs don't show.

@@ -19,7 +19,7 @@
 
 namespace pincer::engine {
 
-// What a body or point went through in this part of the tick.
+// Motion of a body or point in this part of the tick.
 struct MoverScratch {
   Motion start, free, end;        // at the start of the tick; at its end, were there no contact; at its end (of bodies: if touched)
   Vec3 impulse_W = Vec3::Zero();  // of all contacts [N s]; of what doesn't move, of those of awake bodies
@@ -139,7 +139,7 @@ struct PushedContact {
   double way = 0;  // lambda, by which it pushed the two apart [kg m]
 };
 
-// What was remembered of a contact before this tick, and where.
+// Memory of a contact from before this tick, and its place.
 struct KeptMemory {
   Contact* contact;
   const ContactMemory* place;

@@ -16,7 +16,7 @@ double inverseMassOf(const WorldModel& model, const WorldScratch& scratch, const
   return side.kind == SideKind::kBody ? model.bodies[side.index].inverse_mass : scratch.points[side.index].inverse_mass.sum() * (1.0 / 3);
 }
 
-// Whether a contact that opens still has an impulse, below the solver's tolerance: what is in the air would stick with it, and remember how far it
+// True if a contact that opens still has an impulse, below the solver's tolerance: what is in the air would stick with it, and remember how far it
 // flies as slip that is to be undone.
 bool isResidue(const WorldModel& model, const WorldScratch& scratch, const Contact& c) {
   const double w = inverseMassOf(model, scratch, c.a) + inverseMassOf(model, scratch, c.b);

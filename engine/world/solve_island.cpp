@@ -74,7 +74,7 @@ class IslandSolve {
     return problem;
   }
 
-  // What a loop of bodies asks for is fitted to what pushed in the last tick, once more to the impulses found if that fails; then contacts give way.
+  // The gaps of a loop of bodies are fitted to the contacts that pushed in the last tick, once more to the impulses found if that fails; then contacts give way.
   void solveLoop() {
     fit(PushingBy::kLastTick);
     SolverOptions giving = options_;
@@ -130,7 +130,7 @@ class IslandSolve {
     return operations - memory_.operations_left;
   }
 
-  // What is kept of the budget for stopOnly: support doesn't depend on it.
+  // Share of the budget kept for stopOnly: support doesn't depend on it.
   std::int64_t reserveForStops() const { return kStoppingSweeps * kPerContactSwept * island_.contacts; }
   double offsetRate() const { return scratch_.h > 0 ? kTangentCorrection / tick_ : 0; }
   bool isLost() const {

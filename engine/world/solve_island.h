@@ -1,6 +1,6 @@
 // solve_island: one island's contact problem, and what to do where it has no answer.
 //
-// What contacts ask for may contradict itself: round loops of bodies (island_bias.h), between walls that lock (wedge.h). It is fitted to what bodies can do
+// Contacts' gaps may contradict each other: round loops of bodies (island_bias.h), between walls that lock (wedge.h). It is fitted to what bodies can do
 // before the solve, and once more to the impulses found if that fails; then contacts give way by as little as they must (solve/contact_solver.h). What
 // still has no answer only stops what closes.
 #pragma once

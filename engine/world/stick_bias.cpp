@@ -95,13 +95,13 @@ void alignPair(std::span<Contact> pair, int first, double h, double offset_rate,
   }
 }
 
-// Those of a point's rows that ask for something: of what stuck all; of what slid, or landed in an overlap, the normal.
+// Rows of a point that ask for something: all of a contact that stuck; the normal of one that slid, or landed in an overlap.
 bool asks(const Contact& c, int k) {
   if (k != kNormalRow) return c.stuck;
   return c.bias_C[kNormalRow] < 0 || (c.memory && c.memory->active && !c.closing);
 }
 
-// Whether a point sticks at one of its contacts with a body, and touches it in another plane.
+// True if a point sticks at one of its contacts with a body, and touches it in another plane.
 bool isHeldManyfold(std::span<const Contact> contacts) {
   const Contact* first = nullptr;
   bool sticks = false, flat = true;

@@ -220,7 +220,7 @@ class Tick {
     conclude();
     left_ = h < left_ - stop_ ? left_ - h : stop_;
   }
-  // Of what something pushes on. Contacts wander round a body that turns so far, and those of the middle don't show it: needles and sheets,
+  // Bodies that something pushes on. Contacts wander round a body that turns so far, and those of the middle don't show it: needles and sheets,
   // which friction spins up, would gain energy.
   bool somethingTurnsFar(double h) const {
     if (treesTurnFar(model_, state_, scratch_)) return true;
@@ -317,7 +317,7 @@ class Tick {
     } while (haveFarClosed(model_, scratch_));
   }
 
-  // What a part of a tick costs besides its solve.
+  // Cost of a part of a tick besides its solve.
   void chargeSurroundings() {
     charge(kPerBody * std::ssize(scratch_.bodies) + kPerPair * std::ssize(model_.pairs) + kPerContact * std::ssize(scratch_.contacts),
            scratch_);

@@ -16,7 +16,7 @@
 
 namespace pincer::engine {
 
-// Whether `problem` is a point's between walls and has no answer: none was found, or one (`r`) that squeezes by more than a thousand times what the speeds
+// True if `problem` is a point's between walls and has no answer: none was found, or one (`r`) that squeezes by more than a thousand times what the speeds
 // ask for. In a groove that locks, walls that contradict each other by some um/s (one lands while the point sticks at the other) have none
 // (point_problem.h). island_bias.h makes them agree.
 bool isWedged(const ContactProblem& problem, const double* r, const SolveResult& result);

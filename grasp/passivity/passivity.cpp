@@ -16,7 +16,7 @@ void checkPassivityRange(const char* what, double value, double low, double high
   throw InputError(fmt::format("passivity: {} = {} is out of range [{}, {}]. {}", what, value, low, high, remedy));
 }
 
-// What a force scaled by s pays out in the coming tick: linear s + quadratic s^2 [J].
+// Energy that a force scaled by s pays out in the coming tick: linear s + quadratic s^2 [J].
 struct Flow {
   double linear = 0, quadratic = 0;
   double whole() const { return linear + quadratic; }
@@ -92,7 +92,7 @@ bool boundSum(const PassivityOptions& options, double h, PassivityState& state, 
   return true;
 }
 
-// What is missing, shared out by what each finger gave, or would give, by itself.
+// The missing energy, shared out by that which each finger gave, or would give, by itself.
 bool dampSum(const PassivityOptions& options, double h, PassivityState& state, std::span<Vec3> f_W) {
   const auto own = [&](std::size_t i) { return std::max(flowOf(options, state, i, f_W[i], h).whole() - state.ports[i].balance, 0.0); };
   double missing = -state.balance, given = 0;

@@ -96,7 +96,7 @@ class FingerLook {
     return distance < kEndless && (point_.p_mid_W - centre_W).squaredNorm() <= distance * distance;
   }
 
-  // What closes within the tick must be seen at its middle.
+  // A gap that closes within the tick must be seen at its middle.
   double marginTo(const engine::BodyScratch& mid) const {
     return model_.world.options.contact_margin + model_.world.options.h * (point_.start.v_W - mid.start.v_W).norm();
   }

@@ -114,7 +114,7 @@ void averageOverTick(const engine::PointScratch& point, double tick, FingerRepor
   report.tangential_force = (report.f_contact_W - report.n_W * report.f_contact_W.dot(report.n_W)).norm();
 }
 
-// What of the pad is touched, or would be. All geometry is that of the middle of the tick.
+// Place on the pad that is touched, or would be. All geometry is that of the middle of the tick.
 void reportTouch(const GraspModel& model, int finger, const Vec3& touch_W, GraspScratch& scratch) {
   FingerReport& report = scratch.fingers[finger];
   const bool has_shape = model.fingers[finger].shape.has_value();

@@ -53,7 +53,7 @@ Examples:
 
 Exit codes: 0 ok, 1 a check failed, 2 usage, 3 bad input, 4 device, 5 interrupted.)";
 
-// What was printed may have gone to a full disk or a closed pipe.
+// Printed text may have gone to a full disk or a closed pipe.
 int flushed(int exit_code) {
   if (std::fflush(stdout) == 0 && !std::ferror(stdout)) return exit_code;
   complain("standard output can't be written: what was printed there isn't whole. Is the disk full, or has its reader ended?");

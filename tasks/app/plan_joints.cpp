@@ -39,7 +39,7 @@ std::string treeForm(const engine::WorldModel& world, const engine::TreeModel& t
                      counted(tree.columnCount(), "freedom"), touch, course);
 }
 
-// What acts along a coordinate, and what of it costs rows only where it acts.
+// Forces along a coordinate, and which of them cost rows only where they act.
 std::string coordinateForm(const engine::WorldModel& world, const engine::TreeModel& tree, const engine::TreeCoordinate& c) {
   const engine::JointTraits& t = c.traits;
   const bool turns = jointOf(world, c).kind != engine::JointKind::kSlider;

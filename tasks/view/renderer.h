@@ -37,7 +37,7 @@ class Renderer final : public MeshSink {
   // Whose each pixel is in a picture of this size, row by row from the upper left: DrawItem::thing of what is in front, 0 where nothing
   // is. Marks and the ground are left out.
   std::vector<int> things(const DrawList& list, const Camera& camera, devices::SurfaceSize size);
-  // What was drawn since, overlays included.
+  // The picture drawn since, overlays included.
   Image picture();
   // To the surface's window, if it is one.
   void show();

@@ -15,7 +15,7 @@
 
 namespace pincer::tasks {
 
-// What is shown; a key each (keys.h).
+// Parts of the picture; a key each (keys.h).
 struct ViewChoice {
   bool facets = false;       // of meshes, in place of the smooth surface
   bool edges = false;        // of the triangles of meshes
@@ -46,7 +46,7 @@ class SceneDrawing {
   // Makes the meshes; `start` says where things are at first.
   SceneDrawing(const grasp::GraspModel& model, const Snapshot& start, MeshSink& meshes);
 
-  // What there is to see of `snapshot`. A blind trial shows nothing but the fingers' home: an empty dish. Things (DrawItem::thing) are
+  // The drawing of `snapshot`. A blind trial shows nothing but the fingers' home: an empty dish. Things (DrawItem::thing) are
   // thingOfBody, and after them the fingers; 0 is what needn't be in the picture.
   static int thingOfBody(std::size_t body) { return static_cast<int>(body) + 1; }
   DrawList compose(const Snapshot& snapshot, const ViewChoice& choice) const;

@@ -20,7 +20,7 @@ struct FrameLight {
 class GlShading {
  public:
   void setFrame(const FrameLight& frame);
-  // What is drawn next looks like `item`, `alpha` times as opaque.
+  // Things drawn next look like `item`, `alpha` times as opaque.
   void begin(const DrawItem& item, float alpha);
   // Another program was in use meanwhile.
   void forget() { used_ = nullptr; }

@@ -17,7 +17,7 @@ class Surface;
 
 namespace pincer::tasks {
 
-// What commands that show something share.
+// Options and steps that commands with a window share.
 struct ViewOptions {
   bool view = false;            // a window
   bool keys = true;             // do something in it

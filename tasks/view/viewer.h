@@ -39,7 +39,7 @@ class Viewer {
   // A page of text over all, until the viewer's end.
   void showPage(const StudyPage& page) { page_ = page; }
 
-  // What the person did, one picture, and shown. Returns false when the person has closed it.
+  // Takes the person's input, draws one picture and shows it. Returns false when the person has closed it.
   bool update();
 
   // The parts of update():

@@ -1,4 +1,4 @@
-// What stops, brakes and limits joints, and what they hold. The answers are closed forms:
+// Stops, brakes and limits of joints, and the loads that they hold. The answers are closed forms:
 //
 //   stop       s = F t^2/2m until the stop; e^2n of the height after n bounces; e = 0 rests at the stop to the bit
 //   friction   holds at .999 of its limit, slides with (F - f)/m at 1.001; runs out after v^2 m/2f
@@ -114,7 +114,7 @@ std::vector<Record> pendulumAndStop(MeasureContext&) {
   for (int n = 0; n < 1000 && world.velocity(0) >= 0; ++n) world.tick();
   const double w = world.velocity(0), below = std::numbers::pi / 2 - world.position(0);
   rebound = w * w + fall * (1 - math::cos(below));
-  // What has stops is of second order in the tick.
+  // A joint with stops is of second order in the tick.
   return {atMost("energy after the stop over e^2 of that before, less 1", std::abs(rebound / (kRestitution * kRestitution * fall) - 1), "-",
                  1e-4),
           unflagged(world)};
@@ -186,7 +186,7 @@ std::vector<Record> tickSizes(MeasureContext& context) {
           atMost("way in 1 s at 1.001, likewise, relative error", slides, "-", 1e-9), exactly("flagged ticks", flagged, "-", 0)};
 }
 
-// What a drive gives at its limit.
+// A drive's force at its limit.
 std::vector<Record> limitedDrive(MeasureContext&) {
   constexpr double kLimit = 4;
   Linkage world(1e-3, Vec3::Zero());

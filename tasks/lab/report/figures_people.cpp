@@ -35,7 +35,7 @@ std::string whatIsSeen(const std::vector<const PairedRow*>& rows) {
   return words;
 }
 
-// Of what the panel shows: means, intervals and participants.
+// Rows of the panel: means, intervals and participants.
 double highest(const PairedRow& row) {
   const Averaged averaged = findingMeasures()[row.measure].averaged;
   double high = std::max({intervalOf(row.force, averaged).high, intervalOf(row.cld, averaged).high, 1e-9});

@@ -154,7 +154,7 @@ std::string estimateText(const Estimate& e, double scale, int digits, Averaged a
   return fmt::format("{:.{}f} ({:.{}f} to {:.{}f})", scale * e.mean, digits, scale * interval.low, digits, scale * interval.high, digits);
 }
 
-// Whether the published figure lies in pincer's interval; where not, how far off the mean is.
+// True if the published figure lies in pincer's interval; where not, how far off the mean is.
 std::string followsText(const StudySummary& s, const StudyCondition& c) {
   if (std::isnan(c.published) || c.headline.n < 2 || isUnsettled(c)) return "–";
   const Interval interval = intervalOf(c.headline, s.headline.averaged);

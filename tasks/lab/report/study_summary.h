@@ -16,7 +16,7 @@
 
 namespace pincer::tasks {
 
-// What a figure is called and how a person reads it: shown value = scale x SI value.
+// A figure's name and how a person reads it: shown value = scale x SI value.
 struct HeadlineQuantity {
   std::string name, unit;
   double scale = 1;
@@ -43,7 +43,7 @@ struct StudyCondition {
   Estimate finger_speed, tactor_speed;  // [m/s]
 };
 
-// Whether its staircases ended before they had risen to a threshold: one that settles is answered right in 70.7 % of its trials and more; at chance
+// True if its staircases ended before they had risen to a threshold: one that settles is answered right in 70.7 % of its trials and more; at chance
 // it has only begun to rise from where it started.
 bool isUnsettled(const StudyCondition& condition);
 
@@ -60,7 +60,7 @@ struct StudySummary {
 // The level, shown, at which a threshold lies; the same unless thresholds are counted in segments.
 double levelShown(const StudySummary& summary, double headline);
 
-// Whether the session is of a task that this summary is for.
+// True if the session is of a task that this summary is for.
 bool isStudy(const std::string& task);
 
 // Throws InputError for a session of something else, and a protocol that can't be read; `name` stands for the session there.
@@ -70,7 +70,7 @@ StudySummary summariseStudy(const SessionReader& session, const std::vector<Resp
 std::vector<std::string> studyTableHeads(const StudySummary& summary);
 std::vector<std::string> studyTableRow(const StudySummary& summary, const StudyCondition& condition);
 std::string studyNote(const StudySummary& summary);
-// What came out, in words that need no table: who took part, and each condition's figure with its interval beside the published one.
+// The outcome in words that need no table: who took part, and each condition's figure with its interval beside the published one.
 std::string studyFinding(const StudySummary& summary);
 
 std::string formatStudyTable(const StudySummary& summary);  // for a terminal

@@ -35,7 +35,7 @@ struct ContactRow {
   bool pushes, slips;
 };
 
-// What a finger felt in the last tick, with its own copy of the pressure map.
+// A finger's report of the last tick, with its own copy of the pressure map.
 struct FingerFelt {
   grasp::FingerReport report;
   std::vector<grasp::Taxel> pressure;

@@ -1,6 +1,6 @@
 // mjcf: reads a robot from an MJCF file, the format of MuJoCo's models.
 //
-// What the format says and pincer has no use for is counted in the notes (soft contact, solver settings, sensors); what would change the robot
+// Entries of the format that pincer has no use for are counted in the notes (soft contact, solver settings, sensors); what would change the robot
 // and isn't known here is refused by name, file and line (mjcf_grammar.h is the list). docs/robots.md has all of it in words.
 #pragma once
 #include <string>

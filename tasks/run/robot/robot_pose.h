@@ -11,7 +11,7 @@ namespace pincer::tasks {
 
 int coordinateCount(RobotJointKind kind);
 
-// Those of the pose that the file draws: hinges and slides at their references, balls unturned, free bodies where they are drawn.
+// Coordinates of the pose that the file draws: hinges and slides at their references, balls unturned, free bodies where they are drawn.
 std::vector<double> drawnCoordinates(const Robot& robot);
 
 // X_WB of every body. `q` has as many numbers as drawnCoordinates.

@@ -22,7 +22,7 @@ constexpr double kNextToNoMoment = 1e-18;  // [kg m^2]
 constexpr double kDotRadius = 1e-3;        // of what has no shape that touches [m]
 constexpr double kRoundOff = 1e-6;         // of a tick, in a duration
 
-// What a robot can say and a scene can't.
+// Words that a robot has and a scene doesn't.
 void refuseTheRest(const Robot& robot) {
   for (const RobotTendon& tendon : robot.tendons) {
     if (tendon.limits || tendon.friction != 0)
@@ -81,7 +81,7 @@ void writeGeom(const RobotGeom& geom, const Pose& X, const std::vector<RobotMesh
   json.key("collides").beginObject().key("as").value(geom.contype).key("with").value(geom.conaffinity).endObject().endObject();
 }
 
-// What touches; a body that nothing touches is a dot that is only seen.
+// Touchable shapes; a body that nothing touches is a dot that is only seen.
 void writeShapes(const std::vector<std::pair<const RobotGeom*, Pose>>& geoms, const std::vector<RobotMesh>& meshes, JsonWriter& json) {
   json.key("shapes").beginArray();
   bool is_empty = true;

@@ -1,4 +1,4 @@
-// What ties a robot's joints together and what drives them: couplings, tendons and drives of its scene.
+// A robot's ties and drives: couplings, tendons and drives of its scene.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -51,7 +51,7 @@ void writeCouplings(SceneWriting& w) {
   w.json.endArray();
 }
 
-// What a drive moves: l = sum of factors times coordinates.
+// A drive's coordinate: l = sum of factors times coordinates.
 Terms termsOf(const Robot& robot, const RobotDrive& drive) {
   Terms terms = {{drive.joint, 1}};
   if (drive.joint.empty()) {
@@ -86,7 +86,7 @@ void writeTendons(SceneWriting& w) {
   w.json.endArray();
 }
 
-// What l feels of the robot's mass as it is drawn: the sum of M_jj/c_j^2, MuJoCo's rule for a damping ratio.
+// Mass that l feels of the robot as it is drawn: the sum of M_jj/c_j^2, MuJoCo's rule for a damping ratio.
 double feltInertia(const Robot& robot, const RobotDrive& drive) {
   const std::vector<double> own = ownInertias(robot, bodyPoses(robot, drawnCoordinates(robot)));
   const Terms terms = termsOf(robot, drive);

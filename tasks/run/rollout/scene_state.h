@@ -62,7 +62,7 @@ double jointVelocity(const SceneModel& model, const SceneState& state, int joint
 // changes nothing, when a number isn't finite, the position is beyond the joint's stops, the joint follows another one, or is one of a loop of bodies.
 void placeJoint(const SceneModel& model, SceneState& state, int joint, double position, double velocity);
 
-// What a caller may ask for in place of the scene's trajectories. NaN: not said.
+// Inputs that a caller may give in place of the scene's trajectories. NaN: not said.
 struct SceneInputs {
   explicit SceneInputs(const SceneModel& model);  // nothing is said
 
@@ -77,7 +77,7 @@ struct SceneInputs {
   Vec3 gravity;                                     // [m/s^2]; NaN: the scene's
 };
 
-// What several ticks came to.
+// Sum of several ticks.
 struct StepsReport {
   std::uint32_t status = engine::kStepOk;  // of all of them together
   std::int64_t ticks = 0;                  // done; fewer than asked for where the state broke, or somebody stopped it

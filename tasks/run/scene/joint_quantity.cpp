@@ -37,7 +37,7 @@ FrameMoment frame(M m, I i) {
   return {X_WF, body.v_W + w_W.cross(X_WF.p - body.X_WI.p), w_W};
 }
 
-// What touches between two bodies: forces on the first, summed.
+// Contact forces between two bodies: on the first, summed.
 struct PairMoment {
   Vec3 f_W = Vec3::Zero();
   double normal_force = 0;

@@ -1,4 +1,4 @@
-// What ties joints together and what drives them: couplings, tendons, drives.
+// Joints' ties and drives: couplings, tendons, drives.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -62,7 +62,7 @@ void readControlRange(const JsonValue& json, engine::DriveModel& drive) {
   if (!(drive.lower_control <= drive.upper_control)) json.reject("is no range: the first is more than the second.");
 }
 
-// What each type takes besides its control.
+// Keys that each type takes besides its control.
 void readLaw(const JsonValue& json, engine::DriveModel& drive) {
   using Control = engine::DriveModel::Control;
   const std::size_t type = json.at("type", "How it drives: position, velocity, motor or affine.").oneOf(keys::kDriveTypes);

@@ -44,7 +44,7 @@ class HandDevices {
   virtual ArmBase base(int) const { return {}; }
   // Where the finger's arm stands in the world; for what was recorded there.
   virtual void setBase(int, const Vec3&, const Quat&) {}
-  // What a device, or its service, reports as wrong: a sentence with the remedy; empty: nothing.
+  // Fault that a device, or its service, reports: a sentence with the remedy; empty: nothing.
   virtual std::string complaint() { return {}; }
   // One line per device, for a person.
   virtual std::vector<std::string> describe() = 0;

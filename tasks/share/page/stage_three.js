@@ -16,7 +16,7 @@ function geometryOf(mesh) {
   return geometry;
 }
 
-// What three.js's own material lacks: a ball's octants in two shades, so that it is seen to turn; a ground that fades out.
+// Additions to three.js's own material: a ball's octants in two shades, so that it is seen to turn; a ground that fades out.
 function withOctantsAndFade(material, { octants, fade }) {
   material.onBeforeCompile = (shader) => {
     shader.uniforms.octants = { value: octants };

@@ -38,7 +38,7 @@ double msToZero(int signal, DeadMan dead_man) {
   HaplyServer server(serviceThat(dead_man));
   std::error_code error;
   const std::string self = std::filesystem::read_symlink("/proc/self/exe", error).string();
-  // What it says is for nobody: the file "null" of the folder of devices.
+  // Its words are for nobody: the file "null" of the folder of devices.
   const ChildProcess child(
       {self, "devices", "test", "049D", "--devices", "haply", "--force", "0.3", "--yes", "--watchdog", "100", "--service", server.place()},
       "/dev", "null");

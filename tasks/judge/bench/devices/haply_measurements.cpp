@@ -118,7 +118,7 @@ std::vector<Record> streaming(double seconds) {
           atMost("reading 2 kB", readingTime(), "us", 60)};
 }
 
-// What ends a force. When it was, on the monotonic clock [ns]; 0: as it was called.
+// Ends a force. The time of it, on the monotonic clock [ns]; 0: as it was called.
 using Cut = std::function<std::int64_t(HaplyServer&, HaplyHost&)>;
 
 // A servo whose first tick throws.

@@ -83,7 +83,7 @@ void eachLine(std::vector<std::string> arguments, MeasureContext& context, const
   for (std::string line; child.readLine(line, context.interrupted);) take(line);
 }
 
-// What `pincer devices test` said of its devices.
+// Verdict of `pincer devices test` on its devices.
 struct TestedDevices {
   int devices = 0;
   double lost = 0, unsound = 0, answered = 1;  // answered: the least share of a device's commands

@@ -56,7 +56,7 @@ class FamilyRunner {
     for (int k = 0; k < engine::contactCount(*scratch_); ++k) deepest = std::max(deepest, -engine::contactAt(*scratch_, k).gap);
     return deepest;
   }
-  // Of what can be seen: places and velocities.
+  // Error of all that can be seen: places and velocities.
   std::uint64_t bodiesHash() const {
     engine::WorldState seen = world_.state;
     seen.tick = 0;
