@@ -121,12 +121,14 @@ std::vector<Record> streaming(double seconds) {
 // Ends a force. The time of it, on the monotonic clock [ns]; 0: as it was called.
 using Cut = std::function<std::int64_t(HaplyServer&, HaplyHost&)>;
 
-// A servo whose first tick throws.
+// A servo that pushes and then throws: after some ticks, for the last push before it began may have been forgotten.
 class Throws final : public ServoCycle {
  public:
   explicit Throws(HaplyHost& host) : host_(host) {}
   bool tick(double) override {
+    constexpr int kPushes = 50;
     host_.arm(0).commandForce(kPush);
+    if (++ticks_ < kPushes) return true;
     thrown = devices::usb::monotonicNs();
     throw std::runtime_error("a tick that fails");
   }
@@ -137,6 +139,7 @@ class Throws final : public ServoCycle {
 
  private:
   HaplyHost& host_;
+  int ticks_ = 0;
 };
 
 // From `cut` to zero at the first arm's motors, median and longest [ms]. The arms push before.
