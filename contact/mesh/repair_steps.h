@@ -20,7 +20,7 @@ MaybeChange turnOutwards(TriangleMesh& mesh);
 MaybeChange dropOpposingNormals(TriangleMesh& mesh);  // of triangles with one that points to their back
 MaybeChange dropUnusedVertices(TriangleMesh& mesh);
 
-// State that the steps share.
+// Helpers that the steps share.
 void dropTriangles(TriangleMesh& mesh, const std::vector<bool>& drop);
 // Reverses the marked triangles. Normals of the file that point to the wrong side then are reversed with them.
 void flipTriangles(TriangleMesh& mesh, const std::vector<bool>& flip);

@@ -279,7 +279,7 @@ void SurfaceTouch::keepCentre(const ShellContact& main) {
   tracker_.status = status_;
 }
 
-// The list's story goes on from here.
+// Contacts of the list go on from here in the next query.
 void SurfaceTouch::keepParts() {
   LookParts& parts = lookParts();
   parts.p_BC = C_;

@@ -16,7 +16,7 @@
 
 namespace pincer::engine {
 
-// Whether, of three rows, all directions along the surface are alike and the normal is apart from them.
+// True if, of three rows, all directions along the surface are alike and the normal is apart from them.
 bool isIsotropic(const double* W, int stride);
 
 // r = -W^-1 q of such a contact, which would stop it, becomes its solution. Returns how much friction was missing of |r_T|, if it pushes.

@@ -19,7 +19,7 @@ struct Command {
   std::vector<Option> positionals;  // `name` without dashes
 };
 
-// Those that can be run, not those that only hold others.
+// Commands that can be run, without groups that only hold others.
 std::vector<Command> commandsOf(const Ground& ground);
 
 // Arguments with which the command runs, and shortly, as far as its options allow it; files are of ground.inputs().

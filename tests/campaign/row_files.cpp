@@ -78,7 +78,7 @@ void harmDeviceFile(Case& c) {
     return;
   }
   c.write("recording.csv", mutatedText(c.random, readFile(recordingFile(c.ground))));
-  // What is accepted runs by the wall clock: half a second of it is enough.
+  // An accepted recording runs by the wall clock: half a second of it is enough.
   Launch launch = c.pincer({"run", "sphere-pickup", "--devices", "replay", "--recording", "recording.csv", "--yes", "--repetitions", "1",
                             "--friction", "0.9", "--condition", "force", "--no-report", "--out", "out"});
   launch.limit = 0.2;

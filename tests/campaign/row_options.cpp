@@ -10,7 +10,7 @@
 namespace pincer::campaign {
 namespace {
 
-// What no option takes that wants a number.
+// Texts that no option takes which wants a number.
 const std::set<std::string>& noNumbers() {
   static const std::set<std::string> kNone = {" ",    "abc",  "%s%n%n", "NaN", "nan", "inf", "-inf",  "null",   "{}",
                                               "=1+1", "a\nb", ".",      "/",   "1e",  "--1", "1e309", "-1e309", "1e999"};

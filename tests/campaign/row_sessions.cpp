@@ -83,7 +83,7 @@ const std::vector<Damage>& damages(const Ground& ground) {
   return kDamages;
 }
 
-// What reads sessions. The tables are quick; of what takes longer one is drawn.
+// Runs the commands that read sessions. The tables are quick; of what takes longer one is drawn.
 void readSession(Case& c, const std::string& task, const std::set<int>& export_codes = {0, 3}) {
   std::vector<std::vector<std::string>> readers = {{"export", "session.db", "--out", "csv"}, {"export", "session.db", "--bids", "bids"}};
   if (c.chance(0.15)) {

@@ -1,4 +1,4 @@
-// What comes over USB, in this process: random and mutated bytes. What is taken for a message must be one: it is told again as the same bytes.
+// Bytes over USB, in this process: random and mutated bytes. What is taken for a message must be one: it is told again as the same bytes.
 #include <fmt/format.h>
 
 #include <algorithm>

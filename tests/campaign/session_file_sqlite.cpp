@@ -59,7 +59,7 @@ std::vector<Column> columnsIn(Store& store) {
   return columns;
 }
 
-// What differs between two runs of the same study: clocks, versions, costs.
+// True of columns that differ between two runs of the same study: clocks, versions, costs.
 bool isOfTheRun(const Column& column) {
   static const std::vector<std::string> kOfTheRun = {"started_utc",     "tick_median_us", "tick_p999_us", "tick_us",
                                                      "samples_dropped", "build",          "version",      "processor"};

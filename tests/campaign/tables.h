@@ -8,7 +8,7 @@ namespace pincer::campaign {
 // Rows of cells; quotes are those of RFC 4180 where the separator is a comma, and plain characters where it is a tab.
 std::vector<std::vector<std::string>> cellsOf(const std::string& text, char separator);
 
-// What is wrong: rows of different lengths, a cell that a spreadsheet would take for a formula. Empty if nothing is.
+// The fault: rows of different lengths, a cell that a spreadsheet would take for a formula. Empty if nothing is.
 std::string problemOfTable(const std::string& text, char separator);
 
 }  // namespace pincer::campaign
