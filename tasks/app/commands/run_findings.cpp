@@ -64,9 +64,9 @@ StudySessions runStudyFindings(StudyRuns studies, const FindingsOptions& options
 ClaimTable judgeAll(StudySessions sessions, const FindingsResult& result) {
   for (const VariantResult& variant : result.variants) {
     if (variant.name == findingsVariants().front().name) sessions.studies["manipulation"] = variant.sessions;
-    if (variant.name == "frozen-tactor") sessions.controls["manipulation"] = variant.sessions;
+    if (variant.name == "frozen-tactor") sessions.parked["manipulation"] = variant.sessions;
   }
-  return judgeClaims(sessions.studies, sessions.controls);
+  return judgeClaims(sessions);
 }
 
 bool isEmpty(const ClaimTable& table) { return table.participants.empty(); }
@@ -122,7 +122,7 @@ void addFindingsTask(CLI::App& run, int& exit_code) {
   command->add_option("--study-experiments", arguments->studies.experiments, "Of every study with one finger")
       ->check(wholeWithin(0, 1000))
       ->capture_default_str();
-  command->add_option("--study-controls", arguments->studies.controls, "Likewise with the tactor parked: what follows must vanish")
+  command->add_option("--study-controls", arguments->studies.controls, "Likewise under each control: what follows must vanish")
       ->check(wholeWithin(0, 1000))
       ->capture_default_str();
   command->add_option("--study-participants", arguments->studies.participants, "In each of them (default: as published)")

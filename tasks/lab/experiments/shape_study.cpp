@@ -13,7 +13,7 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr std::uint64_t kModelOrder = 4, kExplorer = 5, kWayOfPoints = 6;  // parts of seeds
+constexpr std::uint64_t kModelOrder = 4, kExplorer = 5, kWayOfPoints = 6, kUnrelated = 7;  // parts of seeds
 constexpr int kRunsOfSession = 4;
 constexpr double kPublishedRight = 0.819;  // of all conditions together
 
@@ -103,9 +103,16 @@ std::vector<StudyRun> ShapeExperiment::runs() const {
   return runs;
 }
 
+std::shared_ptr<const contact::SmoothMesh> ShapeExperiment::modelOf(const StudyTrial& trial, const ShapeCondition& condition) const {
+  if (!study_.unrelated) return solids_[condition.shaded][trial.stimulus.level < 0][static_cast<std::size_t>(solidOf(trial.stimulus.name))];
+  Random random(seedFor(trial.seed, kUnrelated));
+  const Solids& solids = solids_[random.below(2)][random.below(2)];
+  return solids[random.below(kSolids)];
+}
+
 ShapeTrialSetup ShapeExperiment::setupOf(const StudyTrial& trial, const ShapeCondition& condition) const {
   ShapeTrialSetup setup;
-  setup.solid = solids_[condition.shaded][trial.stimulus.level < 0][static_cast<std::size_t>(solidOf(trial.stimulus.name))];
+  setup.solid = modelOf(trial, condition);
   setup.display_tactile = condition.display_tactile && !study_.frozen_tactor;
   setup.friction = study_.friction;
   setup.finger_radius = study_.finger_radius;

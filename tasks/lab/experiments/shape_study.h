@@ -30,6 +30,7 @@ struct ShapeStudy {
   double stiffness = 1000;      // [N/m] (ours)
   double tactor_reach = 8e-3;   // either way [m] (ours)
   bool frozen_tactor = false;   // a control: the tactor is parked in every condition
+  bool unrelated = false;       // a control: the model that is felt is drawn, whatever is asked
   std::vector<ShapeCondition> conditions = published();
   SurveyPlan session = oneFingerSurvey();  // what people read, train and are asked
 
@@ -54,6 +55,7 @@ class ShapeExperiment final : public Experiment {
   using Solids = std::array<std::shared_ptr<const contact::SmoothMesh>, kSolids>;
 
   StudyRun runOf(int participant, int run, bool display) const;
+  std::shared_ptr<const contact::SmoothMesh> modelOf(const StudyTrial& trial, const ShapeCondition& condition) const;
   ShapeTrialSetup setupOf(const StudyTrial& trial, const ShapeCondition& condition) const;
 
   ShapeStudy study_;

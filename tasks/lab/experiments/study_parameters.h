@@ -156,6 +156,7 @@ void visitParameters(Study& s, Visit&& visit) {
   visit("stiffness", s.stiffness, Parameter{"of finger and proxy [N/m]", {0, 3500, true, kAsPublished}});
   visit("tactor_reach", s.tactor_reach, Parameter{"either way [m]", {0, 8e-3, true, kAsPublished}});
   visit("frozen_tactor", s.frozen_tactor, Parameter{"true: the tactor is parked in every condition (a control)"});
+  visit("unrelated", s.unrelated, Parameter{"true: the model that is felt is drawn, whatever is asked (a control)"});
   visit("conditions", s.conditions, Parameter{"a list replaces all of them"});
   visit("session", s.session, Parameter{"what people read, train and are asked; simulated participants none of it"});
 }

@@ -152,6 +152,13 @@ std::vector<StudyMeasures> readStudies(const std::vector<std::string>& paths, Co
   return studies;
 }
 
+std::map<std::string, std::vector<StudyMeasures>> readAll(const std::map<std::string, std::vector<std::string>>& files,
+                                                          CommonGround& ground) {
+  std::map<std::string, std::vector<StudyMeasures>> measures;
+  for (const auto& [study, paths] : files) measures[study] = readStudies(paths, ground);
+  return measures;
+}
+
 }  // namespace
 
 ClaimEvidence evidenceOf(const Claim& claim, const std::vector<StudyMeasures>& studies) {
@@ -165,15 +172,14 @@ ClaimEvidence evidenceOf(const Claim& claim, const std::vector<StudyMeasures>& s
   return e;
 }
 
-ClaimTable judgeClaims(const std::map<std::string, std::vector<std::string>>& sessions,
-                       const std::map<std::string, std::vector<std::string>>& controls) {
+ClaimTable judgeClaims(const StudySessions& sessions) {
   CommonGround ground;
-  std::map<std::string, std::vector<StudyMeasures>> studies, controlled;
-  for (const auto& [study, paths] : sessions) studies[study] = readStudies(paths, ground);
-  for (const auto& [study, paths] : controls) controlled[study] = readStudies(paths, ground);
+  auto studies = readAll(sessions.studies, ground), parked = readAll(sessions.parked, ground),
+       unrelated = readAll(sessions.unrelated, ground);
   ClaimTable table;
   for (const Claim& claim : publishedClaims())
-    table.rows.push_back({&claim, evidenceOf(claim, studies[claim.study]), evidenceOf(claim, controlled[claim.study])});
+    table.rows.push_back({&claim, evidenceOf(claim, studies[claim.study]), evidenceOf(claim, parked[claim.study]),
+                          evidenceOf(claim, unrelated[claim.study])});
   table.commit = ground.commit();
   table.participants = ground.participants();
   return table;

@@ -9,10 +9,15 @@
 
 namespace pincer::tasks {
 
+// Files by study. Controls: the tactor is parked in every condition; what is felt is drawn, whatever is asked (shape identification).
+struct StudySessions {
+  std::map<std::string, std::vector<std::string>> studies, parked, unrelated;
+};
+
 struct ClaimRow {
   const Claim* claim = nullptr;
   ClaimEvidence evidence;
-  ClaimEvidence control;  // the same with the tactor parked all the time; no studies: not run
+  ClaimEvidence parked, unrelated;  // the same under the controls; no studies: not run
 };
 
 struct ClaimTable {
@@ -24,10 +29,8 @@ struct ClaimTable {
 // Evidence of one claim from studies' measures.
 ClaimEvidence evidenceOf(const Claim& claim, const std::vector<StudyMeasures>& studies);
 
-// `sessions`, `controls`: files per study. Unfinished ones are left out. Throws InputError for a session that can't be read, and where two are of different
-// commits, claims or people.
-ClaimTable judgeClaims(const std::map<std::string, std::vector<std::string>>& sessions,
-                       const std::map<std::string, std::vector<std::string>>& controls);
+// Unfinished sessions are left out. Throws InputError for a session that can't be read, and where two are of different commits, claims or people.
+ClaimTable judgeClaims(const StudySessions& sessions);
 
 std::string claimTableText(const ClaimTable& table);
 std::string claimTableCsv(const ClaimTable& table);

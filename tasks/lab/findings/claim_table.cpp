@@ -70,12 +70,15 @@ std::vector<std::string> claimCells(const ClaimRow& row) {
           publishedText(c),
           foundText(c, row.evidence),
           countsText(c, row.evidence),
-          controlText(c, row.control),
+          controlText(c, row.parked),
+          controlText(c, row.unrelated),
           verdictOn(c, row.evidence),
           c.note};
 }
 
-std::vector<std::string> claimHeads() { return {"claim", "finding", "published", "pincer", "studies", "tactor parked", "verdict", "note"}; }
+std::vector<std::string> claimHeads() {
+  return {"claim", "finding", "published", "pincer", "studies", "tactor parked", "model drawn", "verdict", "note"};
+}
 
 std::string markdownLine(const std::vector<std::string>& cells) {
   std::string line = "|";
@@ -96,10 +99,11 @@ std::string claimTableText(const ClaimTable& table) {
   std::string text = "\nPublished findings\n";
   for (const ClaimRow& row : table.rows) {
     const auto cells = claimCells(row);
-    text += fmt::format("  {:<5} {:<75} {:<14} {}\n", cells[0], cells[1], cells[2], cells[6]);
+    text += fmt::format("  {:<5} {:<75} {:<14} {}\n", cells[0], cells[1], cells[2], cells[7]);
     if (cells[3].empty()) continue;
     text += fmt::format("        {}; {}", cells[3], cells[4]);
     if (!cells[5].empty()) text += "; tactor parked: " + cells[5];
+    if (!cells[6].empty()) text += "; model drawn: " + cells[6];
     text += "\n";
   }
   return text + originText(table);

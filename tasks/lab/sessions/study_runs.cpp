@@ -18,21 +18,39 @@ namespace {
 
 constexpr int kNoSamples = std::numeric_limits<int>::max();  // hours of strokes: the answers are what counts
 
-template <class Study>
-void parkTactor(Study& study) {
-  if constexpr (requires { study.frozen_tactor; }) study.frozen_tactor = true;
+enum class Control : std::uint8_t { kNone, kParked, kUnrelated };
+
+constexpr const char* nameOf(Control control) {
+  return control == Control::kNone ? "" : control == Control::kParked ? "-frozen" : "-unrelated";
 }
 
-std::string pathOf(const StudyRuns& runs, const std::string& task, int experiment, bool control) {
-  return fmt::format("{}/{}{}-{}.db", runs.directory, task, control ? "-frozen" : "", experiment);
+template <class Study>
+constexpr bool has(Control control) {
+  if (control == Control::kParked) return requires(Study s) {
+      s.frozen_tactor;
+    };
+  if (control == Control::kUnrelated) return requires(Study s) {
+      s.unrelated;
+    };
+  return true;
+}
+
+template <class Study>
+void put(Control control, Study& study) {
+  if constexpr (requires { study.frozen_tactor; }) study.frozen_tactor = control == Control::kParked;
+  if constexpr (requires { study.unrelated; }) study.unrelated = control == Control::kUnrelated;
+}
+
+std::string pathOf(const StudyRuns& runs, const std::string& task, int experiment, Control control) {
+  return fmt::format("{}/{}{}-{}.db", runs.directory, task, nameOf(control), experiment);
 }
 
 template <class Experiment, class Study>
-SessionRun runOfExperiment(const std::string& task, Study study, const StudyRuns& runs, int experiment, bool control,
+SessionRun runOfExperiment(const std::string& task, Study study, const StudyRuns& runs, int experiment, Control control,
                            const std::atomic<bool>& interrupted) {
   if (runs.participants > 0) study.participants = runs.participants;
   study.seed = seedFor(runs.seed, static_cast<std::uint64_t>(experiment)) >> 1;
-  if (control) parkTactor(study);
+  put(control, study);
   validate(study);
   StudySession session;
   session.path = pathOf(runs, task, experiment, control);
@@ -48,14 +66,13 @@ SessionRun runOfExperiment(const std::string& task, Study study, const StudyRuns
 
 struct PublishedStudy {
   std::string task;
-  bool has_control;
-  std::function<SessionRun(const StudyRuns& runs, int experiment, bool control, const std::atomic<bool>& interrupted)> experiment;
+  std::function<bool(Control)> has;
+  std::function<SessionRun(const StudyRuns& runs, int experiment, Control control, const std::atomic<bool>& interrupted)> experiment;
 };
 
 template <class Experiment, class Study>
 PublishedStudy publishedStudy(const std::string& task, const Study& study) {
-  constexpr bool kHasControl = requires { study.frozen_tactor; };
-  return {task, kHasControl, [=](const StudyRuns& runs, int experiment, bool control, const std::atomic<bool>& interrupted) {
+  return {task, has<Study>, [=](const StudyRuns& runs, int experiment, Control control, const std::atomic<bool>& interrupted) {
             return runOfExperiment<Experiment>(task, study, runs, experiment, control, interrupted);
           }};
 }
@@ -75,17 +92,17 @@ std::vector<PublishedStudy> publishedStudies(const std::string& only) {
 }
 
 // The part's own share of `count` experiments of each.
-void addRuns(const std::vector<PublishedStudy>& studies, const StudyRuns& runs, int count, bool control,
+void addRuns(const std::vector<PublishedStudy>& studies, const StudyRuns& runs, int count, Control control,
              const std::atomic<bool>& interrupted, std::vector<SessionRun>& sessions) {
   for (int e = runs.part - 1; e < count; e += runs.parts) {
     for (const PublishedStudy& study : studies) {
-      if (study.has_control || !control) sessions.push_back(study.experiment(runs, e, control, interrupted));
+      if (study.has(control)) sessions.push_back(study.experiment(runs, e, control, interrupted));
     }
   }
 }
 
 std::map<std::string, std::vector<std::string>> filesOf(const std::vector<PublishedStudy>& studies, const StudyRuns& runs, int count,
-                                                        bool control) {
+                                                        Control control) {
   std::map<std::string, std::vector<std::string>> found;
   for (const PublishedStudy& study : studies) {
     for (int e = 0; e < count; ++e) {
@@ -104,10 +121,12 @@ StudySessions runPublishedStudies(const StudyRuns& runs, const std::atomic<bool>
   if (studies.empty() || runs.experiments + runs.controls == 0) return {};
   makeDirectory(runs.directory);
   std::vector<SessionRun> sessions;
-  addRuns(studies, runs, runs.experiments, false, interrupted, sessions);
-  addRuns(studies, runs, runs.controls, true, interrupted, sessions);
+  addRuns(studies, runs, runs.experiments, Control::kNone, interrupted, sessions);
+  addRuns(studies, runs, runs.controls, Control::kParked, interrupted, sessions);
+  addRuns(studies, runs, runs.controls, Control::kUnrelated, interrupted, sessions);
   runSessions(sessions, runs.threads, interrupted, progress);
-  return {filesOf(studies, runs, runs.experiments, false), filesOf(studies, runs, runs.controls, true)};
+  return {filesOf(studies, runs, runs.experiments, Control::kNone), filesOf(studies, runs, runs.controls, Control::kParked),
+          filesOf(studies, runs, runs.controls, Control::kUnrelated)};
 }
 
 }  // namespace pincer::tasks

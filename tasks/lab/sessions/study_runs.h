@@ -3,26 +3,21 @@
 #pragma once
 #include <atomic>
 #include <functional>
-#include <map>
 #include <string>
-#include <vector>
+
+#include "pincer/tasks/lab/findings/claim_judge.h"
 
 namespace pincer::tasks {
 
 struct StudyRuns {
   int experiments = 20;  // of each study; each has other participants
-  int controls = 0;      // likewise, with the tactor parked in every condition: the same people; of the discriminations only
+  int controls = 0;      // likewise, the same people, under each control that the study has (StudySessions)
   int participants = 0;  // in each; 0: as published
   std::uint64_t seed = 1;
   int threads = 2;
   int part = 1, parts = 1;  // runs only every parts-th experiment, beginning with the part-th
   std::string only;         // studies whose name holds one of these, separated by commas; empty: all
-  std::string directory;    // of the sessions: TASK-K.db, TASK-frozen-K.db
-};
-
-// Files by study.
-struct StudySessions {
-  std::map<std::string, std::vector<std::string>> studies, controls;
+  std::string directory;    // of the sessions: TASK-K.db, TASK-frozen-K.db, TASK-unrelated-K.db
 };
 
 // Sessions that are there and complete stay as they are, unfinished ones are gone on with. `progress` in thousandths, from any thread, one at a

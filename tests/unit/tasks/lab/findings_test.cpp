@@ -54,7 +54,7 @@ std::string writeDelays(const std::string& path, const Thresholds& of) {
 ClaimTable tableOf(const TemporaryDirectory& dir, const Thresholds& thresholds, int studies) {
   std::vector<std::string> paths;
   for (int e = 0; e < studies; ++e) paths.push_back(writeDelays(dir / fmt::format("{}.db", e), thresholds));
-  return judgeClaims({{"delay-discrimination", paths}}, {});
+  return judgeClaims({{{"delay-discrimination", paths}}, {}, {}});
 }
 
 const ClaimRow& rowOf(const ClaimTable& table, const std::string& id) {
@@ -165,7 +165,7 @@ TEST(Claims, RefusePartsOfTwoCommits) {
     info.commit = commit;
     SessionWriter::create(dir / commit, info).close();
   }
-  const std::string error = errorOf([&] { judgeClaims({{"delay-discrimination", {dir / "a", dir / "b"}}}, {}); });
+  const std::string error = errorOf([&] { judgeClaims({{{"delay-discrimination", {dir / "a", dir / "b"}}}, {}, {}}); });
   EXPECT_TRUE(contains(error, "another commit") && contains(error, "--out")) << error;
 }
 

@@ -82,7 +82,7 @@ TEST(ShapeMeasures, JudgeTheClaims) {
     }
     writer.close();
   }
-  const ClaimTable table = judgeClaims({{"shape-identification", paths}}, {});
+  const ClaimTable table = judgeClaims({{{"shape-identification", paths}}, {}, {}});
   const auto verdict = [&](const std::string& id) {
     const auto row = std::find_if(table.rows.begin(), table.rows.end(), [&](const ClaimRow& r) { return r.claim->id == id; });
     return verdictOn(*row->claim, row->evidence);
