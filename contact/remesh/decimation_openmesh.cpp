@@ -13,7 +13,6 @@
 #include "pincer/contact/surface/smooth_patch.h"
 
 namespace pincer::contact {
-
 namespace {
 
 constexpr double kMostTurn = 0.5;      // cosine between a facet before and after: 60 degrees
@@ -25,15 +24,15 @@ struct KernelTraits : OpenMesh::DefaultTraits {
   using Point = OpenMesh::Vec3d;
 };
 using Kernel = OpenMesh::TriMesh_ArrayKernelT<KernelTraits>;
+using Attributes = OpenMesh::AttribKernelT<OpenMesh::FinalMeshItemsT<KernelTraits, true>, OpenMesh::TriConnectivity>;
 
 }  // namespace
 }  // namespace pincer::contact
 
-// Compiled with the mesh although nobody asks for it; OpenMesh's own calls the C library's cosine, which other processors round otherwise.
+// Compiled with the mesh although nobody asks for it; OpenMesh's own calls the C library's cosine, which other
+// processors round otherwise.
 template <>
-inline bool OpenMesh::PolyMeshT<OpenMesh::AttribKernelT<OpenMesh::FinalMeshItemsT<pincer::contact::KernelTraits, true>,
-                                                        OpenMesh::TriConnectivity>>::is_estimated_feature_edge(HalfedgeHandle,
-                                                                                                               Scalar) const {
+inline bool OpenMesh::PolyMeshT<pincer::contact::Attributes>::is_estimated_feature_edge(HalfedgeHandle, Scalar) const {
   return false;
 }
 

@@ -9,7 +9,8 @@ enum class Stream { kOut, kError };
 
 bool isTerminal(Stream stream);  // a person watches, not a file or a pipe; a "dumb" terminal doesn't count
 
-// `text` in green or red where standard output is a terminal and NO_COLOR (https://no-color.org) is unset or empty; else `text` as it is.
+// `text` in green or red where standard output is a terminal and NO_COLOR (https://no-color.org) is unset or empty;
+// else `text` as it is.
 std::string good(std::string_view text);
 std::string bad(std::string_view text);
 

@@ -142,11 +142,11 @@ std::string partName(const ManipulationTrial& spec) {
 StudyPage partPage(const ManipulationStudy& study, const ManipulationTrial& spec, bool rests) {
   StudyPage page{partName(spec), study.session.instructions};
   if (page.lines.empty()) {
-    page.lines =
-        spec.task == HandTask::kPickup
-            ? std::vector<std::string>{"Pinch the sphere between index finger and thumb, lift it by 50 mm and hold it there for a second."}
-            : std::vector<std::string>{"Find the flat of the cylinder, then turn the cylinder so that the flat faces the monitor.",
-                                       "Enter says that it does."};
+    if (spec.task == HandTask::kPickup)
+      page.lines = {"Pinch the sphere between index finger and thumb, lift it by 50 mm and hold it there for a second."};
+    else
+      page.lines = {"Find the flat of the cylinder, then turn the cylinder so that the flat faces the monitor.",
+                    "Enter says that it does."};
     page.lines.push_back("A tone begins each trial, another one ends it.");
   }
   if (rests) page.lines.push_back("Rest as long as you like before you go on.");

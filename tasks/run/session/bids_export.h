@@ -1,5 +1,5 @@
-// bids_export: a session as a behavioural data set in the Brain Imaging Data Structure (BIDS 1.9, https://bids-specification.readthedocs.io,
-// "Behavioral experiments with no neural recordings").
+// bids_export: a session as a behavioural data set in the Brain Imaging Data Structure (BIDS 1.9,
+// https://bids-specification.readthedocs.io, "Behavioral experiments with no neural recordings").
 //
 //   dataset_description.json, README.md, participants.tsv + .json, sub-<NN>/beh/sub-<NN>_task-<task>_beh.tsv + .json
 //
