@@ -2,237 +2,72 @@
 
 #include <algorithm>
 
-#include "pincer/engine/solve/inverse3.h"
-#include "pincer/engine/solve/linear.h"
+#include "pincer/contact/functions/invariants.h"
+#include "pincer/engine/solve/few_contacts.h"
 #include "pincer/engine/solve/mobility.h"
+#include "pincer/engine/solve/mover_normals.h"
 #include "pincer/engine/solve/residual.h"
 #include "pincer/engine/solve/squeeze.h"
 
 namespace pincer::engine {
 namespace {
 
-constexpr int kMostBodies = 4, kMostPoints = 12;  // beyond, the blocks of few_contacts.h are as good
-constexpr int kMostMovers = kMostBodies + kMostPoints;
-constexpr double kRidge = 1e-10;  // of N's diagonal: far above round-off, which it meets twice
 constexpr int kMostSteps = 3;
-constexpr double kFrictionUsed = 0.5;                                 // at most, for the step to go on with its shares
+constexpr double kFrictionUsed = 0.5;  // at most, for the step to go on with its shares
+constexpr double kPadGive = 1e-5;      // of corners of pads that contradict each other, as turning by 5 rad/s lets them [m/s]
 constexpr std::int64_t kPerContactStuck = 300, kPerMoverStuck = 200;  // multiplications of a step
 
-// Which of the movers are points, and the number of each among its kind.
-class StuckMovers {
- public:
-  // False if they are too many.
-  bool count(const ContactProblem& problem) {
-    if (problem.movers > kMostMovers) return false;
-    std::fill(is_body_, is_body_ + problem.movers, false);
-    for (const ContactSide& side : problem.sides) {
-      if (side.mover >= 0 && !side.is_point) is_body_[side.mover] = true;
-    }
-    int count[2] = {};
-    for (int mover = 0; mover < problem.movers; ++mover) {
-      const int kind = is_body_[mover] ? 0 : 1;
-      const int limit = is_body_[mover] ? kMostBodies : kMostPoints;
-      if (count[kind] == limit) return false;
-      (is_body_[mover] ? bodies_ : points_)[count[kind]] = mover;
-      number_[mover] = count[kind]++;
-    }
-    body_count_ = count[0];
-    point_count_ = count[1];
-    return true;
-  }
-  bool isBody(const ContactSide& side) const { return is_body_[side.mover]; }
-  int numberOf(const ContactSide& side) const { return number_[side.mover]; }
-  std::span<const int> bodies() const { return {bodies_, static_cast<std::size_t>(body_count_)}; }
-  std::span<const int> points() const { return {points_, static_cast<std::size_t>(point_count_)}; }
-
- private:
-  bool is_body_[kMostMovers];
-  int number_[kMostMovers];
-  int bodies_[kMostBodies], points_[kMostPoints];
-  int body_count_, point_count_;
-};
-
-// N, and its inverse.
-class MoverNormals {
- public:
-  explicit MoverNormals(const StuckMovers& movers)
-      : movers_(movers),
-        bodies_(static_cast<int>(movers.bodies().size())),
-        points_(static_cast<int>(movers.points().size())),
-        size_(kMoverFreedoms * bodies_) {
-    std::fill(body_, body_ + size_ * size_, 0.0);
-    for (int p = 0; p < points_; ++p) {
-      std::fill(point_[p], point_[p] + 9, 0.0);
-      std::fill(touches_[p], touches_[p] + bodies_, false);
-    }
-  }
-
-  // += A_i^T A_i
-  void add(std::span<const ContactSide> sides, int rows) {
-    withRows(rows, [&](auto count) {
-      for (const ContactSide& x : sides) {
-        if (x.mover < 0) continue;
-        if (!movers_.isBody(x)) {
-          addPoint(x, count);
-          continue;
-        }
-        for (const ContactSide& y : sides) {
-          if (y.mover < 0) continue;
-          movers_.isBody(y) ? addBodies(x, y, count) : addCoupling(y, x, count);
-        }
-      }
-    });
-  }
-
-  // False if it has no inverse.
-  bool factorise() {
-    const double ridge = kRidge * largest();
-    for (int j = 0; j < size_; ++j) body_[(size_ + 1) * j] += ridge;
-    for (int p = 0; p < points_; ++p) {
-      for (int k = 0; k < 3; ++k) point_[p][4 * k] += ridge;
-      if (!eliminate(p)) return false;
-    }
-    return size_ == 0 || factoriseLdlt(body_, size_);
-  }
-
-  // y becomes N^-1 y; kMoverFreedoms numbers per mover, of points the last three aren't read.
-  void solve(double* y) const {
-    double b[kMoverFreedoms * kMostBodies];
-    for (int n = 0; n < bodies_; ++n) copyMover(y + kMoverFreedoms * movers_.bodies()[n], b + kMoverFreedoms * n);
-    for (int p = 0; p < points_; ++p) {
-      const double* const y_p = y + kMoverFreedoms * movers_.points()[p];
-      forBodiesOf(p, [&](int first, const Coupling3& C) {
-        for (int j = 0; j < kMoverFreedoms; ++j) b[first + j] -= (C[0][j] * y_p[0] + C[1][j] * y_p[1]) + C[2][j] * y_p[2];
-      });
-    }
-    if (size_ > 0) solveLdlt(body_, size_, b);
-    for (int n = 0; n < bodies_; ++n) copyMover(b + kMoverFreedoms * n, y + kMoverFreedoms * movers_.bodies()[n]);
-    for (int p = 0; p < points_; ++p) {
-      double* const y_p = y + kMoverFreedoms * movers_.points()[p];
-      const double g[3] = {y_p[0], y_p[1], y_p[2]};
-      for (int k = 0; k < 3; ++k) y_p[k] = dot3(point_[p] + 3 * k, g);
-      forBodiesOf(p, [&](int first, const Coupling3& C) {
-        for (int k = 0; k < 3; ++k) y_p[k] -= dot6(C[k], b + first);
-      });
-    }
-  }
-
- private:
-  using Coupling3 = double[3][kMoverFreedoms];
-
-  static void copyMover(const double* from, double* to) {
-    for (int j = 0; j < kMoverFreedoms; ++j) to[j] = from[j];
-  }
-
-  template <class Rows>
-  void addPoint(const ContactSide& x, Rows rows) {
-    double* const P = point_[movers_.numberOf(x)];
-    double sum[9];
-    for (int k = 0; k < 9; ++k) sum[k] = P[k];
-    for (int l = 0; l < rows; ++l) {
-      for (int k = 0; k < 3; ++k) {
-        for (int j = 0; j < 3; ++j) sum[3 * k + j] += x.A[l][k] * x.A[l][j];
-      }
-    }
-    for (int k = 0; k < 9; ++k) P[k] = sum[k];
-  }
-
-  template <class Rows>
-  void addCoupling(const ContactSide& point, const ContactSide& body, Rows rows) {
-    const int p = movers_.numberOf(point), b = movers_.numberOf(body);
-    for (int k = 0; k < 3 && !touches_[p][b]; ++k) std::fill(coupling_[p][b][k], coupling_[p][b][k] + kMoverFreedoms, 0.0);
-    touches_[p][b] = true;
-    for (int k = 0; k < 3; ++k) addRows(point, k, body, 0, rows, coupling_[p][b][k]);
-  }
-
-  // The lower half is all that is read.
-  template <class Rows>
-  void addBodies(const ContactSide& row, const ContactSide& column, Rows rows) {
-    const int first_row = kMoverFreedoms * movers_.numberOf(row), first_column = kMoverFreedoms * movers_.numberOf(column);
-    if (first_row < first_column) return;
-    for (int k = 0; k < kMoverFreedoms; ++k) {
-      const int from = first_row == first_column ? k / 2 : 0;
-      addRows(column, k, row, from, rows, body_ + size_ * (first_column + k) + first_row);
-    }
-  }
-
-  // out_j += sum over the rows of x's column k times y's column j, pairs of j from `from` on
-  template <class Rows>
-  [[gnu::always_inline]] static void addRows(const ContactSide& x, int k, const ContactSide& y, int from, Rows rows, double* out) {
-    DoublePair* const sums = reinterpret_cast<DoublePair*>(out);
-    for (int pair = from; pair < kMoverFreedoms / 2; ++pair) {
-      DoublePair sum = sums[pair];
-      for (int l = 0; l < rows; ++l) sum += x.A[l][k] * reinterpret_cast<const DoublePair*>(y.A[l])[pair];
-      sums[pair] = sum;
-    }
-  }
-
-  // Of the diagonal.
-  double largest() const {
-    double most = 0;
-    for (int j = 0; j < size_; ++j) most = std::max(most, body_[(size_ + 1) * j]);
-    for (int p = 0; p < points_; ++p) {
-      for (int k = 0; k < 3; ++k) most = std::max(most, point_[p][4 * k]);
-    }
-    return most;
-  }
-
-  // Point p's block becomes its inverse P^-1, its couplings C become P^-1 C, and the bodies' -= C^T P^-1 C.
-  bool eliminate(int p) {
-    double* const P = point_[p];
-    if (!invertSymmetric3<3>(P, P)) return false;
-    Coupling3 across[kMostBodies];
-    forBodiesOf(p, [&](int first, const Coupling3& C) {
-      for (int k = 0; k < 3; ++k) {
-        for (int j = 0; j < kMoverFreedoms; ++j)
-          across[first / kMoverFreedoms][k][j] = (P[3 * k] * C[0][j] + P[3 * k + 1] * C[1][j]) + P[3 * k + 2] * C[2][j];
-      }
-    });
-    forBodiesOf(p, [&](int row, const Coupling3& C) {
-      forBodiesOf(p, [&](int column, const Coupling3&) {
-        if (row < column) return;
-        const Coupling3& X = across[column / kMoverFreedoms];
-        for (int k = 0; k < kMoverFreedoms; ++k) {
-          double* const H = body_ + size_ * (column + k) + row;
-          for (int j = 0; j < kMoverFreedoms; ++j) H[j] -= (C[0][j] * X[0][k] + C[1][j] * X[1][k]) + C[2][j] * X[2][k];
-        }
-      });
-    });
-    for (int b = 0; b < bodies_; ++b) {
-      for (int k = 0; k < 3 && touches_[p][b]; ++k) copyMover(across[b][k], coupling_[p][b][k]);
-    }
-    return true;
-  }
-
-  // act(first of the body's freedoms, the coupling) for each body that point p touches.
-  template <class Act>
-  void forBodiesOf(int p, const Act& act) const {
-    for (int b = 0; b < bodies_; ++b) {
-      if (touches_[p][b]) act(kMoverFreedoms * b, coupling_[p][b]);
-    }
-  }
-
-  const StuckMovers& movers_;
-  const int bodies_, points_, size_;
-  double point_[kMostPoints][9];
-  bool touches_[kMostPoints][kMostBodies];
-  alignas(16) Coupling3 coupling_[kMostPoints][kMostBodies];
-  alignas(16) double body_[kMoverFreedoms * kMostBodies * kMoverFreedoms * kMostBodies];  // as linear.h has it
-};
-
+// Steps with a set of contacts that hold.
 class StuckSolve {
  public:
   StuckSolve(const ContactProblem& problem, const StuckMovers& movers, const SolverScratch& scratch, double* r, double* u)
       : problem_(problem), movers_(movers), scratch_(scratch), r_(r), u_(u) {}
 
-  // A step from r and u; false if a contact does other than it did, or holds with more than its share.
+  bool holds(int i) const { return holds_[i]; }
+  // Those that push.
+  void holdWhatPushes() {
+    for (int i = 0; i < problem_.contactCount(); ++i) holds_[i] = pushes(i);
+  }
+  void holdAll() { std::fill(holds_, holds_ + problem_.contactCount(), true); }
+  // False if none had to be let go.
+  bool letGoWhatPulls() {
+    bool any = false;
+    for (int i = 0; i < problem_.contactCount(); ++i) {
+      if (!holds_[i] || pushes(i)) continue;
+      holds_[i] = false;
+      any = true;
+    }
+    return any;
+  }
+
+  // False if a contact slides or opens, or has to push that doesn't yet: of answers in which fewer contacts hold, a step can't tell the right one.
+  bool allStayAsTheyAre() const {
+    for (int i = 0; i < problem_.contactCount(); ++i) {
+      const int first = problem_.firstRow(i), rows = problem_.rows(i);
+      double y[kMaxContactRows] = {};
+      for (int k = 0; k < rows; ++k) y[k] = scratch_.weight[static_cast<std::size_t>(i)] * r_[first + k] - u_[first + k];
+      const ContactMode mode = contactMode(y, rows, problem_.friction(i));
+      if (mode != (holds_[i] ? ContactMode::kStick : ContactMode::kOpen)) return false;
+    }
+    return true;
+  }
+
+  // True if all that hold push, and need no more than `share` of their friction.
+  bool holdsWith(double share) const {
+    for (int i = 0; i < problem_.contactCount(); ++i) {
+      const double* const r_i = r_ + problem_.firstRow(i);
+      if (holds_[i] && !(pushes(i) && isInCone(r_i, problem_.rows(i), share * problem_.friction(i)))) return false;
+    }
+    return true;
+  }
+
+  // A step from r and u. False if there is none.
   bool step() {
-    if (!allStayAsTheyAre()) return false;
     MoverNormals normals(movers_);
-    double y[kMoverFreedoms * kMostMovers];
+    double y[kMoverFreedoms * kMostStuckMovers];
     std::fill(y, y + kMoverFreedoms * problem_.movers, 0.0);
     for (int i = 0; i < problem_.contactCount(); ++i) {
-      if (!sticks(i)) continue;
+      if (!holds_[i]) continue;
       normals.add(problem_.sidesOf(i), problem_.rows(i));
       double b[kMaxContactRows];
       for (int k = 0; k < problem_.rows(i); ++k) b[k] = -u_[problem_.firstRow(i) + k];
@@ -242,58 +77,128 @@ class StuckSolve {
     normals.solve(y);
     normals.solve(y);
     for (int i = 0; i < problem_.contactCount(); ++i) {
-      if (!sticks(i)) continue;
-      double* const r_i = r_ + problem_.firstRow(i);
-      addVelocity(problem_.sidesOf(i), problem_.rows(i), y, r_i);
-      if (!sticks(i) || !isInCone(r_i, problem_.rows(i), kFrictionUsed * problem_.friction(i))) return false;
+      if (holds_[i]) addVelocity(problem_.sidesOf(i), problem_.rows(i), y, r_ + problem_.firstRow(i));
     }
     return true;
   }
 
  private:
-  bool sticks(int i) const { return r_[problem_.firstRow(i) + kNormalRow] > 0; }
-
-  // False if a contact slides or opens, or has to push that doesn't yet: of answers in which fewer contacts hold, this step can't tell the right one.
-  bool allStayAsTheyAre() const {
-    for (int i = 0; i < problem_.contactCount(); ++i) {
-      const int first = problem_.firstRow(i), rows = problem_.rows(i);
-      double y[kMaxContactRows] = {};
-      for (int k = 0; k < rows; ++k) y[k] = scratch_.weight[static_cast<std::size_t>(i)] * r_[first + k] - u_[first + k];
-      const ContactMode mode = contactMode(y, rows, problem_.friction(i));
-      if (mode != (sticks(i) ? ContactMode::kStick : ContactMode::kOpen)) return false;
-    }
-    return true;
-  }
+  bool pushes(int i) const { return r_[problem_.firstRow(i) + kNormalRow] > 0; }
 
   const ContactProblem& problem_;
   const StuckMovers& movers_;
   const SolverScratch& scratch_;
   double *r_, *u_;
+  bool holds_[kFewContacts];
 };
+
+// The two ways to an answer, each from its own start.
+class StuckAnswer {
+ public:
+  StuckAnswer(const ContactProblem& problem, const StuckMovers& movers, const SolverOptions& options, SolverScratch& scratch, double* r,
+              double* u)
+      : problem_(problem), options_(options), scratch_(scratch), r_(r), u_(u), solve_(problem, movers, scratch, r, u) {}
+
+  // From the warm start.
+  bool nearest(SolveResult& result) {
+    const bool is_close = result.residual <= options_.tolerance;
+    const double enough = (is_close ? kStrictness : 0.5) * options_.tolerance;
+    solve_.holdWhatPushes();
+    while (result.iterations < kMostSteps && mayStep() && solve_.allStayAsTheyAre() && solve_.step() && solve_.holdsWith(kFrictionUsed)) {
+      if (isSolved(enough, result)) return true;
+    }
+    return false;
+  }
+
+  // From none: of all impulses with which everything sticks that touches the least.
+  bool least(SolveResult& result) {
+    solve_.holdAll();
+    startFromNone();
+    while (result.iterations < kMostSteps && mayStep() && solve_.step()) {
+      if (solve_.letGoWhatPulls()) {
+        startFromNone();
+        ++result.iterations;
+        continue;
+      }
+      if (!solve_.holdsWith(1)) return false;
+      if (isSolved(0.5 * options_.tolerance, result)) return true;
+    }
+    return result.iterations == kMostSteps && giveWay(result);
+  }
+
+ private:
+  bool mayStep() { return spend(kPerContactStuck * problem_.contactCount() + kPerMoverStuck * problem_.movers, scratch_); }
+  void startFromNone() {
+    std::fill(r_, r_ + problem_.rowCount(), 0.0);
+    errorOf(problem_, r_, scratch_, u_);
+  }
+  bool isSolved(double enough, SolveResult& result) {
+    const ContactError error = errorOf(problem_, r_, scratch_, u_);
+    ++result.iterations;
+    return isEnough(error, enough, result);
+  }
+  bool isEnough(const ContactError& error, double enough, SolveResult& result) const {
+    result.residual = error.residual;
+    result.error = error.speed;
+    return error.residual <= enough && !isSqueezed(problem_, scratch_.weight, r_);
+  }
+
+  // What is left of the velocities of contacts that hold, no impulses take away: they contradict each other by that, and give way.
+  bool giveWay(SolveResult& result) {
+    WorstResidual worst;
+    double most = 0;
+    for (int i = 0; i < problem_.contactCount(); ++i) {
+      const int first = problem_.firstRow(i), rows = problem_.rows(i);
+      for (int k = first; k < first + rows; ++k) {
+        const double give = scratch_.give[static_cast<std::size_t>(k)] = solve_.holds(i) ? -u_[k] : 0;
+        most = std::max(most, std::abs(give));
+        u_[k] += give;
+      }
+      const double w = scratch_.weight[static_cast<std::size_t>(i)];
+      worst.add(naturalMap2(r_ + first, u_ + first, rows, problem_.friction(i), w), u_[first + kNormalRow], w * r_[first + kNormalRow]);
+    }
+    result.give = most;
+    return most <= kPadGive && isEnough(worst.relativeTo(referenceSpeed(problem_)), 0.5 * options_.tolerance, result);
+  }
+
+  const ContactProblem& problem_;
+  const SolverOptions& options_;
+  SolverScratch& scratch_;
+  double *r_, *u_;
+  StuckSolve solve_;
+};
+
+// True if a point touches a body with more than one contact, as the face of a fingertip does.
+bool hasFace(const ContactProblem& problem) {
+  for (int i = 1; i < problem.contactCount(); ++i) {
+    const std::span<const ContactSide> before = problem.sidesOf(i - 1), sides = problem.sidesOf(i);
+    bool is_same = true, is_point = false;
+    for (std::size_t k = 0; k < sides.size(); ++k) {
+      is_same = is_same && sides[k].mover == before[k].mover;
+      is_point = is_point || (sides[k].mover >= 0 && sides[k].is_point);
+    }
+    if (is_same && is_point) return true;
+  }
+  return false;
+}
 
 }  // namespace
 
 bool solveStuckContacts(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch, double* r, double* u,
                         SolveResult& result) {
+  PINCER_ASSERT(problem.contactCount() <= kFewContacts);
   StuckMovers movers;
   if (!problem.first_side.empty() || !movers.count(problem)) return false;
-  const bool is_close = result.residual <= options.tolerance;
-  const double enough = is_close ? kStrictness * options.tolerance : 0.5 * options.tolerance;
   double* const r_start = scratch.impulses[0].data();
   std::copy(r, r + problem.rowCount(), r_start);
-  StuckSolve solve(problem, movers, scratch, r, u);
+  StuckAnswer answer(problem, movers, options, scratch, r, u);
   SolveResult found = result;
   found.method = SolveMethod::kNewton;
-  bool is_solved = false;
-  while (!is_solved && found.iterations < kMostSteps &&
-         spend(kPerContactStuck * problem.contactCount() + kPerMoverStuck * problem.movers, scratch) && solve.step()) {
-    ++found.iterations;
-    const ContactError error = errorOf(problem, r, scratch, u);
-    found.residual = error.residual;
-    found.error = error.speed;
-    is_solved = error.residual <= enough;
+  bool is_solved = answer.nearest(found);
+  if (!is_solved && hasFace(problem)) {
+    found.iterations = result.iterations;
+    is_solved = answer.least(found);
   }
-  is_solved = is_solved && !isSqueezed(problem, scratch.weight, r);
   if (is_solved) {
     result = found;
   } else if (!std::equal(r, r + problem.rowCount(), r_start)) {

@@ -8,7 +8,12 @@
 //
 // Of all impulses that hold the bodies the step takes those nearest to the warm start: what redundant contacts share among them changes by no more than it
 // must. Step by step these changes add up, though, to shares that use friction up where none need be used: once a contact holds with more than half of its
-// friction, or one that pushed opens, the step declines, and the general method finds shares anew (a cylinder carried between flat jaws slipped by 2 mm).
+// friction, or one that pushed opens, the step declines (a cylinder carried between flat jaws slipped by 2 mm).
+//
+// Then fingertips that touch with a face share anew: from r = 0 the same step leads to the least impulses of all with which everything sticks. They press
+// evenly where others hang all of the load on one end of a face, about which the body swings for ever (a rod nudged between flat pads, 6 mm); nothing
+// of what was remains in them. Contacts that would pull are let go, one step after the other; corners that contradict each other, as gaps of bodies that
+// turn do by the square of the turn, give way by what the least squares leave.
 // The ridge, one for all movers, keeps motions that no contact sees out of N's inverse (where it differs from mover to mover they come in);
 // what it leaves of -u, some 1e-9 of it, the next step takes.
 // Source: G. Golub, C. Van Loan, Matrix Computations, 4th ed. (2013), section 5.5 (least norm).

@@ -154,6 +154,14 @@ TEST(FirstScene, IsDrawnByItsProgram) {
   EXPECT_TRUE(fs::exists(folder / "block.png"));
 }
 
+// A minute between two flat jaws; the scene says how it must hang (exit code 1 if it doesn't).
+TEST(Examples, AMugHangsInItsGripper) {
+  const TemporaryDirectory folder;
+  const std::string line = fmt::format("'{}/pincer' sim '{}/docs/examples/mug_in_a_gripper.json' > '{}/log' 2>&1", PINCER_BINARY_DIR,
+                                       kSource.string(), folder.path());
+  EXPECT_EQ(std::system(line.c_str()), 0) << readFile(folder / "log");
+}
+
 // To renew a page: the command in its last line.
 TEST(KeyReference, IsWhatTheProgramPrints) {
   const TemporaryDirectory folder;

@@ -48,7 +48,8 @@ struct PadGrip {
   Vec3 stiffness = Vec3::Constant(5000);                   // along x: 0 presses with a force, else with a spring [N/m]
   Eigen::Array<bool, 3, 1> locked{false, false, false};
   Vec3 gravity_W{0, 0, -kVerifyG};
-  Vec3 w_W = Vec3::Zero();  // of the object at the start [rad/s]
+  Vec3 w_W = Vec3::Zero();       // of the object at the start [rad/s]
+  Quat q_WB = Quat::Identity();  // the same
 };
 
 // An object between two pads at -x and +x, which just touch it.
@@ -78,7 +79,7 @@ class PadRun {
     }
     model = grasp::buildGrasp(std::move(builder), fingers);
     engine::BodyStart start;
-    start.X_WB.p = Vec3(0, 0, kUp);
+    start.X_WB = {grip.q_WB, Vec3(0, 0, kUp)};
     start.w_W = grip.w_W;
     state = grasp::makeState(model, {start}, places);
     scratch_ = grasp::makeScratch(model);
@@ -136,6 +137,15 @@ Measurement holdOf(const char* name, const contact::Shape& shape, double width) 
   PadGrip grip{shape};
   grip.width = width;
   grip.w_W = Vec3(0, 0.3, 0);
+  return {name, [grip](MeasureContext& context) { return hold(grip, context); }};
+}
+
+// Turned by `angle` about `axis`, and nudged about all axes: along one line on either side.
+Measurement rodOf(const char* name, const contact::Shape& shape, double angle, const Vec3& axis, double width) {
+  PadGrip grip{shape};
+  grip.width = width;
+  grip.q_WB = Quat(Eigen::AngleAxisd(angle, axis));
+  grip.w_W = Vec3(0.2, -0.1, 0.2);
   return {name, [grip](MeasureContext& context) { return hold(grip, context); }};
 }
 
@@ -315,6 +325,8 @@ std::vector<Measurement> verifyPads() {
           holdOf("pads/hold-coin", contact::Cylinder{0.015, 0.002}, 0.01),
           holdOf("pads/hold-rod", contact::Capsule{0.015, 0.03}, 0.02),
           holdOf("pads/hold-short-rod", contact::Capsule{0.015, 0.005}, 0.02),
+          rodOf("pads/hold-rod-askew", contact::Cylinder{0.015, 0.03}, 0.4, Vec3::UnitX(), 0.02),
+          rodOf("pads/hold-rod-with-flat", contact::CylinderWithFlat{0.015, 0.012, 0.005}, 0.5 * M_PI, Vec3::UnitZ(), 0.04),
           overhangOf("pads/hold-edge", 0.6, false),
           overhangOf("pads/hold-corner", 0.6, true),
           tipOf("pads/tip-sphere", contact::Sphere{0.008}, 0.008),

@@ -98,6 +98,21 @@ TEST(StuckContacts, TakeTheNearestImpulsesThatHold) {
   }
 }
 
+// Of pads that are points. Whatever the start, from which no step leads on: the least norm of all.
+TEST(StuckContacts, ShareAnewFromNone) {
+  tests::RandomScenes random(8);
+  for (const int fingers : {2, 3, 5}) {
+    tests::OwnedContactProblem p = heldByPads(fingers, 0.05, true, random);
+    p.q -= p.W * squeeze(p, 10);
+    VectorXd lopsided = squeeze(p, 20);
+    for (std::size_t i = 0; i < p.mu.size(); i += 2) lopsided.segment<3>(p.first_row[i]).setZero();
+    const StuckTrial trial = solveStuck(p, lopsided);
+    ASSERT_TRUE(trial.solved) << fingers;
+    const VectorXd least = -p.W.completeOrthogonalDecomposition().solve(p.q);
+    EXPECT_LT((trial.r - least).norm(), 1e-8 * least.norm()) << fingers;
+  }
+}
+
 TEST(StuckContacts, OpenCornersStayOpen) {
   tests::RandomScenes random(6);
   tests::OwnedContactProblem p = heldByPads(2, 0.1, true, random);
