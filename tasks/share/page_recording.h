@@ -42,7 +42,8 @@ struct PageCaption {
 class PageRecording {
  public:
   // `start` is of `model`. `meshes` takes what is drawn, for all recordings of a page.
-  PageRecording(std::string title, const grasp::GraspModel& model, const Snapshot& start, MeshTable& meshes);
+  PageRecording(std::string title, const grasp::GraspModel& model, const Snapshot& start, MeshTable& meshes,
+                const SceneCamera& camera = {});
 
   // The next picture. Charts' values are added by whoever made them.
   void add(const Snapshot& snapshot);

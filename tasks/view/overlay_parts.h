@@ -23,7 +23,7 @@ void drawBodies(const OverlayText& text, int width, int height);    // right
 void drawStatus(const OverlayText& text);                           // upper left
 void drawTrial(const OverlayText& text, int width);                 // upper middle
 void drawPads(const OverlayText& text, int width);                  // upper right
-void drawCharts(const OverlayText& text, int height);               // lower left
+void drawCharts(const OverlayText& text, int width, int height);    // lower left
 void drawHealth(const OverlayText& text, int height);               // left
 void drawHelp(const OverlayText& text, int width, int height);
 void drawPage(const OverlayText& text, int width, int height);    // over all of it

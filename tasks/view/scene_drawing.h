@@ -1,8 +1,7 @@
 // scene_drawing: a snapshot as things to draw: bodies, fingertips, where devices and proxies are, contacts, cones, forces.
 //
-//   force arrow   from the contact along the force on the finger; its scale is the largest round one at which all fit the picture
-//   cone          of friction at a finger's contact: the force on the finger lies within it; its half opening is atan(mu)
-//   colours       sticking green, slipping red
+// Tips are drawn as their own geometry; a sphere, which stands for a person's fingertip, as a finger. Contacts: contact_drawing.h. The scale of
+// force arrows is the largest round one at which all fit the picture.
 #pragma once
 #include <optional>
 #include <string>
@@ -40,6 +39,8 @@ struct ViewLabel {
   std::string text;
   bool slips;
 };
+
+struct ContactLook;
 
 class SceneDrawing {
  public:
@@ -85,7 +86,7 @@ class SceneDrawing {
   void addDevice(const FingerSnapshot& seen, std::size_t finger, DrawList& list) const;
   void addDropShadow(const Vec3& p_W, double radius, DrawList& list) const;
   void addGoal(const Snapshot& snapshot, DrawList& list) const;
-  void addContact(const ContactSnapshot& contact, const ViewChoice& choice, double metres_per_newton, DrawList& list) const;
+  ContactLook contactLook(const Snapshot& snapshot) const;
   MarkMeshes marks() const { return {ball_, rod_, head_, size_}; }
 
   std::vector<grasp::FingerModel> fingers_;
