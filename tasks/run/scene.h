@@ -2,6 +2,7 @@
 // docs/scene.schema.json). The same files serve tests, benchmarks, demonstrations and users.
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -44,6 +45,13 @@ struct SceneDrive {
   bool moves = false;
 };
 
+// From where a viewer looks at first (tasks/view/camera.h says what the numbers mean); it chooses what is absent.
+struct SceneCamera {
+  std::optional<double> yaw, pitch;  // [rad]
+  std::optional<double> distance;    // [m]
+  std::optional<Vec3> target_W;      // [m]
+};
+
 struct Recording {
   std::int64_t every = 1;            // ticks between two rows
   std::vector<Quantity> quantities;  // may be empty: nothing is recorded
@@ -65,6 +73,7 @@ struct Scene {
   std::vector<BodyFrame> frames;
   std::vector<SceneFinger> fingers;
   Recording record;
+  SceneCamera camera;
   std::vector<Expectation> expectations;
   std::vector<int> body_lines, joint_lines, coupling_lines, drive_lines,
       pair_lines;  // in the file, for messages; empty where there is none

@@ -16,8 +16,11 @@ class Simulation {
 
   // Fingers to where their trajectories are at the tick's end, then one step. Allocates nothing, throws nothing.
   engine::StepReport tick();
-  // The same with the fingers' devices where the caller says, one entry per finger.
-  engine::StepReport tick(std::span<const grasp::FingerInput> fingers);
+  // The same with the fingers' devices where the caller says, one entry per finger, and pushes on bodies; where fingers are rendered by a
+  // published method (SceneFinger::method), these do nothing.
+  engine::StepReport tick(std::span<const grasp::FingerInput> fingers, const engine::AppliedForces& applied = {});
+  // What the fingers' trajectories say for the next tick.
+  std::span<const grasp::FingerInput> nextFingers();
 
   std::int64_t ticks() const { return ticks_; }                                   // done so far
   double time() const { return static_cast<double>(ticks_) * scene_.options.h; }  // [s]

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "pincer/tasks/view/framing.h"
+
 namespace pincer::tasks {
 namespace {
 
@@ -30,8 +32,12 @@ std::string captionOf(const TrialSnapshot& trial) {
 
 }  // namespace
 
-PageRecording::PageRecording(std::string title, const grasp::GraspModel& model, const Snapshot& start, MeshTable& meshes)
-    : title_(std::move(title)), drawing_(model, start, meshes), camera_(drawing_.camera(start)), radius_(drawing_.radius(start)) {
+PageRecording::PageRecording(std::string title, const grasp::GraspModel& model, const Snapshot& start, MeshTable& meshes,
+                             const SceneCamera& camera)
+    : title_(std::move(title)),
+      drawing_(model, start, meshes),
+      camera_(withGiven(camera, drawing_.camera(start))),
+      radius_(drawing_.radius(start)) {
   for (std::size_t i = 0; i < start.fingers.size(); ++i) {
     const std::string name = model.fingers[i].name.empty() ? fmt::format("finger {}", i + 1) : model.fingers[i].name;
     PagePad& pad = pads_.emplace_back();

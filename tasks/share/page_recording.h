@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "pincer/tasks/run/scene.h"
 #include "pincer/tasks/share/mesh_table.h"
 #include "pincer/tasks/view/scene_drawing.h"
 
@@ -42,7 +43,8 @@ struct PageCaption {
 class PageRecording {
  public:
   // `start` is of `model`. `meshes` takes what is drawn, for all recordings of a page.
-  PageRecording(std::string title, const grasp::GraspModel& model, const Snapshot& start, MeshTable& meshes);
+  PageRecording(std::string title, const grasp::GraspModel& model, const Snapshot& start, MeshTable& meshes,
+                const SceneCamera& camera = {});
 
   // The next picture. Charts' values are added by whoever made them.
   void add(const Snapshot& snapshot);

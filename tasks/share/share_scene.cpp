@@ -24,7 +24,7 @@ PageRecording recordScene(Simulation& simulation, const std::string& title, Mesh
                           const std::function<void(std::int64_t done)>& progress) {
   const Scene& scene = simulation.scene();
   const Snapshot start = snapshotNow(simulation, {});
-  PageRecording recording(title, simulation.model(), start, meshes);
+  PageRecording recording(title, simulation.model(), start, meshes, simulation.scene().camera);
   const std::size_t first_chart = recording.charts().size();
   for (const Quantity& quantity : scene.record.quantities) recording.chart(quantity.name, std::string(quantity.kind->unit));
   const auto addPicture = [&](const Snapshot& snapshot) {

@@ -47,6 +47,12 @@ std::optional<Vec2> Camera::toPixel(const Vec3& p_W, int width, int height) cons
   return Vec2(0.5 * width * (1 + clip.x() / clip.w()), 0.5 * height * (1 - clip.y() / clip.w()));
 }
 
+Vec3 Camera::fromPixel(const Vec2& pixel, int width, int height, const Vec3& p_W) const {
+  const CameraAxes axes = cameraAxes(*this);
+  const double depth = (eye_W() - p_W).dot(axes.back), scale = 2 * depth * math::tan(opening / 2) / height;
+  return eye_W() - depth * axes.back + scale * ((pixel.x() - 0.5 * width) * axes.right + (0.5 * height - pixel.y()) * axes.up);
+}
+
 void Camera::turn(double right, double up) {
   yaw = std::remainder(yaw + right, 2 * M_PI);
   pitch = std::clamp(pitch + up, -1.5, 1.5);

@@ -1,6 +1,6 @@
 // camera: looks at a point from a distance; turns about it.
 //
-//   p_WE = p_WT + d (cos(pitch) sin(yaw), -cos(pitch) cos(yaw), sin(pitch)),   yaw 0 looks along +y, away from the operator
+//   p_WE = p_WT + d (cos(pitch) sin(yaw), -cos(pitch) cos(yaw), sin(pitch)),  yaw 0 looks along +y, away from the operator
 #pragma once
 #include <optional>
 
@@ -23,6 +23,8 @@ struct Camera {
 
   // Where `p_W` is in a picture of this size [pixels, y down]; absent behind the camera.
   std::optional<Vec2> toPixel(const Vec3& p_W, int width, int height) const;
+  // The place under `pixel` in the plane through `p_W` that is parallel to the picture.
+  Vec3 fromPixel(const Vec2& pixel, int width, int height, const Vec3& p_W) const;
 
   void turn(double right, double up);               // by these angles [rad]
   void pan(double right, double up);                // by these shares of the picture's height

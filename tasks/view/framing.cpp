@@ -59,11 +59,20 @@ void fill(const DrawList& list, double nearest, Renderer& renderer, Camera& came
 
 }  // namespace
 
-Camera framed(const DrawList& list, const Camera& plain, Renderer& renderer) {
-  Camera camera = plain;
-  camera.yaw = bestYaw(list, plain, renderer);
-  for (int i = 0; i < 2; ++i) fill(list, kNearest * plain.distance, renderer, camera);  // nearer, perspective moves the borders
+Camera withGiven(const SceneCamera& given, Camera camera) {
+  camera.yaw = given.yaw.value_or(camera.yaw);
+  camera.pitch = given.pitch.value_or(camera.pitch);
+  camera.distance = given.distance.value_or(camera.distance);
+  camera.target_W = given.target_W.value_or(camera.target_W);
   return camera;
+}
+
+Camera framed(const DrawList& list, const Camera& plain, const SceneCamera& given, Renderer& renderer) {
+  Camera camera = plain;
+  camera.pitch = given.pitch.value_or(plain.pitch);
+  camera.yaw = given.yaw ? *given.yaw : bestYaw(list, camera, renderer);
+  for (int i = 0; i < 2; ++i) fill(list, kNearest * plain.distance, renderer, camera);  // nearer, perspective moves the borders
+  return withGiven(given, camera);
 }
 
 }  // namespace pincer::tasks

@@ -66,15 +66,37 @@ void drawPad(const PadLook& pad, const FingerSnapshot& finger, const std::option
   if (pad.grip > 0) ImGui::TextDisabled("grip up to %.2g N", pad.grip);
 }
 
-std::string chartHead(const StripChart& chart) {
-  std::string head = chart.title() + ":";
-  for (std::size_t i = 0; i < chart.lines(); ++i) head += fmt::format(" {:.3g}", chart.last(i));
-  return head + " " + chart.unit();
+// The title, and the values in the colours of their lines, each with its name where there are several.
+void chartHead(const StripChart& chart, const StripChart::Point* at) {
+  ImGui::TextDisabled("%s:", chart.title().c_str());
+  for (std::size_t i = 0; at && i < chart.lines().size(); ++i) {
+    const std::string name = chart.lines().size() > 1 && !chart.lines()[i].empty() ? chart.lines()[i] + " " : "";
+    ImGui::SameLine(0, 7);
+    ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(kLineInks[i % kLineInks.size()]), "%s%s", name.c_str(),
+                       std::isfinite(at->values[i]) ? fmt::format("{:.3g}", at->values[i]).c_str() : "-");
+  }
+  ImGui::SameLine(0, 5);
+  ImGui::TextDisabled("%s", chart.unit().c_str());
 }
 
-void drawChart(const StripChart& chart) {
+// Where the pointer is over the chart that comes next, its point there; else the last one.
+struct ChartCursor {
+  const StripChart::Point* point = nullptr;
+  bool under_pointer = false;
+};
+ChartCursor cursorOf(const StripChart& chart, const Vec2& pointer) {
+  if (chart.points().empty()) return {};
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  const double x = (pointer.x() - corner.x) / kChartWidth,
+               y = (pointer.y() - corner.y - ImGui::GetTextLineHeightWithSpacing()) / kChartHeight;
+  if (x < 0 || x > 1 || y < 0 || y > 1) return {&chart.points().back(), false};
+  return {chart.at(chart.points().back().time - (1 - x) * StripChart::kSeconds), true};
+}
+
+void drawChart(const StripChart& chart, const Vec2& pointer) {
   ImGui::BeginGroup();
-  ImGui::TextDisabled("%s", chartHead(chart).c_str());
+  const ChartCursor cursor = cursorOf(chart, pointer);
+  chartHead(chart, cursor.point);
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   ImGui::Dummy({kChartWidth, kChartHeight});
   ImDrawList* list = ImGui::GetWindowDrawList();
@@ -82,21 +104,27 @@ void drawChart(const StripChart& chart) {
   const StripChart::Range range = chart.range();
   const double end = chart.points().empty() ? 0 : chart.points().back().time;
   const auto place = [&](double time, double value) {
-    const double x = 1 - (end - time) / chart.seconds(), y = (value - range.low) / (range.high - range.low);
+    const double x = 1 - (end - time) / StripChart::kSeconds, y = (value - range.low) / (range.high - range.low);
     return ImVec2(corner.x + static_cast<float>(x) * kChartWidth, corner.y + static_cast<float>(1 - y) * kChartHeight);
   };
-  for (std::size_t line = 0; line < chart.lines(); ++line) {
+  for (std::size_t line = 0; line < chart.lines().size(); ++line) {
     std::vector<ImVec2> points;
     for (const StripChart::Point& point : chart.points()) {
       if (std::isfinite(point.values[line])) points.push_back(place(point.time, point.values[line]));
     }
     list->AddPolyline(points.data(), static_cast<int>(points.size()), kLineInks[line % kLineInks.size()], 0, 1.6f);
   }
+  if (cursor.under_pointer) {
+    const float x = place(cursor.point->time, 0).x;
+    list->AddLine({x, corner.y}, {x, corner.y + kChartHeight}, kGridInk, 1.5f);
+    list->AddText({std::min(x + 4, corner.x + kChartWidth - 50), corner.y + 0.4f * kChartHeight}, IM_COL32(255, 255, 255, 200),
+                  fmt::format("{:.2f} s", cursor.point->time).c_str());
+  }
   constexpr ImU32 kScaleInk = IM_COL32(255, 255, 255, 150);
   list->AddText({corner.x + 3, corner.y}, kScaleInk, fmt::format("{:g} {}", range.high, chart.unit()).c_str());
   const float low = corner.y + kChartHeight - ImGui::GetFontSize();
   list->AddText({corner.x + 3, low}, kScaleInk, fmt::format("{:g}", range.low).c_str());
-  const std::string since = fmt::format("last {:g} s", chart.seconds());
+  const std::string since = fmt::format("last {:g} s", StripChart::kSeconds);
   list->AddText({corner.x + kChartWidth - ImGui::CalcTextSize(since.c_str()).x - 3, low}, kScaleInk, since.c_str());
   ImGui::EndGroup();
 }
@@ -111,12 +139,14 @@ void drawPads(const OverlayText& text, int width) {
   }
 }
 
-void drawCharts(const OverlayText& text, int height) {
+void drawCharts(const OverlayText& text, int width, int height) {
   if (text.charts.empty() || text.snapshot->trial.blind) return;
   const OverlayPanel panel("charts", 0, height, 0, 1);
+  constexpr float kGap = 14;  // [pixels]
+  const auto in_a_row = static_cast<std::size_t>(std::max(1.0f, (static_cast<float>(width) - 40) / (kChartWidth + kGap)));
   for (std::size_t i = 0; i < text.charts.size(); ++i) {
-    if (i > 0) ImGui::SameLine(0, 14);
-    drawChart(text.charts[i]);
+    if (i % in_a_row > 0) ImGui::SameLine(0, kGap);
+    drawChart(*text.charts[i], text.pointer);
   }
 }
 

@@ -45,6 +45,16 @@ constexpr std::array kSceneKeys = {
     KeyBinding{'N', "N", ViewAction::kNextBody, "select the next body; a click selects what is under the pointer"},
     KeyBinding{'A', "A", ViewAction::kCamera, "look at everything again"},
 };
+constexpr std::array kChartKeys = {
+    KeyBinding{'1', "1", ViewAction::kChart1, "force of each finger"},
+    KeyBinding{'2', "2", ViewAction::kChart2, "height of the selected body"},
+    KeyBinding{'3', "3", ViewAction::kChart3, "time that a tick took"},
+    KeyBinding{'4', "4", ViewAction::kChart4, "the body's speed"},
+    KeyBinding{'5', "5", ViewAction::kChart5, "its turn since the start"},
+    KeyBinding{'6', "6", ViewAction::kChart6, "its place: x, y, z"},
+    KeyBinding{'7', "7", ViewAction::kChart7, "forces of its contacts, added up"},
+    KeyBinding{'8', "8", ViewAction::kChart8, "share of friction that each finger uses: 1 slips"},
+};
 constexpr std::array kHandKeys = {
     KeyBinding{'G', "G", ViewAction::kSqueeze, "squeeze, let go"},
     KeyBinding{Key::kKeyLeft, "Left", ViewAction::kHandLeft, "fingers to the left"},
@@ -62,13 +72,15 @@ constexpr std::array kGroups = {
     KeyGroup{"Program", kProgramKeys},
     KeyGroup{"Time", kTimeKeys},
     KeyGroup{"Scene", kSceneKeys},
+    KeyGroup{"Charts, shown or no longer; the pointer on one reads it", kChartKeys},
     KeyGroup{"Fingers, with --devices mouse", kHandKeys},
 };
 constexpr std::array kCameraGestures = {
     MouseGesture{"left button, drag", "turn the camera"},
     MouseGesture{"right button, drag", "move the camera"},
     MouseGesture{"wheel", "nearer, further"},
-    MouseGesture{"left button, click", "select a body: the list tells of it, the chart follows it"},
+    MouseGesture{"left button, click", "select a body: the list tells of it, charts follow it"},
+    MouseGesture{"Control, left button, drag", "pull a body of a scene by a spring"},
     MouseGesture{"bar below, drag", "to another time"},
 };
 constexpr std::array kHandGestures = {
@@ -129,7 +141,8 @@ bool toggle(ViewAction action, ViewChoice& choice) {
 
 std::string keysMarkdown() {
   std::string text =
-      "# Keys of the viewer\n\nWhat `pincer keys` prints: the table that the viewer itself reads (`tasks/view/keys.cpp`); F1 shows it "
+      "# Keys of the viewer\n\nWhat `pincer keys` prints: the table that the viewer itself reads "
+      "(`tasks/view/keys.cpp`); F1 shows it "
       "there.\n"
       "`--no-keys` leaves Esc only.\n";
   for (const KeyGroup& group : kGroups) {

@@ -1,5 +1,5 @@
-// keys: what the viewer's keys and mouse do: one table, from which the viewer reads them, the help overlay and docs/keys.md are made
-// (`pincer keys`). Keys are those of MuJoCo's viewer wherever it has one for the purpose.
+// keys: what the viewer's keys and mouse do: one table, from which the viewer reads them, the help overlay and
+// docs/keys.md are made (`pincer keys`). Keys are those of MuJoCo's viewer wherever it has one for the purpose.
 #pragma once
 #include <optional>
 #include <span>
@@ -36,6 +36,14 @@ enum class ViewAction : std::uint8_t {
   kPads,
   kBodies,
   kNextBody,
+  kChart1,  // and the next seven, in their order
+  kChart2,
+  kChart3,
+  kChart4,
+  kChart5,
+  kChart6,
+  kChart7,
+  kChart8,
   kCamera,
   kScreenshot,
   kSequence,

@@ -1,7 +1,8 @@
-// overlay: what is written over a picture: panels, charts, fingerpads, newtons, help. Drawn by Dear ImGui into whatever is drawn to.
+// overlay: what is written over a picture: panels, charts, fingerpads, newtons, help. Drawn by Dear ImGui into whatever
+// is drawn to.
 #pragma once
 #include <memory>
-#include <span>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "pincer/tasks/view/keys.h"
 #include "pincer/tasks/view/strip_chart.h"
 #include "pincer/tasks/view/timeline.h"
+#include "pincer/tasks/view/words.h"
 
 namespace pincer::tasks {
 
@@ -27,23 +29,13 @@ struct PadLook {
   double grip = 0;       // that it is asked for, with mouse fingers [N]; 0: unknown
 };
 
-// A line of the list of bodies.
-struct BodyRow {
-  std::string name;
-  Vec3 p_W = Vec3::Zero();  // of its frame [m]
-  double speed = 0;         // of it [m/s]
-  double turn = 0;          // since the start [rad]
-  bool selected = false;
-  std::string contacts;  // of the selected one
-};
-
 // All that an overlay says; the viewer fills it in for every picture.
 struct OverlayText {
   const Snapshot* snapshot = nullptr;
   ViewChoice choice;
   std::vector<OverlayLabel> labels;
   std::vector<PadLook> pads;  // one per finger
-  std::span<const StripChart> charts;
+  std::vector<const StripChart*> charts;
   std::string title;                // of scene or task
   const StudyPage* page = nullptr;  // that covers everything else; null: none
   std::string pace;                 // "real time", "1/4 speed", "paused"
@@ -54,7 +46,8 @@ struct OverlayText {
   std::string moment;                   // the last that happened: "1.24 s: index slips"
   double from = 0, to = 0;              // times that the bar shows [s]
   std::vector<BodyRow> bodies;          // that move
-  std::string hovered;                  // name of the body under the pointer
+  std::string hovered;                  // of the thing under the pointer: name, values
+  std::optional<Vec2> pulled;           // from where the pointer pulls a body [pixels]
   Vec2 pointer = Vec2::Zero();          // [pixels]
   double grid = 0;                      // spacing of the ground's lines [m]; 0: none are drawn
   bool hands = false;                   // the mouse moves fingers

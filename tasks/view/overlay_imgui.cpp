@@ -81,7 +81,7 @@ void Overlay::drawPanels(const OverlayText& text, int width, int height) {
     drawTrial(text, width);
     if (text.choice.pads) drawPads(text, width);
     if (text.choice.bodies) drawBodies(text, width, height);
-    drawCharts(text, text.timeline ? height - static_cast<int>(kBarHeight) : height);
+    drawCharts(text, width, text.timeline ? height - static_cast<int>(kBarHeight) : height);
     if (text.timeline) drawTimeline(text, width, height);
   }
   if (text.choice.timing) drawHealth(text, height);

@@ -4,8 +4,8 @@
 
 namespace pincer::tasks {
 
-// A panel of its own size at a corner of the picture: the place (x, y) [pixels] is the panel's (pivot_x, pivot_y), 0 left or upper, 1 right or
-// lower. What is written while it lives is in it.
+// A panel of its own size at a corner of the picture: the place (x, y) [pixels] is the panel's (pivot_x, pivot_y), 0
+// left or upper, 1 right or lower. What is written while it lives is in it.
 class OverlayPanel {
  public:
   OverlayPanel(const char* name, double x, double y, double pivot_x, double pivot_y);
@@ -23,7 +23,7 @@ void drawBodies(const OverlayText& text, int width, int height);    // right
 void drawStatus(const OverlayText& text);                           // upper left
 void drawTrial(const OverlayText& text, int width);                 // upper middle
 void drawPads(const OverlayText& text, int width);                  // upper right
-void drawCharts(const OverlayText& text, int height);               // lower left
+void drawCharts(const OverlayText& text, int width, int height);    // lower left
 void drawHealth(const OverlayText& text, int height);               // left
 void drawHelp(const OverlayText& text, int width, int height);
 void drawPage(const OverlayText& text, int width, int height);    // over all of it

@@ -16,6 +16,8 @@ void Painter::draw(const Snapshot& snapshot, const ViewChoice& choice, bool at_b
   renderer_.draw(scene_.compose(snapshot, choice), camera_, options);
 }
 
-void Painter::frame(const Snapshot& snapshot) { camera_ = framed(scene_.compose(snapshot, {}), scene_.camera(snapshot), renderer_); }
+void Painter::frame(const Snapshot& snapshot, const SceneCamera& given) {
+  camera_ = framed(scene_.compose(snapshot, {}), scene_.camera(snapshot), given, renderer_);
+}
 
 }  // namespace pincer::tasks

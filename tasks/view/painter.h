@@ -2,6 +2,7 @@
 #pragma once
 #include <memory>
 
+#include "pincer/tasks/run/scene.h"
 #include "pincer/tasks/view/renderer.h"
 #include "pincer/tasks/view/scene_drawing.h"
 
@@ -15,7 +16,7 @@ class Painter {
   // `at_best`: with smooth borders, half shadows and dark corners.
   void draw(const Snapshot& snapshot, const ViewChoice& choice, bool at_best = true);
   // Puts the camera where most of each thing is seen (framing.h).
-  void frame(const Snapshot& snapshot);
+  void frame(const Snapshot& snapshot, const SceneCamera& given);
   Image picture() { return renderer_.picture(); }
   void show() { renderer_.show(); }
 

@@ -10,7 +10,7 @@ namespace pincer::tasks {
 namespace {
 
 constexpr ImU32 kInk = IM_COL32(18, 22, 28, 255), kPaper = IM_COL32(255, 255, 255, 205), kSlipInk = IM_COL32(190, 30, 10, 255),
-                kLeaderInk = IM_COL32(18, 22, 28, 120);
+                kLeaderInk = IM_COL32(18, 22, 28, 120), kPullInk = IM_COL32(25, 60, 160, 255);
 const ImVec4 kGoodText(0.45f, 0.85f, 0.50f, 1), kBadText(1.0f, 0.45f, 0.35f, 1);
 
 void textLine(const std::string& text) { ImGui::TextUnformatted(text.c_str()); }
@@ -61,6 +61,7 @@ void drawLabels(const OverlayText& text, int width, int height) {
     list->AddRectFilled(pixel(low), pixel(high), kPaper, 4);
     list->AddText(pixel(low + Vec2(5, 2)), label.slips ? kSlipInk : kInk, label.text.c_str());
   }
+  if (text.pulled) list->AddLine(pixel(*text.pulled), pixel(text.pointer), kPullInk, 2.5f);
   if (text.hovered.empty()) return;
   const ImVec2 at(static_cast<float>(text.pointer.x()) + 14, static_cast<float>(text.pointer.y()) + 6);
   const ImVec2 size = ImGui::CalcTextSize(text.hovered.c_str());

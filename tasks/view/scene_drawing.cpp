@@ -1,12 +1,11 @@
 #include "pincer/tasks/view/scene_drawing.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 
+#include "pincer/tasks/view/contact_drawing.h"
 #include "pincer/tasks/view/shape_meshes.h"
 
 namespace pincer::tasks {
@@ -14,7 +13,7 @@ namespace {
 
 const Vec3f kSkin(0.83f, 0.50f, 0.37f), kPad(0.88f, 0.40f, 0.34f), kNail(0.93f, 0.72f, 0.64f);
 const Vec3f kTip(0.20f, 0.22f, 0.25f);
-const Vec3f kStick(0.02f, 0.50f, 0.20f), kSlip(0.95f, 0.10f, 0.03f), kNormal(0.02f, 0.07f, 0.30f), kPorcelain(0.50f, 0.52f, 0.54f);
+const Vec3f kPorcelain(0.50f, 0.52f, 0.54f);
 const Vec3f kSelected(1.0f, 0.95f, 0.55f);
 const Vec3f kGoal(0.05f, 0.45f, 0.85f);
 const Vec3f kFloor(0.50f, 0.52f, 0.55f), kDevice(0.10f, 0.30f, 0.85f);
@@ -26,8 +25,6 @@ constexpr double kGroundExtent = 12;        // radius of the drawn floor, in rad
 constexpr double kGridShare = 0.7;          // of the radius of what moves: the ground's lines are the next power of ten below as far apart
 constexpr double kLargestThing = 1;         // a larger body that doesn't move needn't be in the picture [m]
 constexpr double kLongestArrow = 2.2;       // in sizes of what moves
-constexpr int kMostLabels = 8;              // more contacts than these, and only fingers' forces are written beside them
-constexpr double kLeastForce = 1e-3;        // smaller ones get no arrow [N]
 
 bool isGround(const contact::Shape& shape) {
   return std::holds_alternative<contact::HalfSpace>(shape) || std::holds_alternative<contact::Dish>(shape);
@@ -45,9 +42,6 @@ Paint paintOf(const contact::Shape& shape, bool dynamic, const Vec3f& colour) {
 bool isHidden(const Snapshot& snapshot, std::size_t body) {
   return snapshot.hidden_body == Snapshot::kAllBodies || snapshot.hidden_body == static_cast<int>(body);
 }
-
-// A rotation that takes z to `along_W`.
-const Vec3f& gripColour(bool sliding) { return sliding ? kSlip : kStick; }
 
 // Says what everything from the `first` item on stands for.
 void markParts(DrawList& list, std::size_t first, Part part) {
@@ -171,11 +165,11 @@ DrawList SceneDrawing::compose(const Snapshot& snapshot, const ViewChoice& choic
   const std::size_t goals = list.size();
   addGoal(snapshot, list);
   markParts(list, goals, Part::kGoal);
-  const double scale = metresPerNewton(snapshot);
+  const ContactLook look = contactLook(snapshot);
   const std::size_t joints = list.size();
-  if (choice.joints) joints_.add(snapshot, marks(), scale, list);
+  if (choice.joints) joints_.add(snapshot, marks(), look.metres_per_newton, list);
   markParts(list, joints, Part::kJoint);
-  for (int i = 0; i < snapshot.contact_count; ++i) addContact(snapshot.contacts[static_cast<std::size_t>(i)], choice, scale, list);
+  addContacts(snapshot, choice, look, list);
   return list;
 }
 
@@ -264,6 +258,8 @@ void SceneDrawing::addGoal(const Snapshot& snapshot, DrawList& list) const {
   }
 }
 
+ContactLook SceneDrawing::contactLook(const Snapshot& snapshot) const { return {marks(), cone_, metresPerNewton(snapshot)}; }
+
 double SceneDrawing::metresPerNewton(const Snapshot& snapshot) const {
   double largest = 0;
   for (int i = 0; i < snapshot.contact_count; ++i) largest = std::max(largest, snapshot.contacts[static_cast<std::size_t>(i)].f_W.norm());
@@ -272,41 +268,9 @@ double SceneDrawing::metresPerNewton(const Snapshot& snapshot) const {
   return scale;
 }
 
-void SceneDrawing::addContact(const ContactSnapshot& contact, const ViewChoice& choice, double metres_per_newton, DrawList& list) const {
-  const double size = contact.finger < 0 ? 0.4 * size_ : size_;  // bodies have many
-  const Paint paint{.colour = gripColour(contact.sliding), .gloss = 0.5f, .glow = 0.35f};
-  const std::size_t places = list.size();
-  if (choice.contacts) {
-    list.push_back({ball_, placed({Quat::Identity(), contact.p_W}, Vec3::Constant(0.06 * size)), paint, Layer::kMark});
-    addMarkArrow(marks(), contact.p_W, 0.45 * size * contact.n_W, 0.012 * size, {.colour = kNormal, .glow = 0.7f}, list);
-  }
-  markParts(list, places, Part::kContact);
-  const std::size_t forces = list.size();
-  if (choice.forces && contact.f_W.norm() > kLeastForce) {
-    addMarkArrow(marks(), contact.p_W, metres_per_newton * contact.f_W, 0.035 * size, paint, list);
-  }
-  markParts(list, forces, Part::kForce);
-  if (!choice.cones || contact.finger < 0 || !(contact.mu > 0)) return;
-  const double height = 0.9 * size / std::sqrt(1 + contact.mu * contact.mu);
-  const Vec3 stretch(contact.mu * height, contact.mu * height, height);
-  list.push_back({cone_,
-                  placed(pointing(contact.p_W, contact.n_W), stretch),
-                  {.colour = gripColour(contact.sliding), .alpha = 0.22f, .gloss = 0.2f, .glow = 0.5f},
-                  Layer::kMark,
-                  Part::kCone});
-}
-
 std::vector<ViewLabel> SceneDrawing::labels(const Snapshot& snapshot, const ViewChoice& choice) const {
-  std::vector<ViewLabel> labels;
-  if (!choice.forces || snapshot.trial.blind) return labels;
-  const double scale = metresPerNewton(snapshot);
-  for (int i = 0; i < snapshot.contact_count; ++i) {
-    const ContactSnapshot& contact = snapshot.contacts[static_cast<std::size_t>(i)];
-    const double newtons = contact.f_W.norm();
-    if (newtons < 0.01 || (contact.finger < 0 && snapshot.contact_count > kMostLabels)) continue;
-    labels.push_back({contact.p_W + (scale + 0.12 * size_ / newtons) * contact.f_W, fmt::format("{:.2f} N", newtons), contact.sliding});
-  }
-  return labels;
+  if (!choice.forces || snapshot.trial.blind) return {};
+  return contactLabels(snapshot, contactLook(snapshot));
 }
 
 Vec3 SceneDrawing::centre_W(const Snapshot& snapshot) const {

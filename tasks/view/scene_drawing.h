@@ -1,8 +1,8 @@
-// scene_drawing: a snapshot as things to draw: bodies, fingertips, where devices and proxies are, contacts, cones, forces.
+// scene_drawing: a snapshot as things to draw: bodies, fingertips, where devices and proxies are, contacts, cones,
+// forces.
 //
-//   force arrow   from the contact along the force on the finger; its scale is the largest round one at which all fit the picture
-//   cone          of friction at a finger's contact: the force on the finger lies within it; its half opening is atan(mu)
-//   colours       sticking green, slipping red
+// Tips are drawn as their own geometry; a sphere, which stands for a person's fingertip, as a finger. Contacts:
+// contact_drawing.h. The scale of force arrows is the largest round one at which all fit the picture.
 #pragma once
 #include <optional>
 #include <string>
@@ -41,13 +41,15 @@ struct ViewLabel {
   bool slips;
 };
 
+struct ContactLook;
+
 class SceneDrawing {
  public:
   // Makes the meshes; `start` says where things are at first.
   SceneDrawing(const grasp::GraspModel& model, const Snapshot& start, MeshSink& meshes);
 
-  // The drawing of `snapshot`. A blind trial shows nothing but the fingers' home: an empty dish. Things (DrawItem::thing) are
-  // thingOfBody, and after them the fingers; 0 is what needn't be in the picture.
+  // The drawing of `snapshot`. A blind trial shows nothing but the fingers' home: an empty dish. Things
+  // (DrawItem::thing) are thingOfBody, and after them the fingers; 0 is what needn't be in the picture.
   static int thingOfBody(std::size_t body) { return static_cast<int>(body) + 1; }
   DrawList compose(const Snapshot& snapshot, const ViewChoice& choice) const;
   std::vector<ViewLabel> labels(const Snapshot& snapshot, const ViewChoice& choice) const;
@@ -85,7 +87,7 @@ class SceneDrawing {
   void addDevice(const FingerSnapshot& seen, std::size_t finger, DrawList& list) const;
   void addDropShadow(const Vec3& p_W, double radius, DrawList& list) const;
   void addGoal(const Snapshot& snapshot, DrawList& list) const;
-  void addContact(const ContactSnapshot& contact, const ViewChoice& choice, double metres_per_newton, DrawList& list) const;
+  ContactLook contactLook(const Snapshot& snapshot) const;
   MarkMeshes marks() const { return {ball_, rod_, head_, size_}; }
 
   std::vector<grasp::FingerModel> fingers_;

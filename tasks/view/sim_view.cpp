@@ -24,10 +24,11 @@ std::string verdictOf(const ExpectationLog& log) {
 
 }  // namespace
 
-SceneCycle::SceneCycle(Simulation& simulation, SnapshotChannel& channel, devices::MouseHand* hand)
+SceneCycle::SceneCycle(Simulation& simulation, SnapshotChannel& channel, devices::MouseHand* hand, BodyPull* pull)
     : simulation_(simulation),
       channel_(channel),
       hand_(hand),
+      pull_(pull),
       inputs_(simulation.scene().fingers.size()),
       log_(hand ? std::vector<Expectation>{} : simulation.scene().expectations) {
   judge();
@@ -39,7 +40,7 @@ SceneCycle::SceneCycle(Simulation& simulation, SnapshotChannel& channel, devices
 
 bool SceneCycle::tick(double) {
   const double start = steadySeconds();
-  const engine::StepReport report = hand_ ? handTick() : simulation_.tick();
+  const engine::StepReport report = hand_ ? handTick() : sceneTick();
   Snapshot& snapshot = channel_.writable();
   captureSimulation(simulation_, report, snapshot);
   snapshot.tick_seconds = steadySeconds() - start;
@@ -64,6 +65,18 @@ engine::StepReport SceneCycle::handTick() {
   return report;
 }
 
+engine::StepReport SceneCycle::sceneTick() {
+  if (!pull_) return simulation_.tick();
+  const engine::AppliedForces applied = pull_->forces(simulation_.state().world, simulation_.scene().options.h);
+  return simulation_.tick(simulation_.nextFingers(), applied);
+}
+
+// What happens after a pull isn't what the scene's file says.
+void SceneCycle::judge() {
+  if (pull_ && pull_->wasUsed()) return;
+  log_.observe(simulation_.ticks(), simulation_.time(), simulation_.moment());
+}
+
 void SceneCycle::noteLift() {
   if (object_ < 0) return;
   const double start = simulation_.scene().starts[static_cast<std::size_t>(object_)].X_WB.p.z();
@@ -78,9 +91,10 @@ Snapshot snapshotOf(const Simulation& simulation) {
 
 std::vector<devices::MouseMount> mouseMounts(const Scene& scene) {
   if (scene.fingers.empty() || scene.fingers.size() > 2) {
-    throw InputError(fmt::format(
-        "{}: a mouse moves one or two fingers, and this scene has {}. Take a scene with one or two, or watch it without --devices mouse.",
-        scene.file, scene.fingers.size()));
+    throw InputError(
+        fmt::format("{}: a mouse moves one or two fingers, and this scene has {}. Take a scene with one or two, or "
+                    "watch it without --devices mouse.",
+                    scene.file, scene.fingers.size()));
   }
   std::vector<devices::MouseMount> mounts;
   for (const SceneFinger& finger : scene.fingers) {
@@ -91,12 +105,13 @@ std::vector<devices::MouseMount> mouseMounts(const Scene& scene) {
   return mounts;
 }
 
-Image pictureOf(const Simulation& simulation) {
+Image pictureOf(const Simulation& simulation, bool as_operator) {
   const auto surface = devices::openOffscreen({});
   const Snapshot snapshot = snapshotOf(simulation);
   SnapshotChannel channel(snapshot);
   PaceControl pace;
-  Viewer viewer(*surface, simulation.model(), snapshot, channel, pace, nullptr, {.choose_camera = true});
+  Viewer viewer(*surface, simulation.model(), snapshot, channel, pace, nullptr,
+                {.choose_camera = !as_operator, .camera = simulation.scene().camera});
   viewer.choice().overlay = false;
   viewer.update();
   return viewer.picture();
@@ -107,23 +122,27 @@ WatchResult watchScene(Simulation& simulation, const ViewOptions& options, bool 
   if (mouse) hand.emplace(mouseMounts(simulation.scene()));
   const Snapshot start = snapshotOf(simulation);
   SnapshotChannel channel(start);
-  SceneCycle cycle(simulation, channel, hand ? &*hand : nullptr);
+  BodyPull pull(simulation.model());
+  SceneCycle cycle(simulation, channel, hand ? &*hand : nullptr, &pull);
   ServoOptions servo;
   servo.rate = 1 / simulation.scene().options.h;
   if (!(servo.rate >= 100 && servo.rate <= 4000)) {
     throw InputError(fmt::format("{}: ticks of {} s can't be watched in real time, ticks of 0.25 to 10 ms can. Take --screenshot FILE.png.",
                                  simulation.scene().file, simulation.scene().options.h));
   }
-  const ServoReport report = runWatched({.cycle = cycle,
-                                         .model = simulation.model(),
-                                         .start = start,
-                                         .channel = channel,
-                                         .hand = hand ? &*hand : nullptr,
-                                         .linger = true,
-                                         .choose_camera = !mouse,
-                                         .verdict = [&cycle] { return verdictOf(cycle.log()); }},
-                                        servo, options, interrupted);
-  return {report, cycle.lift(), cycle.log(), !mouse && simulation.ticks() >= simulation.scene().ticks()};
+  const ServoReport report = runWatched(
+      {.cycle = cycle,
+       .model = simulation.model(),
+       .start = start,
+       .channel = channel,
+       .hand = hand ? &*hand : nullptr,
+       .linger = true,
+       .choose_camera = !mouse && !options.as_operator,
+       .camera = simulation.scene().camera,
+       .pull = mouse ? nullptr : &pull,
+       .verdict = [&cycle, &pull] { return pull.wasUsed() ? std::string("pulled by hand, not judged") : verdictOf(cycle.log()); }},
+      servo, options, interrupted);
+  return {report, cycle.lift(), cycle.log(), !mouse && simulation.ticks() >= simulation.scene().ticks(), pull.wasUsed()};
 }
 
 }  // namespace pincer::tasks

@@ -28,7 +28,16 @@ void StripChart::add(double time, std::vector<double> values) {
   if (!points_.empty() && time < points_.back().time) points_.clear();
   if (!points_.empty() && time == points_.back().time) points_.pop_back();
   points_.push_back({time, std::move(values)});
-  while (points_.front().time < time - seconds_) points_.pop_front();
+  while (points_.front().time < time - kSeconds) points_.pop_front();
+}
+
+const StripChart::Point* StripChart::at(double time) const {
+  const Point* found = points_.empty() ? nullptr : &points_.front();
+  for (const Point& point : points_) {
+    if (point.time > time) break;
+    found = &point;
+  }
+  return found;
 }
 
 StripChart::Range StripChart::range() const {

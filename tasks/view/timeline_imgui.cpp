@@ -72,10 +72,7 @@ void drawBodies(const OverlayText& text, int width, int height) {
     if (++shown > kMostBodies) break;
     const ImVec4 ink = body.selected ? ImVec4(1.0f, 0.92f, 0.5f, 1) : ImGui::GetStyle().Colors[ImGuiCol_Text];
     ImGui::TextColored(ink, "%s", body.name.c_str());
-    const Vec3 mm = (1e3 * body.p_W).unaryExpr([](double v) { return std::abs(v) < 0.05 ? 0.0 : v; });  // no "-0.0"
-    ImGui::TextDisabled("%s", fmt::format("({:.1f}, {:.1f}, {:.1f}) mm  {:.1f} mm/s  turned {:.1f}°", mm.x(), mm.y(), mm.z(),
-                                          1e3 * body.speed, body.turn / kDegree)
-                                  .c_str());
+    ImGui::TextDisabled("%s", motionWords(body).c_str());
     if (!body.contacts.empty()) ImGui::TextUnformatted(body.contacts.c_str());
   }
   const int more = static_cast<int>(text.bodies.size()) - kMostBodies;

@@ -62,6 +62,8 @@ ServoReport runWatched(const WatchedCycle& watched, const ServoOptions& servo, c
                 {.title = options.title,
                  .keys = options.keys,
                  .choose_camera = watched.choose_camera,
+                 .camera = watched.camera,
+                 .pull = watched.pull,
                  .from_the_side = watched.from_the_side,
                  .verdict = watched.verdict,
                  .answer = watched.answer});

@@ -8,6 +8,8 @@
 #include <numbers>
 #include <thread>
 
+#include "pincer/tasks/view/framing.h"
+
 namespace pincer::tasks {
 namespace {
 
@@ -15,12 +17,6 @@ constexpr double kNoticeTime = 2.5;  // [s]
 constexpr double kQuietTime = 0.4;   // without change, until a picture at its best is worth its time [s]
 
 double viewerSeconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
-
-// [rad], 0 .. pi; Eigen's own takes the processor's atan2.
-double turnBetween(const Quat& a, const Quat& b) {
-  const Quat way = a.conjugate() * b;
-  return 2 * math::atan2(way.vec().norm(), std::abs(way.w()));
-}
 
 // The first of pattern(1), pattern(2), ... that isn't there yet.
 std::string freshPath(const std::string& folder, const std::string& stem, const std::string& ending) {
@@ -35,24 +31,26 @@ std::string freshPath(const std::string& folder, const std::string& stem, const 
 Viewer::Viewer(devices::Surface& surface, const grasp::GraspModel& model, const Snapshot& start, SnapshotChannel& channel,
                PaceControl& pace, devices::MouseHand* hand, ViewerOptions options)
     : surface_(surface), channel_(channel), pace_(pace), hand_(hand), options_(std::move(options)), painter_(surface, model, start) {
-  if (!model.fingers.empty()) charts_.emplace_back("grip force", "N", model.fingers.size(), 1e-3);
   for (const grasp::FingerModel& finger : model.fingers) pads_.push_back({finger.name, 1.5 * finger.radius, 0});
   for (const grasp::FingerModel& finger : model.fingers) finger_names_.push_back(finger.name);
+  charts_.emplace(start, finger_names_);
   start_X_WB_ = start.X_WB;
+  int object = -1;
   for (std::size_t i = 0; i < model.world.bodies.size(); ++i) {
     const engine::BodyModel& body = model.world.bodies[i];
     body_names_.push_back(body.name.empty() ? fmt::format("body {}", i) : body.name);
     moves_.push_back(body.dynamic || body.driven);
-    if (body.dynamic && object_ < 0) object_ = static_cast<int>(i);
+    is_free_.push_back(body.dynamic);
+    if (body.dynamic && object < 0) object = static_cast<int>(i);
   }
-  if (object_ >= 0) charts_.emplace_back(body_names_[static_cast<std::size_t>(object_)] + ", height", "mm", 1, 1e-3);
-  charts_.emplace_back("tick", "us", 1, 1e-3);
+  if (object >= 0) charts_->follow(object, body_names_[static_cast<std::size_t>(object)]);
   lookAtAll(start);
 }
 
 void Viewer::lookAtAll(const Snapshot& snapshot) {
   painter_.camera() = painter_.scene().camera(snapshot);
-  if (options_.choose_camera) painter_.frame(snapshot);
+  painter_.camera() = withGiven(options_.camera, painter_.camera());
+  if (options_.choose_camera) painter_.frame(snapshot, options_.camera);
   if (options_.from_the_side) painter_.camera().yaw = 0.5 * std::numbers::pi;
 }
 
@@ -62,7 +60,8 @@ bool Viewer::update() {
   look();
   surface_.showPointer(!(hand_ && shown().trial.blind));  // it would tell where the hidden hand is
   if (!events.empty() || looksOtherwise()) quiet_since_ = viewerSeconds();
-  // Without a graphics card, a picture at its best takes most of a second: once, of what has stood still for a while, and of what is kept.
+  // Without a graphics card, a picture at its best takes most of a second: once, of what has stood still for a while,
+  // and of what is kept.
   const bool quiet = viewerSeconds() - quiet_since_ > kQuietTime;
   const bool at_best = !painter_.renderer().isSoftware() || quiet || !sequence_.empty();
   if (quiet && is_best_) {
@@ -116,10 +115,10 @@ void Viewer::play() {
 // The seconds before what is shown.
 void Viewer::chartRecording() {
   constexpr std::size_t kPoints = 400;
-  const double from = shown().time - charts_.front().seconds();
+  const double from = shown().time - StripChart::kSeconds;
   const std::size_t last = scrub_.value_or(history_.size() - 1), first = history_.find(from), step = (last - first) / kPoints + 1;
-  for (std::size_t i = first; i < last; i += step) addToCharts(history_.at(i));
-  addToCharts(shown());
+  for (std::size_t i = first; i < last; i += step) charts_->add(history_.at(i));
+  charts_->add(shown());
 }
 
 void Viewer::look() {
@@ -131,53 +130,42 @@ void Viewer::look() {
   if (history_.size() > 0 && snapshot.tick == history_.at(history_.size() - 1).tick) return;
   history_.add(snapshot);
   timeline_.add(snapshot);
-  addToCharts(snapshot);
+  charts_->add(snapshot);
   if (const double late = pace_.late; late >= 0) lateness_.add(late);
-}
-
-void Viewer::addToCharts(const Snapshot& snapshot) {
-  std::size_t next = 0;
-  if (!snapshot.fingers.empty()) {
-    std::vector<double> forces;
-    for (const FingerSnapshot& finger : snapshot.fingers) forces.push_back(finger.normal_force);
-    charts_[next++].add(snapshot.time, std::move(forces));
-  }
-  if (object_ >= 0) {
-    const auto object = static_cast<std::size_t>(object_);
-    const double height = snapshot.X_WB[object].p.z() - start_X_WB_[object].p.z();
-    charts_[next++].add(snapshot.time, {1e3 * height});
-  }
-  charts_[next].add(snapshot.time, {1e6 * snapshot.tick_seconds});
 }
 
 bool Viewer::hasBar() const { return history_.size() > 1 && options_.keys && !(hand_ && !pace_.paused) && !shown().trial.blind && !page_; }
 
-std::vector<BodyRow> Viewer::bodyRows() const {
-  std::vector<BodyRow> rows;
+BodyRow Viewer::rowOf(std::size_t body) const {
   const Snapshot& now = shown();
   const std::size_t at = history_.size() == 0 ? 0 : history_.find(now.time);
   const Snapshot& before = at > 0 ? history_.at(at - 1) : now;
-  for (std::size_t i = 0; i < now.X_WB.size(); ++i) {
+  BodyRow row{.name = body_names_[body], .p_W = now.X_WB[body].p, .selected = choice_.selected == static_cast<int>(body), .contacts = {}};
+  if (now.time > before.time) row.speed = (now.X_WB[body].p - before.X_WB[body].p).norm() / (now.time - before.time);
+  row.turn = angleBetween(start_X_WB_[body].q, now.X_WB[body].q);
+  return row;
+}
+
+std::vector<BodyRow> Viewer::bodyRows() const {
+  std::vector<BodyRow> rows;
+  for (std::size_t i = 0; i < moves_.size(); ++i) {
     if (!moves_[i]) continue;
-    BodyRow row{.name = body_names_[i], .p_W = now.X_WB[i].p, .selected = choice_.selected == static_cast<int>(i), .contacts = {}};
-    if (now.time > before.time) row.speed = (now.X_WB[i].p - before.X_WB[i].p).norm() / (now.time - before.time);
-    row.turn = turnBetween(start_X_WB_[i].q, now.X_WB[i].q);
-    if (row.selected) row.contacts = contactsOf(static_cast<int>(i));
-    rows.push_back(std::move(row));
+    rows.push_back(rowOf(i));
+    if (rows.back().selected) rows.back().contacts = contactWords(shown(), static_cast<int>(i), finger_names_, body_names_);
   }
   return rows;
 }
 
-std::string Viewer::contactsOf(int body) const {
-  std::string words;
-  for (int i = 0; i < shown().contact_count; ++i) {
-    const ContactSnapshot& contact = shown().contacts[static_cast<std::size_t>(i)];
-    if (contact.body != body) continue;
-    const std::string with = contact.finger < 0 ? "a body" : finger_names_[static_cast<std::size_t>(contact.finger)];
-    words += fmt::format("{}{} {:.2f} N, {}", words.empty() ? "" : "\n", with.empty() ? "a finger" : with, contact.f_W.norm(),
-                         contact.sliding ? "slides" : "sticks");
+std::string Viewer::hoveredWords() const {
+  if (hovered_ < 0 || shown().trial.blind) return "";
+  const auto i = static_cast<std::size_t>(hovered_);
+  if (!isBody(hovered_)) {
+    const std::size_t finger = i - body_names_.size();
+    return fmt::format("{}\n{}", finger_names_[finger].empty() ? "finger" : finger_names_[finger], fingerWords(shown().fingers[finger]));
   }
-  return words;
+  if (!moves_[i]) return body_names_[i];
+  const std::string contacts = contactWords(shown(), hovered_, finger_names_, body_names_);
+  return fmt::format("{}\n{}{}{}", body_names_[i], motionWords(rowOf(i)), contacts.empty() ? "" : "\n", contacts);
 }
 
 Image Viewer::picture() {
@@ -205,7 +193,7 @@ OverlayText Viewer::overlayText() const {
     if (shown().fingers[i].q_WF) text.pads.push_back(pads_[i]);
     if (hand_ && pads_.size() > 1 && !text.pads.empty()) text.pads.back().grip = hand_->grip();
   }
-  text.charts = charts_;
+  text.charts = charts_->shown();
   text.title = options_.title;
   text.page = page_ ? &*page_ : nullptr;
   text.pace = paceText();
@@ -220,7 +208,11 @@ OverlayText Viewer::overlayText() const {
     text.to = history_.at(history_.size() - 1).time;
   }
   if (choice_.bodies) text.bodies = bodyRows();
-  text.hovered = hovered_;
+  text.hovered = hoveredWords();
+  if (options_.pull && options_.pull->holds()) {
+    const Vec3 p_W = shown().X_WB[static_cast<std::size_t>(options_.pull->body())] * options_.pull->place_B();
+    text.pulled = painter_.camera().toPixel(p_W, size.width, size.height);
+  }
   text.pointer = mouse_;
   if (!shown().trial.blind) text.grid = painter_.scene().grid();
   text.hands = hand_ != nullptr;

@@ -1,7 +1,7 @@
 // viewer: what a person who watches has: pictures of the latest snapshots, time to go back in, keys and mouse.
 //
-// It reads snapshots from a channel and writes to the servo nothing but the pace and, with mouse fingers, where the hand wants to be. So
-// nothing it does can delay a tick.
+// It reads snapshots from a channel and writes to the servo nothing but the pace and, with mouse fingers, where the
+// hand wants to be. So nothing it does can delay a tick.
 #pragma once
 #include <functional>
 #include <optional>
@@ -10,6 +10,8 @@
 #include "pincer/devices/window/mouse_hand.h"
 #include "pincer/tasks/lab/finger/finger_host.h"
 #include "pincer/tasks/run/servo/paced_cycle.h"
+#include "pincer/tasks/view/body_pull.h"
+#include "pincer/tasks/view/chart_board.h"
 #include "pincer/tasks/view/history.h"
 #include "pincer/tasks/view/overlay.h"
 #include "pincer/tasks/view/painter.h"
@@ -21,6 +23,8 @@ struct ViewerOptions {
   bool keys = true;                                               // false: only Esc
   std::string folder = ".";                                       // for screenshots and sequences
   bool choose_camera = false;                                     // that sees most of each thing; else as the operator looks
+  SceneCamera camera = {};                                        // from where it looks, as far as it is given
+  BodyPull* pull = nullptr;                                       // by the mouse; null: bodies can't be pulled
   bool from_the_side = false;                                     // looks along -x at the plane x = 0, in which the mouse moves fingers
   std::function<std::string()> verdict = {};                      // said once the cycle has ended; empty: none
   std::function<void(int key)> answer = {};                       // gets the digits and Enter; empty: nobody does
@@ -68,17 +72,23 @@ class Viewer {
   void scrubToMouse();        // on the bar at the picture's lower border
   void replay();              // of what was seen, from its beginning
   void select(int body);
-  int bodyUnderMouse();  // -1: none
+  int thingUnderMouse();  // a body; a finger, counted after all bodies; -1: none
+  bool isBody(int thing) const { return thing >= 0 && thing < static_cast<int>(body_names_.size()); }
+  void takeBody(int body);
+  void movePull();
+  void press(bool down);  // the left button
+  void followMouse(const devices::InputEvent& event);
+  bool actOnScene(ViewAction action);
+  std::string hoveredWords() const;
+  BodyRow rowOf(std::size_t body) const;
   bool hasBar() const;
   bool isPlaying() const { return recorded_ ? !pace_.paused : replaying_; }
   std::vector<BodyRow> bodyRows() const;
-  std::string contactsOf(int body) const;
   bool mouseIsOnBar() const;
   void chartRecording();
   void saveScreenshot();
   void toggleSequence();
   void savePictureOfSequence();
-  void addToCharts(const Snapshot& snapshot);
   OverlayText overlayText() const;
   std::string paceText() const;
   double metresPerHeight() const;
@@ -93,21 +103,21 @@ class Viewer {
   ViewChoice choice_;
   std::optional<StudyPage> page_;
   History history_;
-  std::vector<StripChart> charts_;
+  std::optional<ChartBoard> charts_;
   std::vector<PadLook> pads_;
-  int object_ = -1;  // body whose height is shown
   Histogram lateness_;
   std::optional<std::size_t> scrub_;  // place in the history; absent: the present
   bool recorded_ = false;             // the history is all there is
   double play_time_ = 0;              // of what is shown of it [s]
   bool replaying_ = false;            // what was seen of something that goes on
   bool loop_ = false;
-  bool bar_held_ = false;        // by the left button
-  Vec2 pressed_ = Vec2::Zero();  // where the left button went down [pixels]
-  std::string hovered_;
+  bool bar_held_ = false;         // by the left button
+  Vec2 pressed_ = Vec2::Zero();   // where the left button went down [pixels]
+  int hovered_ = -1;              // thing under the pointer; -1: none
+  Vec3 pulled_W_ = Vec3::Zero();  // where a body was taken [m]
   Timeline timeline_;
   std::vector<std::string> body_names_, finger_names_;
-  std::vector<bool> moves_;  // per body
+  std::vector<bool> moves_, is_free_;  // per body: at all; by forces
   std::vector<Pose> start_X_WB_;
   double quiet_since_ = 0;       // when a picture last changed
   std::int64_t seen_tick_ = -1;  // of the last picture, as the next two

@@ -48,25 +48,53 @@ void Viewer::handle(const devices::InputEvent& event) {
     if (!options_.keys && event.code != devices::kKeyEscape) return;
     if (const auto action = actionOf(event.code, hand_ && !pace_.paused)) act(*action);
   } else if (event.kind == InputKind::kButton) {
-    if (event.code == devices::kButtonLeft) left_ = event.down;
-    if (event.code == devices::kButtonLeft && event.down) pressed_ = mouse_;
-    if (event.code == devices::kButtonLeft && !event.down && !hand_ && !bar_held_ && (mouse_ - pressed_).norm() < kClick)
-      select(bodyUnderMouse());
-    if (event.code == devices::kButtonLeft) bar_held_ = event.down && mouseIsOnBar();
-    if (bar_held_) scrubToMouse();
+    if (event.code == devices::kButtonLeft) press(event.down);
     if (event.code == devices::kButtonRight) right_ = event.down;
-    if (event.code == devices::kButtonLeft && hand_) hand_->squeeze(event.down);
   } else if (event.kind == InputKind::kWheel) {
     wheel(event);
   } else {
-    const Vec2 now(event.x, event.y), by = (now - mouse_) / surface_.size().height;
-    if (mouse_known_ && !bar_held_) drag(by.x(), by.y());
-    mouse_ = now;
-    if (bar_held_) scrubToMouse();
-    mouse_known_ = true;
-    const int under = hand_ || left_ || right_ || !options_.keys ? -1 : bodyUnderMouse();
-    hovered_ = under < 0 ? "" : body_names_[static_cast<std::size_t>(under)];
+    followMouse(event);
   }
+}
+
+void Viewer::press(bool down) {
+  left_ = down;
+  if (hand_) hand_->squeeze(down);
+  if (down) pressed_ = mouse_;
+  const bool pulls = options_.pull && options_.pull->holds();
+  if (down && control_ && options_.pull && !recorded_ && !pace_.ended && !scrub_) takeBody(thingUnderMouse());
+  if (!down && pulls) options_.pull->letGo();
+  if (!down && !hand_ && !pulls && !bar_held_ && (mouse_ - pressed_).norm() < kClick) {
+    const int thing = thingUnderMouse();
+    select(isBody(thing) ? thing : -1);
+  }
+  bar_held_ = down && mouseIsOnBar();
+  if (bar_held_) scrubToMouse();
+}
+
+void Viewer::followMouse(const devices::InputEvent& event) {
+  const Vec2 now(event.x, event.y), by = (now - mouse_) / surface_.size().height;
+  const bool pulls = options_.pull && options_.pull->holds();
+  if (mouse_known_ && !bar_held_ && !pulls) drag(by.x(), by.y());
+  mouse_ = now;
+  if (bar_held_) scrubToMouse();
+  if (pulls) movePull();
+  mouse_known_ = true;
+  hovered_ = hand_ || left_ || right_ || !options_.keys ? -1 : thingUnderMouse();
+}
+
+void Viewer::takeBody(int body) {
+  if (!isBody(body) || !is_free_[static_cast<std::size_t>(body)]) return;
+  const Pose& X_WB = shown().X_WB[static_cast<std::size_t>(body)];
+  const devices::SurfaceSize size = surface_.size();
+  pulled_W_ = painter_.camera().fromPixel(mouse_, size.width, size.height, X_WB.p);
+  options_.pull->take(body, X_WB.inverse() * pulled_W_, pulled_W_);
+}
+
+// In the plane in which the body was taken.
+void Viewer::movePull() {
+  const devices::SurfaceSize size = surface_.size();
+  options_.pull->moveTo(painter_.camera().fromPixel(mouse_, size.width, size.height, pulled_W_));
 }
 
 bool Viewer::isAnswer(int key) const { return options_.answer && ((key >= '0' && key <= '9') || key == devices::kKeyEnter); }
@@ -96,7 +124,7 @@ void Viewer::wheel(const devices::InputEvent& event) {
 }
 
 void Viewer::act(ViewAction action) {
-  if (toggle(action, choice_)) return;
+  if (toggle(action, choice_) || actOnScene(action)) return;
   switch (action) {
     case ViewAction::kQuit:
       quit_ = true;
@@ -104,17 +132,6 @@ void Viewer::act(ViewAction action) {
     case ViewAction::kFullScreen:
       surface_.toggleFullScreen();
       break;
-    case ViewAction::kCamera:
-      lookAtAll(shown());
-      break;
-    case ViewAction::kNextBody: {
-      int next = choice_.selected;
-      do {
-        if (++next == static_cast<int>(moves_.size())) next = -1;
-      } while (next >= 0 && !moves_[static_cast<std::size_t>(next)]);
-      select(next);
-      break;
-    }
     case ViewAction::kScreenshot:
       saveScreenshot();
       break;
@@ -125,6 +142,23 @@ void Viewer::act(ViewAction action) {
       actOnTime(action);
       if (hand_) actOnHand(action);
   }
+}
+
+bool Viewer::actOnScene(ViewAction action) {
+  if (action == ViewAction::kCamera) {
+    lookAtAll(shown());
+  } else if (action == ViewAction::kNextBody) {
+    int next = choice_.selected;
+    do {
+      if (++next == static_cast<int>(moves_.size())) next = -1;
+    } while (next >= 0 && !moves_[static_cast<std::size_t>(next)]);
+    select(next);
+  } else if (action >= ViewAction::kChart1 && action <= ViewAction::kChart8) {
+    charts_->toggle(static_cast<std::size_t>(action) - static_cast<std::size_t>(ViewAction::kChart1));
+  } else {
+    return false;
+  }
+  return true;
 }
 
 void Viewer::actOnTime(ViewAction action) {
@@ -212,22 +246,19 @@ void Viewer::select(int body) {
   choice_.selected = body;
   if (body < 0) return;
   choice_.bodies = true;
-  if (object_ < 0 || !moves_[static_cast<std::size_t>(body)]) return;
-  object_ = body;
-  const std::size_t place = shown().fingers.empty() ? 0 : 1;
-  charts_[place] = StripChart(body_names_[static_cast<std::size_t>(body)] + ", height", "mm", 1, 1e-3);
+  if (!is_free_[static_cast<std::size_t>(body)]) return;
+  charts_->follow(body, body_names_[static_cast<std::size_t>(body)]);
   if (history_.size() > 0) chartRecording();
 }
 
-int Viewer::bodyUnderMouse() {
+int Viewer::thingUnderMouse() {
   if (shown().trial.blind) return -1;
   constexpr int kShare = 4;  // of the window's pixels along a side, that are looked at
   const devices::SurfaceSize size = surface_.size(), small{std::max(1, size.width / kShare), std::max(1, size.height / kShare)};
   const int x = std::clamp(static_cast<int>(mouse_.x()) / kShare, 0, small.width - 1);
   const int y = std::clamp(static_cast<int>(mouse_.y()) / kShare, 0, small.height - 1);
   const std::vector<int> things = painter_.renderer().things(painter_.scene().compose(shown(), choice_), painter_.camera(), small);
-  const int body = things[static_cast<std::size_t>(y * small.width + x)] - SceneDrawing::thingOfBody(0);
-  return body < static_cast<int>(body_names_.size()) ? body : -1;
+  return things[static_cast<std::size_t>(y * small.width + x)] - SceneDrawing::thingOfBody(0);
 }
 
 bool Viewer::mouseIsOnBar() const { return hasBar() && choice_.overlay && mouse_.y() > surface_.size().height - kBarHeight; }

@@ -54,7 +54,7 @@ def check_scene(browser, pincer, folder, scene, seconds):
     shared = run(pincer, "share", scene, "--duration", seconds, "--out", page)
     assert shared.returncode == 0, shared.stderr
     assert page.stat().st_size < 5e6, f"{page.stat().st_size} bytes"
-    run(pincer, "sim", scene, "--duration", BEGIN, "--screenshot", folder / f"{scene}-own.png")
+    run(pincer, "sim", scene, "--duration", BEGIN, "--from-operator", "--screenshot", folder / f"{scene}-own.png")
     own = matplotlib.image.imread(folder / f"{scene}-own.png")[..., :3]
     begin, said = opened(browser, page, f"t={BEGIN}", folder / f"{scene}-begin.png", True)
     assert not said, said

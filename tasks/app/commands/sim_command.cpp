@@ -47,7 +47,8 @@ int watch(Simulation& simulation, const SimArguments& arguments, const std::atom
   view.title = arguments.scenes.front();
   const WatchResult result = watchScene(simulation, view, arguments.devices == "mouse", interrupted);
   print("{}\nLifted by up to {:.1f} mm.\n", servoText(result.servo, simulation.scene().options.h), 1e3 * result.lift);
-  if (arguments.devices == "mouse") return interrupted ? kExitInterrupted : kExitOk;
+  if (result.pulled) print("A body was pulled by hand: what the scene expects from then on wasn't judged.\n");
+  if (arguments.devices == "mouse" || result.pulled) return interrupted ? kExitInterrupted : kExitOk;
   print("{}{}", expectationsText(result.log), result.ended ? "" : endedEarly(simulation));
   if (interrupted) return kExitInterrupted;
   return result.log.anyFailed() ? kExitCheckFailed : kExitOk;
@@ -64,7 +65,7 @@ int runOne(const SimArguments& arguments, const std::string& file) {
     Progress progress("sim", simulation.scene().ticks());
     return runScene(simulation, arguments.options, interrupted, [&](std::int64_t done) { progress.update(done); });
   }();
-  if (!arguments.view.screenshot.empty()) writePng(pictureOf(simulation), arguments.view.screenshot);
+  if (!arguments.view.screenshot.empty()) writePng(pictureOf(simulation, arguments.view.as_operator), arguments.view.screenshot);
   print("{}", arguments.json ? simJson(simulation, arguments.options, result) : simText(simulation, arguments.options, result));
   if (result.interrupted) return kExitInterrupted;
   return result.broke || result.log.anyFailed() ? kExitCheckFailed : kExitOk;
@@ -101,6 +102,8 @@ void addSimCommand(CLI::App& app, int& exit_code) {
                     "Say how well the fingers hold each body at the end: slip margins, force closure, epsilon");
   command->add_flag("--awake", arguments->options.awake, "Compute every tick, also those that would repeat the last one");
   addViewOptions(*command, arguments->view);
+  command->add_flag("--from-operator", arguments->view.as_operator,
+                    "Look from where the operator stands, in place of where most is seen; a scene's camera goes before both");
   command->add_option("--devices", arguments->devices, "With --view: who moves the fingers, the scene or your mouse")
       ->check(CLI::IsMember({"scene", "mouse"}))
       ->capture_default_str();

@@ -125,7 +125,7 @@ void ArcTrial::fill(Snapshot& snapshot) const {
   snapshot.contact_count = finger.touching ? 1 : 0;
   if (!finger.touching) return;
   const Vec3 n_W(0, out_.contact.n_B.x(), out_.contact.n_B.y());
-  snapshot.contacts[0] = {0, interval(), proxy_W() - setup_.finger_radius * n_W, n_W, out_.f_W, 0, false};
+  snapshot.contacts[0] = {0, interval(), -1, proxy_W() - setup_.finger_radius * n_W, n_W, out_.f_W, 0, false};
 }
 
 }  // namespace pincer::tasks

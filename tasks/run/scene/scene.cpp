@@ -53,6 +53,16 @@ void readJoints(const JsonValue& json, SceneNames& names, Scene& scene) {
   }
 }
 
+SceneCamera readCamera(const JsonValue& json) {
+  json.allowOnly(keys::kCamera);
+  SceneCamera camera;
+  if (const JsonValue* v = json.find("yaw")) camera.yaw = v->number(ranges::kYaw);
+  if (const JsonValue* v = json.find("pitch")) camera.pitch = v->number(ranges::kPitch);
+  if (const JsonValue* v = json.find("distance")) camera.distance = v->number(ranges::kViewDistance);
+  if (const JsonValue* v = json.find("target")) camera.target_W = v->vector(ranges::kCoordinate);
+  return camera;
+}
+
 // Joints, what ties them together and what drives them, frames.
 void readJointed(const JsonValue& json, SceneNames& names, Scene& scene) {
   if (const JsonValue* v = json.find("joints")) readJoints(*v, names, scene);
@@ -141,6 +151,7 @@ Scene sceneOf(const JsonValue& json, const std::string& name) {
     for (const JsonValue& finger : listOf(*v, kMostFingers)) scene.fingers.push_back(readFinger(finger, names, scene));
   }
   if (scene.bodies.empty() && scene.fingers.empty()) json.at("bodies").reject("is empty, and there is no finger: nothing could happen.");
+  if (const JsonValue* v = json.find("camera")) scene.camera = readCamera(*v);
   if (const JsonValue* v = json.find("record")) scene.record = readRecording(*v, scene);
   if (const JsonValue* v = json.find("expect")) {
     for (const JsonValue& expectation : listOf(*v, kMostQuantities)) scene.expectations.push_back(readExpectation(expectation, scene));

@@ -43,6 +43,11 @@ inline constexpr NumberRule kPositionTolerance = {
     .min = 1e-12, .max = 1, .remedy = "Position error per tick in metres; 1e-6 is a micrometre."};
 inline constexpr NumberRule kContactMargin = {.min = 1e-6, .max = 1, .remedy = "In metres; 0.001 suits hand-sized bodies."};
 
+// The camera.
+inline constexpr NumberRule kYaw = {.min = -10, .max = 10, .remedy = "In radians: 0 looks along +y, 1.57 along -x."};
+inline constexpr NumberRule kPitch = {.min = -1.5, .max = 1.5, .remedy = "In radians over the horizon."};
+inline constexpr NumberRule kViewDistance = {.min = 1e-3, .max = 1e3, .remedy = "From the camera to its target, in metres."};
+
 // Bodies.
 inline constexpr NumberRule kMass = {.min = kLightest, .max = kHeaviest, .remedy = "Masses are in kilograms: 75 g is 0.075."};
 inline constexpr NumberRule kDensity = {

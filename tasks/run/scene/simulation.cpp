@@ -24,17 +24,19 @@ Simulation::Simulation(Scene scene)
       motions_(scene_.motions.size()),
       controls_(scene_.drives.size()) {}
 
-engine::StepReport Simulation::tick() {
+engine::StepReport Simulation::tick() { return tick(nextFingers()); }
+
+std::span<const grasp::FingerInput> Simulation::nextFingers() {
   fingerInputs(scene_, static_cast<double>(ticks_ + 1) * scene_.options.h, inputs_);
-  return tick(inputs_);
+  return inputs_;
 }
 
-engine::StepReport Simulation::tick(std::span<const grasp::FingerInput> fingers) {
+engine::StepReport Simulation::tick(std::span<const grasp::FingerInput> fingers, const engine::AppliedForces& applied) {
   ++ticks_;
   bodyMotions(scene_, time(), motions_);
   driveControls(scene_, time(), controls_);
   if (baselines_) return baselines_->step(model_, state_, *scratch_, fingers, motions_, controls_);
-  return grasp::step(model_, state_, *scratch_, fingers, motions_, {}, controls_);
+  return grasp::step(model_, state_, *scratch_, fingers, motions_, applied, controls_);
 }
 
 }  // namespace pincer::tasks

@@ -5,7 +5,9 @@
 namespace pincer::tasks {
 namespace {
 
-ContactSnapshot seenContact(const engine::ContactReport& c) { return {c.point, c.body, c.p_W, c.n_W, c.f_W, c.mu, c.sliding}; }
+ContactSnapshot seenContact(const engine::ContactReport& c) {
+  return {c.point, c.body, c.other_body, c.p_W, c.n_W, c.f_W, c.mu, c.sliding};
+}
 
 }  // namespace
 
@@ -36,6 +38,7 @@ void captureGrasp(const grasp::GraspModel& model, const grasp::GraspState& state
     if (model.fingers[i].shape) seen.q_WF = quatFromRotationVector(state.world.points[i].turn_W) * state.fingers[i].q_WF;
     seen.f_user_W = finger.f_user_W;
     seen.normal_force = finger.normal_force;
+    seen.patch_radius = finger.patch_radius;
     seen.touching = finger.touching;
     seen.sliding = finger.sliding;
     seen.place_L = finger.touching ? std::optional(grasp::placeOnPad(model.fingers[i], finger.touch)) : std::nullopt;

@@ -15,6 +15,7 @@ namespace pincer::tasks {
 struct ContactSnapshot {
   int finger = -1;           // whose contact it is; -1: of two bodies
   int body = 0;              // that carries the normal
+  int other_body = -1;       // that touches it; -1: a finger does
   Vec3 p_W = Vec3::Zero();   // [m]
   Vec3 n_W = Vec3::UnitZ();  // out of `body`
   Vec3 f_W = Vec3::Zero();   // on the other one: the finger, or the first body [N]
@@ -28,6 +29,7 @@ struct FingerSnapshot {
   std::optional<Quat> q_WF;      // absent: the device doesn't say, and the tip is a sphere
   Vec3 f_user_W = Vec3::Zero();  // that the finger is to feel [N]
   double normal_force = 0;       // [N]
+  double patch_radius = 0;       // of a soft pad's contact [m]; 0: a point
   bool touching = false, sliding = false;
   std::optional<Vec2> place_L;  // of the contact on the pad [m]; absent: no contact, or no orientation
   // Of a finger on a device:

@@ -33,11 +33,13 @@ TEST(ViewerKeys, ArrowsMeanTheFingersWhereThereAreSome) {
 }
 
 TEST(StripChart, KeepsTheLastSecondsAndARoundScale) {
-  StripChart chart("grip", "N", 2, 0, 8);
+  StripChart chart("grip", "N", {"index", "thumb"});
   for (int i = 0; i <= 1000; ++i) chart.add(0.01 * i, {0.0, 0.13 * i / 100});
   EXPECT_NEAR(chart.points().front().time, 2, 1e-9);
   EXPECT_EQ(chart.range().low, 0);
   EXPECT_EQ(chart.range().high, 2);
+  EXPECT_NEAR(chart.at(5.004)->values[1], 0.65, 1e-9);  // under the cursor
+  EXPECT_NEAR(chart.at(0)->time, 2, 1e-9);
   chart.add(0.5, {0, -0.3});  // the person went back
   EXPECT_EQ(chart.points().size(), 1u);
   EXPECT_EQ(chart.range().low, -0.5);

@@ -78,7 +78,7 @@ TEST(Timeline, HasRoundTimesOfWhichSoManyFit) {
 
 // Round-off was drawn over the whole height of the chart: "height: -4.86e-14 mm".
 TEST(StripChart, DrawsRoundOffAsNothing) {
-  StripChart chart("height", "mm", 1, 1e-3);
+  StripChart chart("height", "mm", {""}, 1e-3);
   chart.add(0, {0});
   chart.add(1, {-4.86e-14});
   EXPECT_EQ(chart.last(0), 0);
