@@ -53,13 +53,9 @@ std::vector<std::string> partsOf(const std::string& path) {
   return parts;
 }
 
-// Of the same file, by programs that are gone.
-void removeLeftovers(const std::string& path) {
-  for (const std::string& part : partsOf(path)) {
-    const FileDescriptor file(::open(part.c_str(), O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
-    if (!file || tryLock(file) != LockAttempt::kLocked) continue;
-    for (const char* suffix : {"", "-wal", "-shm", "-journal"}) ::unlink((part + suffix).c_str());  // SQLite's too
-  }
+// SQLite's files too. The part goes last: while its name is there, the others are found.
+void removePart(const std::string& part) {
+  for (const char* suffix : {"-wal", "-shm", "-journal", ""}) ::unlink((part + suffix).c_str());
 }
 
 // The rename would put a plain file in the place of a device or a pipe.
@@ -100,8 +96,15 @@ void failOnFile(const std::string& path, const char* doing, int error) {
 
 bool hasPart(const std::string& path) { return !partsOf(path).empty(); }
 
+void removeLeftParts(const std::string& path) {
+  for (const std::string& part : partsOf(path)) {
+    const FileDescriptor file(::open(part.c_str(), O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+    if (file && tryLock(file) == LockAttempt::kLocked) removePart(part);
+  }
+}
+
 PartFile::PartFile(std::string path) : path_(notSpecial(std::move(path))) {
-  removeLeftovers(path_);
+  removeLeftParts(path_);
   do {
     part_ = randomName(path_);
     file_ = FileDescriptor(::open(part_.c_str(), O_CREAT | O_EXCL | O_NOFOLLOW | O_RDWR | O_CLOEXEC, 0666));
@@ -111,7 +114,7 @@ PartFile::PartFile(std::string path) : path_(notSpecial(std::move(path))) {
 }
 
 PartFile::~PartFile() {
-  if (!part_.empty()) ::unlink(part_.c_str());
+  if (!part_.empty()) removePart(part_);
 }
 
 void PartFile::replace() {
@@ -120,12 +123,13 @@ void PartFile::replace() {
   placed();
 }
 
-// A second name for the file, which no old one can be; then the first goes.
+// One step: a program that is killed leaves one name. A file system that doesn't know the step gets a second name for the file, which no old one
+// can be; then the first goes.
 void PartFile::placeNew() {
-  if (::link(part_.c_str(), path_.c_str()) == 0) {
+  if (::renameat2(AT_FDCWD, part_.c_str(), AT_FDCWD, path_.c_str(), RENAME_NOREPLACE) != 0) {
+    const bool is_known = errno != EINVAL && errno != ENOSYS;
+    if (is_known || ::link(part_.c_str(), path_.c_str()) != 0) fail("put the file in place");
     ::unlink(part_.c_str());
-  } else if (errno == EEXIST || ::renameat2(AT_FDCWD, part_.c_str(), AT_FDCWD, path_.c_str(), RENAME_NOREPLACE) != 0) {
-    fail("put the file in place");  // a file system without second names has the rename
   }
   placed();
 }

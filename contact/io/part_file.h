@@ -36,6 +36,9 @@ class PartFile {
 // True if a part of the file at `path` is there: it is being written, or a killed program left it.
 bool hasPart(const std::string& path);
 
+// Removes what killed programs left of the file at `path`.
+void removeLeftParts(const std::string& path);
+
 // Throws InputError: "<path>: can't <doing>: <what errno says>. <remedy>".
 [[noreturn]] void failOnFile(const std::string& path, const char* doing, int error);
 

@@ -317,6 +317,7 @@ SessionWriter SessionWriter::resume(const std::string& path, const SessionOption
   infoOfUnfinished(path);
   SessionLock lock(path);
   const SessionInfo earlier = infoOfUnfinished(path);  // once more: another program may have finished it in between
+  removeLeftParts(path);                               // a second name, where the file system can't rename in one step
   return SessionWriter(std::make_unique<Impl>(std::move(lock), path, options, earlier));
 }
 
