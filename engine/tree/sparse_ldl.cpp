@@ -82,6 +82,14 @@ int scaleRow(const TreeModel& tree, const TreeFactor& factor, int tip, std::span
   return tipOfRow(tree, tip);
 }
 
+void scaleWholeRow(const TreeModel& tree, const TreeFactor& factor, std::span<double> row) {
+  for (int i = tree.columnCount() - 1; i >= 0; --i) {
+    for (int j = tree.before[slot(i)]; j >= 0; j = tree.before[slot(j)]) row[slot(j)] -= factor.entries[entryOf(tree, i, j)] * row[slot(i)];
+    row[slot(i)] *= factor.root_inverse[slot(i)];
+  }
+  if (!tree.loops.empty()) factor.loops.takeFree(row);
+}
+
 void unscale(const TreeModel& tree, const TreeFactor& factor, std::span<double> x) {
   for (int i = 0; i < tree.columnCount(); ++i) {
     x[slot(i)] *= factor.root_inverse[slot(i)];

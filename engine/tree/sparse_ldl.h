@@ -53,6 +53,8 @@ void scaleOpenRow(const TreeModel& tree, const TreeFactor& factor, int tip, std:
 // A row of A of the contact problem, W = A A^T = J M^-1 J^T: scaled, and of a tree with loops by the freedoms that these leave. Returns the tip of its
 // entries' path.
 int scaleRow(const TreeModel& tree, const TreeFactor& factor, int tip, std::span<double> row);
+// The same of a row that may be 0 nowhere.
+void scaleWholeRow(const TreeModel& tree, const TreeFactor& factor, std::span<double> row);
 // That tip, of anything that moves with `column`; -1 if nothing can move it.
 inline int tipOfRow(const TreeModel& tree, int column) { return column < 0 || tree.loops.empty() ? column : tree.freedomCount() - 1; }
 

@@ -2,6 +2,7 @@
 #include "pincer/engine/solve/cone.h"
 #include "pincer/engine/world/contact_rows.h"
 #include "pincer/engine/world/far_contacts.h"
+#include "pincer/engine/world/link_contacts.h"
 #include "pincer/engine/world/stages.h"
 
 namespace pincer::engine {
@@ -21,13 +22,6 @@ double inverseMassOf(const WorldModel& model, const WorldScratch& scratch, const
 bool isResidue(const WorldModel& model, const WorldScratch& scratch, const Contact& c) {
   const double w = inverseMassOf(model, scratch, c.a) + inverseMassOf(model, scratch, c.b);
   return w * c.r[kNormalRow] < kResidue * c.u_C[kNormalRow];
-}
-
-// A link that no coordinate moves: with what doesn't move either it has nothing to solve.
-bool isWelded(const WorldModel& model, const Side& side) {
-  if (side.kind != SideKind::kBody) return false;
-  const BodyModel& body = model.bodies[side.index];
-  return !body.dynamic || (body.tree >= 0 && model.trees[body.tree].links[body.link].tip < 0);
 }
 
 void readSolution(const WorldModel& model, const WorldScratch& scratch, int i, Contact& c) {
@@ -54,10 +48,11 @@ void readSolution(const WorldModel& model, const WorldScratch& scratch, int i, C
 }  // namespace
 
 void prepareContacts(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
-  if (!model.trees.empty()) std::erase_if(scratch.contacts, [&](const Contact& c) { return isWelded(model, c.a) && isWelded(model, c.b); });
+  if (!model.trees.empty()) leaveOutGrazingLinks(model, scratch);
   if (scratch.contacts.empty()) return;
   sortContacts(scratch);
   fillContacts(model, state, scratch);
+  if (!model.trees.empty() && scratch.h > 0) adjustLinkContacts(model, scratch);
   markFarContacts(model, scratch);
 }
 

@@ -47,6 +47,7 @@ class IslandSolve {
       return;
     }
     is_loop_&& scratch_.h > 0 ? solveLoop() : solveOne();
+    if (mayPushTooMuch()) solveWithoutPushes();
     if (scratch_.h > 0 && memory_.operations_left >= 0 && isWedged(problem_, island_.r, island_.result)) {
       fit(PushingBy::kWedged);
       std::fill(island_.r, island_.r + island_.rows, 0.0);  // or the squeeze would stay
@@ -101,6 +102,19 @@ class IslandSolve {
     solveAgain(giving);
   }
 
+  bool mayPushTooMuch() const {
+    return !island_.result.converged && !island_.result.yields && scratch_.h > 0 && memory_.operations_left >= 0 &&
+           island_.contacts <= kFewContacts;
+  }
+
+  // A link that grazes another one over an edge is held there by friction whatever pushes it off. Contacts that only
+  // stop what closes have an answer.
+  void solveWithoutPushes() {
+    dropPushes();
+    std::fill(island_.r, island_.r + island_.rows, 0.0);
+    solveAgain(options_);
+  }
+
   void fit(PushingBy pushing) {
     fitIslandBiases(pushing, scratch_.h, offsetRate(), problem_, island_.r, island_.q, order_, scratch_.contacts, memory_);
   }
@@ -119,15 +133,22 @@ class IslandSolve {
   // took of the operations.
   std::int64_t stopOnly(std::int64_t operations) {
     memory_.operations_left = operations;
-    for (int n = 0; n < island_.contacts; ++n) {
-      const Contact& c = scratch_.contacts[order_[n]];
-      double* const q = island_.q + problem_.firstRow(n);
-      for (int k = 0; k < problem_.rows(n); ++k) {
-        if (k != kNormalRow || c.bias_C[k] < 0) q[k] -= (k >= kTorsionRow ? radiusOf(c, k) : 1) * c.bias_C[k];
-      }
-    }
+    dropPushes();
     stopBySweeps(problem_, kStoppingSweeps, memory_, VectorMap(island_.r, island_.rows), VectorMap(island_.u, island_.rows));
     return operations - memory_.operations_left;
+  }
+
+  // Gaps and offsets are put right in the ticks to come.
+  void dropPushes() {
+    for (int n = 0; n < island_.contacts; ++n) {
+      Contact& c = scratch_.contacts[order_[n]];
+      double* const q = island_.q + problem_.firstRow(n);
+      for (int k = 0; k < problem_.rows(n); ++k) {
+        if (k == kNormalRow && !(c.bias_C[k] < 0)) continue;
+        q[k] -= (k >= kTorsionRow ? radiusOf(c, k) : 1) * c.bias_C[k];
+        c.bias_C[k] = 0;
+      }
+    }
   }
 
   // Share of the budget kept for stopOnly: support doesn't depend on it.

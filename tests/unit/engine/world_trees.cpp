@@ -220,5 +220,35 @@ TEST(WorldTrees, TwoChainsOfSevenHingesHoldTogetherByContact) {
   EXPECT_LT(world.q(0), -1e-3);  // pushed by the ball
 }
 
+// A trunk on a ball joint, and a leg of two bars that swings along its side, which it touches all the way: nothing moves it along the normal.
+Driven legAlongATrunk(const Quat& turn) {
+  WorldBuilder builder(tickOf(1e-3));
+  const Quat along_y(Eigen::AngleAxisd(-kPi / 2, Vec3::UnitX()));  // turns z to y
+  builder.addBody({"trunk", contact::Box{Vec3(0.2, 0.1, 0.2)}, true, 2, {0.5, 0.5}});
+  builder.addJoint({JointKind::kBall, 0, -1, {Quat::Identity(), Vec3(0, 0, 0.2)}, {turn, turn * Vec3(0, 0, 0.2)}});
+  std::vector<BodyStart> starts = {{{turn, Vec3::Zero()}, Vec3::Zero(), turn * Vec3(3, 2, 1)}};
+  JointModel joint{JointKind::kPivot, 1, 0, {along_y, Vec3(0, 0, 0.1)}, {along_y, Vec3(0, 0.12, 0)}, 0};
+  joint.traits.armature = 1e-5;
+  for (const int k : {1, 2}) {
+    joint.a = builder.addBody({k == 1 ? "upper" : "lower", contact::Capsule{0.02, 0.08}, true, 0.3, {0.5, 0.5}});
+    starts.push_back({{turn, turn * Vec3(0, 0.12, 0.1 - 0.2 * k)}, Vec3::Zero(), Vec3::Zero()});
+    if (k == 2) joint.b = 1, joint.X_BJ = {along_y, Vec3(0, 0, -0.1)};
+    builder.addJoint(joint);
+  }
+  return {builder, starts};
+}
+
+TEST(Trees, ALinkThatGrazesItsTrunkOnAllItsWayIsNotPressedOff) {
+  const Quat turns[] = {Quat::Identity(), Quat(Eigen::AngleAxisd(0.4, Vec3(1, 2, -1).normalized())),
+                        Quat(Eigen::AngleAxisd(2.1, Vec3(-1, 1, 3).normalized()))};
+  for (const Quat& turn : turns) {
+    Driven world = legAlongATrunk(turn);
+    const double start = kineticEnergy(world.model, world.state) + potentialEnergy(world.model, world.state);
+    world.run(2);
+    EXPECT_EQ(world.status, kStepOk);
+    EXPECT_LE(kineticEnergy(world.model, world.state) + potentialEnergy(world.model, world.state), start + 1e-3 * std::abs(start));
+  }
+}
+
 }  // namespace
 }  // namespace pincer::engine::tree_tests
