@@ -45,7 +45,7 @@ class SmoothMesh {
 
   // Contacts of a sphere of radius `r` > 0 [m] centred at the finite `p_BC`: the main one, whatever its gap, and up to two further ones
   // with phi < `margin` [m], >= 0. While the finger overlaps the surface the contacts that `tracker` follows are kept (the far side of a
-  // thin wall never takes over); in free space the closest one wins (contact_slots.h). The result fulfils the equation above to 1e-8 of
+  // thin wall never takes over); in free space the closest one wins (surface/lookout.h). The result fulfils the equation above to 1e-8 of
   // the mesh's size. Allocates nothing, throws nothing; several threads may query one mesh, each with its own cache.
   SurfaceContacts querySphere(const Vec3& p_BC, double r, double margin, SurfaceTracker& tracker, PatchCache& cache) const;
 

@@ -34,7 +34,7 @@ constexpr int kMaxSurfaceContacts = 3;
 
 struct SurfaceContact {
   Vec3 p_BS, n_B;
-  double phi = 0;             // [m]; eased where the contact came or goes while it overlaps (contact_slots.h)
+  double phi = 0;             // [m]; eased where the contact came or goes while it overlaps (surface/ease.h)
   std::uint32_t feature = 0;  // the tracker's slot: the same for as long as this contact is followed
 };
 

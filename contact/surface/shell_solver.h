@@ -13,41 +13,13 @@
 //
 // Source of the equation: A. J. Doxon et al., Presence 20(6), 2011; of Newton's form and the feature states: this project's design.
 #pragma once
-#include <array>
 #include <cstdint>
 #include <span>
 
-#include "pincer/contact/math.h"
+#include "pincer/contact/surface/shell_contact.h"
 #include "pincer/contact/surface/surface_net.h"
 
 namespace pincer::contact {
-
-// A point of the surface: barycentric coordinates of a triangle's corners 0, 1, 2, each >= 0, their sum 1.
-struct Foot {
-  std::int32_t triangle = 0;
-  std::array<double, 3> b = {1.0 / 3, 1.0 / 3, 1.0 / 3};
-};
-
-// Work that a walk took.
-struct WalkCost {
-  int steps = 0;      // within faces, and visits of edges and vertices
-  int crossings = 0;  // of edges
-};
-
-// How the foot moves with the centre: coordinates 1 and 2 change by du.dC, dv.dC [1/m]. Zero where it isn't known.
-struct FootMotion {
-  Vec3 du = Vec3::Zero(), dv = Vec3::Zero();
-};
-
-struct ShellContact {
-  Foot foot;
-  Vec3 n = Vec3::UnitZ();  // unit; C - h n is the contact point to within 1e-9 m
-  double h = 0;            // [m], negative when the centre lies under the surface
-  bool converged = false;  // false: no solution within the budget of 20 steps, and `foot` is where the walk began, or where it met
-  WalkCost cost;
-  FootMotion motion = {};
-  bool has_met = false;  // came into a triangle at which it was to end
-};
 
 // Walks from `start` to a solution for centre `C`, no further than into one of the triangles `ends`. Allocates nothing, throws nothing.
 ShellContact solveShell(const SurfaceNet& net, PatchCache& cache, const Vec3& C, const Foot& start,

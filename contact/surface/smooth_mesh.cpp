@@ -6,7 +6,7 @@
 
 #include "pincer/contact/functions/invariants.h"
 #include "pincer/contact/mesh_report.h"
-#include "pincer/contact/surface/contact_slots.h"
+#include "pincer/contact/surface/touch_surface.h"
 #include "pincer/contact/surface/convex_hull.h"
 #include "pincer/contact/surface/mesh_features.h"
 #include "pincer/contact/surface/surface_net.h"
@@ -80,7 +80,7 @@ std::shared_ptr<const SmoothMesh> SmoothMesh::build(TriangleMesh mesh, const Sur
 
 SurfaceContacts SmoothMesh::querySphere(const Vec3& p_BC, double r, double margin, SurfaceTracker& tracker, PatchCache& cache) const {
   PINCER_DEMAND(r > 0, "querySphere: the fingertip's radius is positive");
-  return touchSurface({data_->net, data_->search, data_->variant}, p_BC, r, margin, tracker, cache);
+  return touchSurface({data_->variant, data_->net, cache}, data_->search, p_BC, r, margin, tracker);
 }
 
 const std::vector<Vec3>& SmoothMesh::hullVertices() const { return data_->hull; }

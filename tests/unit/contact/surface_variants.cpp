@@ -5,7 +5,7 @@
 #include "pincer/contact/generated_meshes.h"
 #include "pincer/contact/smooth_mesh.h"
 #include "pincer/contact/surface/surface_net.h"
-#include "pincer/contact/surface/surface_variant.h"
+#include "pincer/contact/surface/follow.h"
 #include "pincer/tests/support/allocation_guard.h"
 #include "pincer/tests/support/constants.h"
 #include "pincer/tests/support/random_numbers.h"
@@ -149,7 +149,7 @@ Wandered wander(const TriangleMesh& mesh, SurfaceVariant variant) {
     truth = ideal.foot;
     const PatchPoint x = evaluate(smooth.cell(truth.triangle, cache).patch, truth.b[1], truth.b[2]);
     counts.on_creases += angleBetween(x.N, ideal.n) > 1e-4;
-    const ShellContact found = followContact(variant, net, cache, C, kFinger, foot);
+    const ShellContact found = follow({variant, net, cache}, C, kFinger, foot);
     counts.mean += found.cost.steps;
     counts.failed += !found.converged;
     foot = found.converged ? found.foot : truth;

@@ -1,0 +1,107 @@
+#include "pincer/contact/surface/touch_surface.h"
+
+#include "pincer/contact/surface/ease.h"
+#include "pincer/contact/surface/flat_contact.h"
+#include "pincer/contact/surface/lookout.h"
+
+namespace pincer::contact {
+
+namespace {
+
+constexpr double kTurn = 1.0 / 16;  // of r: the way within which each place is tried once
+constexpr double kLeap = 0.5;       // of r per query, 4 m/s of a finger of 8 mm at 1 kHz: the centre was put there, not led
+
+// The variants but `smooth` show what they do at edges: jump. After a leap there is nothing to be steady with.
+TouchingBall ballAt(const Vec3& C, double r, double margin, double turn, const SurfaceTracker& tracker) {
+  const double moved = (C - tracker.p_BC_last).norm();
+  return {C, tracker.p_BC_last, r, moved, r + margin, r + margin + turn, turn > 0 && !(moved > kLeap * r)};
+}
+
+bool isOn(const SurfaceNet& net, const SurfaceSlot& slot) { return slot.triangle >= 0 && slot.triangle < net.size(); }
+
+// The only slot that holds a contact; -1 if none or several do.
+int onlySlot(const SurfaceTracker& tracker) {
+  int only = -1;
+  for (int i = 0; i < kMaxSurfaceContacts; ++i) {
+    if (tracker.slots[static_cast<std::size_t>(i)].triangle < 0) continue;
+    if (only >= 0) return -1;
+    only = i;
+  }
+  return only;
+}
+
+// Where the centre is, or would be had it not been pressed under the surface.
+void keepCentre(const TouchingBall& ball, const ShellContact& main, SurfaceTracker& tracker) {
+  if (main.h > 0) {
+    tracker.p_BC = ball.C;
+    tracker.has_centre = true;
+  } else if (main.h <= 0 && tracker.has_centre) {
+    tracker.p_BC = ball.placeOf(main) + ball.r * main.n;
+  }
+  tracker.p_BC_last = ball.C;
+}
+
+// The usual tick: the only contact that is followed has moved on within its patch, nothing else has come near, and
+// nothing is eased.
+[[gnu::flatten]] bool followAlone(const FeltSurface& surface, const TouchingBall& ball, const EasedContacts& contacts, Lookout& lookout,
+                                  SurfaceTracker& tracker, SurfaceContacts& found) {
+  const int slot = onlySlot(tracker);
+  if (slot < 0 || surface.variant != SurfaceVariant::smooth) return false;
+  SurfaceSlot& kept = tracker.slots[static_cast<std::size_t>(slot)];
+  if (!isOn(surface.net, kept) || kept.fades || kept.ease > 0 || !knowsMotion(kept) || !lookout.isNothingDue()) return false;
+  const ShellContact contact = solveShellBeside(surface.net, surface.cache, ball.C, footOf(kept), {kept.du, kept.dv}, ball.C - ball.C_last);
+  if (!contact.converged || !(contact.h > 0 && contact.h < ball.reach) || !contacts.continues(kept, contact) ||
+      !lookout.isQuietAround(slot, contact.n))
+    return false;
+  const Vec3 S = ball.placeOf(contact);
+  kept = {contact.foot.triangle, false, contact.foot.b[1], contact.foot.b[2], 0, S, contact.n, contact.motion.du, contact.motion.dv};
+  found.points[0] = {S, contact.n, contact.h - ball.r, static_cast<std::uint32_t>(slot)};
+  found.count = 1;
+  found.cost.iterations = found.cost.longest_walk = contact.cost.steps;
+  found.cost.crossings = contact.cost.crossings;
+  lookout.end();
+  keepCentre(ball, contact, tracker);
+  return true;
+}
+
+void followSlots(const FeltSurface& surface, const TouchingBall& ball, EasedContacts& contacts, QueryCost& cost) {
+  for (int slot = 0; slot < kMaxSurfaceContacts; ++slot) {
+    const SurfaceSlot& kept = contacts.kept(slot);
+    if (!isOn(surface.net, kept)) continue;
+    ShellContact contact;
+    if (!kept.fades) {
+      contact = contacts.onItsSide(kept, followSlot(surface, ball.C, ball.r, ball.C - ball.C_last, kept));
+      cost.iterations += contact.cost.steps;
+      cost.longest_walk = std::max(cost.longest_walk, contact.cost.steps);
+      cost.crossings += contact.cost.crossings;
+      contact.converged = contact.converged && !isFarSide(surface, ball.C, ball.r, kept, contact);
+    }
+    contacts.moveOn(slot, contact);
+  }
+  contacts.settle();
+}
+
+}  // namespace
+
+SurfaceContacts touchSurface(const FeltSurface& surface, const SurfaceSearch& search, const Vec3& p_BC, double r, double margin,
+                             SurfaceTracker& tracker) {
+  const double turn = surface.variant == SurfaceVariant::smooth ? kTurn * r : 0;
+  const TouchingBall ball = ballAt(p_BC, r, margin, turn, tracker);
+  SurfaceContacts found;
+  EasedContacts contacts(ball, tracker.slots);
+  Lookout lookout(surface, search, ball, turn, contacts, tracker, found.cost);
+  tracker.status = kQueryOk;
+  if (!followAlone(surface, ball, contacts, lookout, tracker, found)) {
+    followSlots(surface, ball, contacts, found.cost);
+    lookout.findMain();
+    contacts.fadeLost();
+    lookout.findFurther();
+    contacts.answer(found, tracker.status);
+    lookout.end();
+    keepCentre(ball, contacts.list().front().contact, tracker);
+  }
+  if (surface.variant == SurfaceVariant::force) shadeForce(surface.net, tracker, found);
+  return found;
+}
+
+}  // namespace pincer::contact

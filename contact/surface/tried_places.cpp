@@ -1,0 +1,149 @@
+#include <algorithm>
+
+#include "pincer/contact/surface/lookout.h"
+#include "pincer/contact/surface/shell_face.h"
+
+namespace pincer::contact {
+
+namespace {
+
+constexpr double kBesideKnown = 0.966;  // cosine of 15 degrees: a normal that far from a patch's still belongs to it
+constexpr double kAround = 1.0 / 16;    // of r: what lies nearer to a contact than this differs by no more than kApart in its normal
+constexpr int kMostWalked = 32;         // steps and crossings of a query's tries; the last walk is ended whatever it takes
+
+// True if the place is on an edge or a vertex that this triangle has too.
+bool isOnFeatureOf(const SurfaceNet& net, const Foot& foot, std::int32_t triangle) {
+  if (foot.isOnFace()) return false;
+  const auto& v = net.mesh().triangles[static_cast<std::size_t>(triangle)];
+  bool shares_all = true;
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (foot.b[i] == 0) continue;
+    shares_all = shares_all && std::find(v.begin(), v.end(), net.mesh().triangles[static_cast<std::size_t>(foot.triangle)][i]) != v.end();
+  }
+  return shares_all;
+}
+
+// Cosine of the angle between `n` and the nearest of the triangle's corner normals.
+double closestNormal(const SurfaceNet& net, std::int32_t triangle, const Vec3& n) {
+  return std::max({net.normal(triangle, 0).dot(n), net.normal(triangle, 1).dot(n), net.normal(triangle, 2).dot(n)});
+}
+
+}  // namespace
+
+// Tries the places that are due and have their turn, until so much has been tried as a query may try; the next one goes
+// on from there.
+void Lookout::examineDue(NearParts& near, bool are_all) {
+  if (hasTriedEnough()) return;
+  std::array<std::uint16_t, kMostParts> due;
+  std::size_t count = 0, first = 0;
+  near.due = kInfinity;
+  for (std::size_t i = 0; i < near.parts.size(); ++i) {
+    const NearPart& part = near.parts[i];
+    const double when = are_all ? part.due : std::max(part.due, part.turn);
+    const bool is_due = when <= gone_;
+    due[count] = static_cast<std::uint16_t>(i);
+    count += is_due;
+    first += is_due && i < static_cast<std::size_t>(tracker_.tried);
+    near.due = std::min(near.due, is_due ? kInfinity : when);
+  }
+  const Turns turns(tracker_.gone, gone_, turn_);
+  tracker_.tried = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t i = due[first + k < count ? first + k : first + k - count];
+    NearPart& part = near.parts[i];
+    if (part.turn == 0) part.turn = tracker_.gone + turns.wayToFirst(part.place);
+    if ((part.turn <= gone_ || are_all) && !hasTriedEnough()) {
+      examine(turns, part);
+      if (hasTriedEnough()) tracker_.tried = static_cast<std::int32_t>(i + 1);
+    }
+    near.due = std::min(near.due, std::max(part.due, part.turn));
+  }
+}
+
+// The rest waits for the next query; not where everyone has a turn, but for the places that can be remembered.
+bool Lookout::hasTriedEnough() const { return seen_.isFull() || (walked_ >= kMostWalked && !isEveryonesTurn()); }
+
+// Without anything to go by, and in free space with all slots taken, where the nearest is the answer.
+bool Lookout::isEveryonesTurn() const {
+  return !contacts_.hasHistory() || !contacts_.follows() || (contacts_.list().isFull() && !contacts_.touches());
+}
+
+// How near a place has to be to be tried now [m]; 0: none is. Where all slots are taken it has to be nearer than what
+// may yield.
+double Lookout::reachOfTry(bool has_turn) const {
+  const bool is_free = !contacts_.hasHistory() || !contacts_.follows() || has_turn;
+  if (!contacts_.list().isFull()) return is_free ? ball_.reach : 0;
+  const double highest = contacts_.heightToYield();
+  if (!(highest > 0)) return is_free && gone_ - tracker_.full_at > 0.5 * turn_ ? ball_.reach : 0;  // only to see whether it is left out
+  return is_free ? highest : contacts_.touches() ? 0 : std::min(highest, contacts_.nearestHeight());
+}
+
+void Lookout::examine(const Turns& turns, NearPart& near) {
+  const PatchBounds part = search_.part(near.place);
+  const std::int32_t triangle = search_.triangleAt(near.place);
+  near.turn = gone_ + turns.wayToNext(near.place);
+  const double reach = reachOfTry(turns.isOf(near.place));
+  if (reach < ball_.reach && !(reach > 0 && part.mayHold(ball_.C, reach, Facing::front))) return;
+  const double way = wayTo(near.place, part);
+  near.due = gone_ + way;
+  if (way > 0 || !part.mayHold(ball_.C, reach, Facing::front) || isKnown(triangle, part)) return;
+  if (const auto foot = search_.minimumOn(surface_.net, near.place, ball_.C, reach)) tryPlace(*foot);
+}
+
+// How far the centre has to move at least until the part may matter [m].
+double Lookout::wayTo(std::int32_t place, const PatchBounds& part) const {
+  constexpr double kRounding = 1e-12;  // of the mesh's size
+  const double approach = part.approach(ball_.C, ball_.reach) - kRounding * surface_.net.length();
+  return approach > 0 ? approach : std::max<double>(0, search_.wayToMinimumOn(surface_.net, place, ball_.C, ball_.reach));
+}
+
+// True if a followed contact stands for this patch, or a place that a try has led to.
+[[gnu::flatten]] bool Lookout::isKnown(std::int32_t triangle, const PatchBounds& part) const {
+  const auto standsAt = [&](const TriedPlace& place) { return stands(place, triangle, part); };
+  return contacts_.isAny([&](const FollowedContact& f) {
+    return standsAt({f.contact.foot, ball_.placeOf(f.contact), f.contact.n});
+  }) || std::any_of(seen_.begin(), seen_.end(), standsAt);
+}
+
+// True if it is beside the patch, with a normal that the patch's could be. (Not any of its cone's: along a groove that
+// holds the other wall's.)
+bool Lookout::stands(const TriedPlace& place, std::int32_t triangle, const PatchBounds& part) const {
+  if (place.foot.triangle == triangle || isOnFeatureOf(surface_.net, place.foot, triangle)) return true;
+  const double beside = std::max<double>(part.radius, kAround * ball_.r) + part.radius;
+  return (place.S - part.middle()).squaredNorm() < beside * beside && closestNormal(surface_.net, triangle, place.n) > kBesideKnown;
+}
+
+void Lookout::tryPlace(const Foot& foot) {
+  const ShellContact found = surface_.variant == SurfaceVariant::smooth ? followUntilKnown(foot) : follow(surface_, ball_.C, ball_.r, foot);
+  seen_.push_back({found.foot, ball_.placeOf(found), found.n});
+  if (!found.converged || !(found.h > 0 && found.h < ball_.reach) || !isNew(found)) return;
+  if (contacts_.list().isFull()) tracker_.full_at = gone_;
+  contacts_.admit(found);
+}
+
+// As far as into a triangle in which a followed contact is: that one.
+ShellContact Lookout::followUntilKnown(const Foot& foot) {
+  ShortList<std::int32_t, kMaxSurfaceContacts> known;
+  for (const FollowedContact& f : contacts_.list()) {
+    if (!f.fades) known.push_back(f.contact.foot.triangle);
+  }
+  const ShellContact found = solveShell(surface_.net, surface_.cache, ball_.C, foot, {known.begin(), known.end()});
+  walked_ += found.cost.steps + found.cost.crossings;
+  if (!found.has_met) return found;
+  const auto isThere = [&](const FollowedContact& f) { return !f.fades && f.contact.foot.triangle == found.foot.triangle; };
+  return std::find_if(contacts_.list().begin(), contacts_.list().end(), isThere)->contact;
+}
+
+// True if it is a stable place, that the finger could come to from outside, and no followed contact's.
+bool Lookout::isNew(const ShellContact& candidate) const {
+  constexpr double kShort = 0.95;  // of the way: a patch may bulge out of its triangle
+  if (contacts_.isAny([&](const FollowedContact& f) { return f.contact.n.dot(candidate.n) > kApart; })) return false;
+  const Foot& foot = candidate.foot;
+  const Vec3& C = ball_.C;
+  if (foot.isOnFace() && !isStable(evaluate(surface_.net.cell(foot.triangle, surface_.cache).patch, foot.b[1], foot.b[2]), C)) return false;
+  const Vec3 S = ball_.placeOf(candidate);
+  if (tracker_.has_centre && (tracker_.p_BC - S).dot(candidate.n) <= 0) return false;
+  return !search_.isHidden(surface_.net, C, C + kShort * (S - C));
+}
+
+}  // namespace pincer::contact
