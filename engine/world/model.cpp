@@ -9,6 +9,7 @@
 #include "pincer/contact/functions/invariants.h"
 #include "pincer/contact/pair_query.h"
 #include "pincer/engine/solve/contact_problem.h"
+#include "pincer/engine/world/axis_form.h"
 #include "pincer/engine/world/body_model.h"
 #include "pincer/engine/world/broad_phase.h"
 #include "pincer/engine/world/colliders.h"
@@ -19,13 +20,6 @@
 
 namespace pincer::engine {
 namespace {
-
-// Fox-Goodwin is stable up to omega h = sqrt(6); half of the first axis' own limit leaves room for what the contact adds.
-AxisForm formOf(const DrivenPointModel& point, int axis, double h) {
-  if (point.locked[axis]) return AxisForm::kLocked;
-  const bool soft = point.stiffness[axis] * h * h <= 0.25 * point.mass && point.damping[axis] * h <= 0.5 * point.mass;
-  return point.mass > 0 && soft ? AxisForm::kFourthOrder : AxisForm::kImplicit;
-}
 
 bool comesBefore(const PairModel& x, const PairModel& y) { return std::pair(x.a, x.b) < std::pair(y.a, y.b); }
 
@@ -240,10 +234,7 @@ WorldModel WorldBuilder::build() const {
   model.shape_bits = shapeBits(model);
   for (const ColliderModel& c : model.colliders) model.bounces = model.bounces || c.material.restitution > 0;
   for (const PairModel& pair : model.special_pairs) model.bounces = model.bounces || pair.material.restitution > 0;
-  for (const DrivenPointModel& point : model.points) {
-    const double h = model.options.h;
-    model.point_forms.push_back({formOf(point, 0, h), formOf(point, 1, h), formOf(point, 2, h)});
-  }
+  for (const DrivenPointModel& point : model.points) model.point_forms.push_back(axisFormsOf(point, model.options.h));
   const int n = static_cast<int>(model.bodies.size());
   model.has_broad_phase = n > kAllPairsBodies;
   const auto has_corners = [](const BodyModel& body) { return body.dynamic && body.corner_reach > 0; };

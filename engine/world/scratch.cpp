@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "pincer/contact/functions/invariants.h"
+#include "pincer/engine/world/axis_form.h"
 #include "pincer/engine/world/joint_rows.h"
 #include "pincer/engine/world/most_numbered.h"
 
@@ -32,6 +33,14 @@ void sizeState(const WorldModel& model, WorldState& state) {
   state.drives.resize(model.drives.size());
 }
 
+// True if the couplings of the points are those of the model's tick.
+bool fitTheTick(const WorldModel& model) {
+  for (std::size_t i = 0; i < model.points.size(); ++i) {
+    if (model.point_forms[i] != axisFormsOf(model.points[i], model.options.h)) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 WorldSleep::WorldSleep(const WorldModel& model)
@@ -48,6 +57,7 @@ WorldSleep::WorldSleep(const WorldModel& model)
 }
 
 WorldScratch::WorldScratch(const WorldModel& model) : h(model.options.h), patches(patchesFor(model)), islands(model), sleep(model) {
+  PINCER_DEMAND(fitTheTick(model), "WorldScratch: options.h isn't the tick that the model was built for; build it again (WorldBuilder)");
   const auto contact_count = static_cast<std::size_t>(model.options.max_contacts);
   const std::size_t row_count = contact_count * kMaxContactRows;
   bodies.resize(model.bodies.size());

@@ -16,7 +16,7 @@ Random worlds, class by class: what must hold whatever happens is checked in eve
 
 Examples:
   pincer stress                                          200 worlds of each class
-  pincer stress --seeds 1000                             15,000 worlds in all
+  pincer stress --seeds 1000                             17,000 worlds in all
   pincer stress --only '*overlap' --seed 17 --seeds 1    one world again)";
 
 struct StressArguments {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -54,7 +55,7 @@ contact::PadTip anyPad(Random& random) {
 class Draft {
  public:
   Draft(StressClass kind, Random& random) : kind_(kind), random_(random) {
-    options.h = kind == StressClass::kTick ? logUniform(random, 1e-4, 1e-2) : 1e-3;
+    options.h = kind == StressClass::kTick || kind == StressClass::kCoarse ? logUniform(random, 1e-4, 1e-2) : 1e-3;
     options.max_contacts = 128;
     material.mu_s = friction(random);
     material.mu_d = material.mu_s * random.uniform(0.5, 1);
@@ -290,7 +291,7 @@ class Draft {
       finger.coupling.mass = random_.below(2) == 0 ? 0 : logUniform(random_, 1e-3, 0.1);
       finger.coupling.stiffness = Vec3::Constant(kind_ == StressClass::kStiffness ? logUniform(random_, 10, 1e6) : 1000);
       finger.coupling.damping = Vec3::Constant(random_.uniform(0, 10));
-      if (kind_ == StressClass::kPads) {
+      if (kind_ == StressClass::kPads || (kind_ == StressClass::kCoarse && random_.below(2) == 0)) {
         finger.coupling.stiffness = Vec3::Constant(logUniform(random_, 10, 1e4));
         finger.shape = anyPad(random_);
       }
@@ -341,6 +342,9 @@ StressWorld::StressWorld(StressClass kind, std::uint64_t seed, int threads)
   allowed_lift = draft.allowed_lift;
   devices_ = std::move(draft.devices);
   inputs_.resize(devices_.size());
+  constexpr double kDeepest = 0.035;  // a pad may begin that deep in the object: half of the widest's diagonal [m]
+  reach_.assign(devices_.size(), kind == StressClass::kPads || kind == StressClass::kCoarse ? kDeepest : 0);
+  fastest_.resize(devices_.size());
   for (std::size_t i = 0; i < devices_.size(); ++i) inputs_[i].p_WF = devices_[i];
 }
 
@@ -352,11 +356,22 @@ std::span<const grasp::FingerInput> StressWorld::nextInputs() {
   for (std::size_t i = 0; i < devices_.size(); ++i) {
     Vec3 p = devices_[i] + closing * 0.6 * (middle - devices_[i]);
     if (kind_ == StressClass::kTeleport && random_.below(20) == 0) p += 0.05 * anyVector(random_, -1, 1);
-    if (kind_ == StressClass::kNoise) p += 1e-3 * anyVector(random_, -1, 1);
+    if (kind_ == StressClass::kNoise || kind_ == StressClass::kCoarse) p += 1e-3 * anyVector(random_, -1, 1);
     inputs_[i].v_WF = (p - inputs_[i].p_WF) / h;
     inputs_[i].p_WF = p;
+    reach_[i] = std::max(reach_[i], (p - devices_[i]).norm());
+    fastest_[i] = std::max(fastest_[i], inputs_[i].v_WF.norm());
   }
   return inputs_;
+}
+
+double StressWorld::mostWork() const {
+  double work = 0;
+  for (std::size_t i = 0; i < devices_.size(); ++i) {
+    const engine::DrivenPointModel& c = model.fingers[i].coupling;
+    work += reach_[i] * (c.stiffness.maxCoeff() * reach_[i] + c.damping.maxCoeff() * fastest_[i]);
+  }
+  return work;
 }
 
 }  // namespace pincer::tasks

@@ -29,10 +29,11 @@ enum class StressClass {
   kHit,        // such a wall, of like masses, hit by a ball at up to 10 m/s
   kCompounds,  // three to six bodies of two to five shapes each fall on a heap
   kJoints,     // trees of joints with limits, drives, springs and dry friction, masses up to 1e4 : 1 (random_tree.h)
+  kCoarse,     // as pads, half of them spheres, that tremble by up to 1 mm; ticks from 0.1 to 10 ms
 };
-constexpr std::string_view kStressClassNames[] = {"mass-ratio", "redundant", "overlap",   "spin",  "tick", "inertia",
-                                                  "heap",       "stiffness", "teleport",  "noise", "pads", "walls",
-                                                  "hulls",      "hit",       "compounds", "joints"};
+constexpr std::string_view kStressClassNames[] = {"mass-ratio", "redundant", "overlap",   "spin",   "tick",  "inertia",
+                                                  "heap",       "stiffness", "teleport",  "noise",  "pads",  "walls",
+                                                  "hulls",      "hit",       "compounds", "joints", "coarse"};
 
 struct StressWorld {
   // `threads` solve it (engine::WorldOptions).
@@ -45,6 +46,9 @@ struct StressWorld {
 
   const std::vector<Vec3>& startDevices() const { return devices_; }  // one per finger [m]
   bool hasFingers() const { return !model.fingers.empty(); }
+  // The most that the fingers' couplings may have given to bodies so far [J]: k R^2 + d v R of each, R how far its device has been from where it
+  // began, or a pad deep in the object, and v its fastest. A spring that is stretched by R holds half of that; a damper takes the device along by R.
+  double mostWork() const;
 
   grasp::GraspModel model;
   std::vector<engine::BodyStart> starts;
@@ -56,6 +60,7 @@ struct StressWorld {
   Random random_;
   std::vector<Vec3> devices_;  // [m]
   std::vector<grasp::FingerInput> inputs_;
+  std::vector<double> reach_, fastest_;  // of each device until now [m, m/s]
   std::vector<engine::DriveInput> controls_;
   std::int64_t tick_ = 0;
 };

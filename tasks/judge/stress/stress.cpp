@@ -25,9 +25,8 @@ std::string faultOfTick(const StressWorld& world, const grasp::GraspState& state
   if (!flagged) {
     if (std::string fault = faultOfLaw(model, grasp::worldOf(scratch)); !fault.empty()) return fault;
   }
-  if (world.hasFingers()) return {};
   constexpr double kRoundOff = 1e-5;  // of the energy: of a body that turns by 0.5 rad in a tick it swings by 2e-6 of itself
-  const double now = totalEnergy(model, state.world), most = energy + world.allowed_lift;
+  const double now = totalEnergy(model, state.world), most = energy + world.allowed_lift + world.mostWork();
   return now <= most + kRoundOff * (std::abs(most) + 1e-6) ? std::string() : fmt::format("energy {:.6g} J, began with {:.6g} J", now, most);
 }
 

@@ -78,6 +78,17 @@ class FaultOfTheCaller : public testing::TestWithParam<SeededFault> {};
 TEST_P(FaultOfTheCaller, IsCaughtInEveryBuild) { EXPECT_DEATH(GetParam().seed(), literally(GetParam().caught_by)); }
 
 const SeededFault kOfTheCaller[] = {
+    {"AModelWhoseTickIsChanged", "options.h isn't the tick that the model was built for",
+     [] {  // its coupling is stable for another: what it pushed gained speed without end
+       engine::WorldBuilder builder{engine::WorldOptions{}};
+       engine::DrivenPointModel point;
+       point.mass = 0.01;  // behind 1000 N/m: soft at 1 ms, not at 8
+       point.damping.setConstant(1);
+       builder.addPoint(point);
+       engine::WorldModel model = builder.build();
+       model.options.h = 8e-3;
+       const engine::WorldScratch scratch(model);
+     }},
     {"FewerInputsThanFingers", "step: one input per finger",
      [] {
        Pinch p;
