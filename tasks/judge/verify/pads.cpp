@@ -50,6 +50,7 @@ struct PadGrip {
   Vec3 gravity_W{0, 0, -kVerifyG};
   Vec3 w_W = Vec3::Zero();       // of the object at the start [rad/s]
   Quat q_WB = Quat::Identity();  // the same
+  double along = 0;              // the object's frame from its middle, along x [m]
 };
 
 // An object between two pads at -x and +x, which just touch it.
@@ -79,7 +80,7 @@ class PadRun {
     }
     model = grasp::buildGrasp(std::move(builder), fingers);
     engine::BodyStart start;
-    start.X_WB = {grip.q_WB, Vec3(0, 0, kUp)};
+    start.X_WB = {grip.q_WB, Vec3(grip.along, 0, kUp)};
     start.w_W = grip.w_W;
     state = grasp::makeState(model, {start}, places);
     scratch_ = grasp::makeScratch(model);
@@ -140,15 +141,6 @@ Measurement holdOf(const char* name, const contact::Shape& shape, double width) 
   return {name, [grip](MeasureContext& context) { return hold(grip, context); }};
 }
 
-// Turned by `angle` about `axis`, and nudged about all axes: along one line on either side.
-Measurement rodOf(const char* name, const contact::Shape& shape, double angle, const Vec3& axis, double width) {
-  PadGrip grip{shape};
-  grip.width = width;
-  grip.q_WB = Quat(Eigen::AngleAxisd(angle, axis));
-  grip.w_W = Vec3(0.2, -0.1, 0.2);
-  return {name, [grip](MeasureContext& context) { return hold(grip, context); }};
-}
-
 // The pads reach over the object's edge by `over` of their width, along y and, at a corner, along z.
 Measurement overhangOf(const char* name, double over, bool at_corner) {
   PadGrip grip{kBrick};
@@ -169,13 +161,61 @@ Measurement tipOf(const char* name, const contact::FingerShape& tip, double reac
 }
 
 // A prism of 24 sides, as a pad whose face is round.
-contact::PadTip roundPad() {
+contact::PadTip roundPad(double width) {
   std::vector<Vec3> corners;
   for (int i = 0; i < 48; ++i) {
-    const double a = 2 * M_PI * (i / 2) / 24, r = 0.01 - kRounding, b = kHalfThickness - kRounding;
+    const double a = 2 * M_PI * (i / 2) / 24, r = 0.5 * width - kRounding, b = kHalfThickness - kRounding;
     corners.push_back({i & 1 ? b : -b, r * math::cos(a), r * math::sin(a)});
   }
   return {contact::Polytope::hullOf(corners, "round pad"), kRounding};
+}
+
+// How a solid lies between the pads.
+struct Lie {
+  contact::Shape shape;
+  double half = 0.015;  // along x [m]
+  double angle = 0;     // about `axis` [rad]
+  Vec3 axis = Vec3::UnitX();
+  double along = 0;  // its frame from the middle of its extent along x [m]
+};
+
+std::vector<Lie> lies() {
+  constexpr double kQuarter = 0.5 * M_PI, kR = 0.015;
+  std::vector<Lie> all;
+  for (const double angle : {0.0, 0.4, kQuarter}) {
+    for (const double half_length : {0.004, 0.03}) {
+      all.push_back({contact::Cylinder{kR, half_length}, kR, angle});
+      all.push_back({contact::CylinderWithFlat{kR, half_length, 0.012}, 0.0135, angle, Vec3::UnitX(), 0.0015});
+    }
+    all.push_back({contact::Capsule{kR, 0.01}, kR, angle});
+    all.push_back({contact::Box{Vec3(kR, 0.02, 0.025)}, kR, angle});
+  }
+  all.push_back({contact::Cylinder{kR, 0.012}, 0.012, kQuarter, Vec3::UnitY()});
+  for (const double flat : {0.005, 0.012}) all.push_back({contact::CylinderWithFlat{kR, 0.012, flat}, kR, kQuarter, Vec3::UnitZ()});
+  return all;
+}
+
+// Every lie between pads of every size, square and round, hard and soft, nudged about all axes: the worst of all.
+std::vector<Record> sweeps(MeasureContext& context) {
+  constexpr std::array<double, 5> kWidths = {0.005, 0.01, 0.02, 0.03, 0.04};
+  double slip = 0, turn = 0, flagged = 0, grips = 0;
+  for (const Lie& lie : lies()) {
+    for (std::size_t k = 0; k < 4 * kWidths.size(); ++k, ++grips) {
+      PadGrip grip{lie.shape, lie.half};
+      grip.q_WB = Quat(Eigen::AngleAxisd(lie.angle, lie.axis));
+      grip.along = lie.along;
+      grip.width = kWidths[k / 4];
+      grip.patch_radius = k & 1 ? 0.004 : 0;
+      if (k & 2) grip.tip = roundPad(grip.width);
+      grip.w_W = Vec3(0.2, -0.1, 0.2);
+      const std::vector<Record> held = hold(grip, context);
+      slip = std::max(slip, held[0].value);
+      turn = std::max(turn, held[1].value);
+      flagged += held[2].value;
+    }
+  }
+  return {unbounded("grips", grips, "-"), atMost("slip in 60 s, the worst", slip, "um", 1e-6),
+          atMost("rotation in 60 s, the worst", turn, "rad", 1e-9), exactly("flagged ticks", flagged, "-", 0)};
 }
 
 contact::Shape smooth(const contact::TriangleMesh& mesh) { return contact::Mesh{contact::SmoothMesh::build(mesh)}; }
@@ -325,20 +365,19 @@ std::vector<Measurement> verifyPads() {
           holdOf("pads/hold-coin", contact::Cylinder{0.015, 0.002}, 0.01),
           holdOf("pads/hold-rod", contact::Capsule{0.015, 0.03}, 0.02),
           holdOf("pads/hold-short-rod", contact::Capsule{0.015, 0.005}, 0.02),
-          rodOf("pads/hold-rod-askew", contact::Cylinder{0.015, 0.03}, 0.4, Vec3::UnitX(), 0.02),
-          rodOf("pads/hold-rod-with-flat", contact::CylinderWithFlat{0.015, 0.012, 0.005}, 0.5 * M_PI, Vec3::UnitZ(), 0.04),
           overhangOf("pads/hold-edge", 0.6, false),
           overhangOf("pads/hold-corner", 0.6, true),
           tipOf("pads/tip-sphere", contact::Sphere{0.008}, 0.008),
           tipOf("pads/tip-capsule", contact::CapsuleTip{0.006, Vec3(0, 0, 0.008)}, 0.006),
           tipOf("pads/tip-ellipsoid", contact::EllipsoidTip{Vec3(0.006, 0.009, 0.008)}, 0.006),
-          tipOf("pads/tip-round", roundPad(), kHalfThickness),
+          tipOf("pads/tip-round", roundPad(0.02), kHalfThickness),
           meshOf("pads/mesh-box", contact::gridBox(Vec3(0.015, 0.02, 0.025), 6), 0.015, 0.02),
           meshOf("pads/mesh-cylinder", contact::lathe({{0, -0.02}, {0.018, -0.02}, {0.018, 0.02}, {0, 0.02}}, 48), 0.018, 0.02),
           curvedOf("pads/mesh-ball", contact::geodesicSphere(0.015, 8)),
           curvedOf("pads/mesh-barrel", contact::lathe(bulging(0.015, 0.004, 0.02), 48)),
           curvedOf("pads/mesh-short-barrel", contact::lathe(bulging(0.015, 0.001, 0.006), 48)),
           curvedOf("pads/mesh-spool", contact::lathe(bulging(0.013, -0.002, 0.02), 48)),
+          {"pads/sweep", sweeps},
           {"pads/tilt", hangs},
           {"pads/shake-across", [](MeasureContext& c) { return shake(Vec3::UnitY(), c); }},
           {"pads/shake-along", [](MeasureContext& c) { return shake(Vec3::UnitZ(), c); }},
