@@ -149,7 +149,7 @@ void summarise(const std::string& task, const std::vector<ResponseRecord>& respo
 
 std::string estimateText(const Estimate& e, double scale, int digits, Averaged averaged = Averaged::kPositive) {
   if (e.n == 0) return "–";
-  if (e.n < 2) return fmt::format("{:.{}f}", scale * e.mean, digits);
+  if (e.n < 2 || !(e.half_width > 0)) return fmt::format("{:.{}f}", scale * e.mean, digits);
   const Interval interval = intervalOf(e, averaged);
   return fmt::format("{:.{}f} ({:.{}f} to {:.{}f})", scale * e.mean, digits, scale * interval.low, digits, scale * interval.high, digits);
 }

@@ -65,8 +65,9 @@ void sortConditions(std::vector<std::string>& conditions) {
 std::string show(const Estimate& e, Averaged averaged, bool lower_bound = false) {
   if (e.n == 0) return "–";
   if (lower_bound) return fmt::format("≥ {:.2f}", e.mean);
+  if (e.n < 2 || !(e.half_width > 0)) return fmt::format("{:.2f}", e.mean);  // a few equal values aren't certainty
   const Interval interval = intervalOf(e, averaged);
-  return e.n < 2 ? fmt::format("{:.2f}", e.mean) : fmt::format("{:.2f} ({:.2f} to {:.2f})", e.mean, interval.low, interval.high);
+  return fmt::format("{:.2f} ({:.2f} to {:.2f})", e.mean, interval.low, interval.high);
 }
 
 // Characters, not bytes: a UTF-8 continuation byte is 10xxxxxx.
@@ -169,6 +170,7 @@ std::vector<std::string> tableRow(const CellSummary& cell) {
 std::string tableNote(const SessionSummary& s) {
   std::string note = fmt::format("Mean and 95 % confidence interval (Student t, of the logarithm) over {}.",
                                  s.participants > 1 ? "the participants' means" : "the trials of the one participant");
+  note += " A value without one: all are equal, or there is only one.";
   const auto has = [&](auto of) { return std::any_of(s.cells.begin(), s.cells.end(), [of](const CellSummary& c) { return c.*of > 0; }); };
   if (has(&CellSummary::timeouts))
     note += " ≥ marks lower bounds: at least one trial of the cell timed out, so that no interval can be told.";

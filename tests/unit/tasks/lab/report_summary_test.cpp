@@ -76,6 +76,13 @@ TEST(SessionSummary, MarksTimeOutsAndLeavesFaultsOut) {
   EXPECT_NE(text.find("left out"), std::string::npos) << text;
 }
 
+// People with one squeeze each had the interval "1.00 to 1.00", as if nothing else could come out.
+TEST(SessionSummary, GivesEqualValuesNoInterval) {
+  const std::string text = formatTable(summaryOf({trialOf(0, "force", 0.3, 1, 10), trialOf(1, "force", 0.3, 1, 12)}));
+  EXPECT_EQ(text.find("1.00 to 1.00"), std::string::npos) << text;
+  EXPECT_NE(text.find(" to "), std::string::npos) << "their times differ, and have one: " << text;
+}
+
 TEST(SessionSummary, PrintsAlignedColumns) {
   const std::string text = formatTable(summaryOf({trialOf(0, "force", 0.3, 2, 10), trialOf(0, "cld+force", 0.3, 1, 123)}));
   std::size_t width = 0;
