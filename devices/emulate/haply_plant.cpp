@@ -6,6 +6,7 @@ namespace pincer::devices::emulate {
 namespace {
 
 constexpr double kLoop = 0.25e-3;  // of the device's own control [s]
+constexpr double kReversed = 0.1;  // after a change of sign a force oscillates for so long [s]
 
 Vec3 inSinglePrecision(const Vec3& v) { return v.cast<float>().cast<double>(); }
 
@@ -32,9 +33,12 @@ Vec3 HaplyPlant::toD(const Vec3& v_H) const {
   return {c * v_H.x() - s * v_H.y(), v_H.z(), -(s * v_H.x() + c * v_H.y())};
 }
 
-void HaplyPlant::command(const Vec3& f_H) {
-  const double size = f_H.norm();
-  f_D_ = toD(size > settings_.peak_force ? Vec3(f_H * settings_.peak_force / size) : f_H);
+void HaplyPlant::command(const Vec3& f_H, double share) {
+  if (f_H.dot(asked_H_) < 0) since_reversal_ = 0;
+  if (!f_H.isZero(0)) asked_H_ = f_H;
+  const Vec3 passed_H = since_reversal_ < kReversed ? Vec3(share * f_H) : f_H;
+  const double size = passed_H.norm();
+  f_D_ = toD(size > settings_.peak_force ? Vec3(passed_H * settings_.peak_force / size) : passed_H);
   since_command_ = 0;
   idle_ = false;
 }
@@ -49,6 +53,8 @@ void HaplyPlant::advance(double dt) {
   for (double left = dt; left > 1e-9; left -= kLoop) {
     const double h = std::min(left, kLoop);
     since_command_ += h;
+    since_reversal_ += h;
+    grip_yaw_ += settings_.grip_drift * h;
     if (settings_.dead_man == DeadMan::kIdleAfter && since_command_ > settings_.idle_after) {
       f_D_.setZero();
       idle_ = true;
@@ -67,7 +73,8 @@ Vec3 HaplyPlant::force_H() const { return inSinglePrecision(toH(f_D_)); }
 Quat HaplyPlant::grip_H() {
   Mat3 R_HD;
   R_HD << toH(Vec3::UnitX()), toH(Vec3::UnitY()), toH(Vec3::UnitZ());
-  return (Quat(R_HD) * arm_.sample().q_DF.value_or(Quat::Identity())).normalized();
+  const Quat drifted{math::cos(0.5 * grip_yaw_), 0, 0, math::sin(0.5 * grip_yaw_)};
+  return (drifted * Quat(R_HD) * arm_.sample().q_DF.value_or(Quat::Identity())).normalized();
 }
 
 }  // namespace pincer::devices::emulate

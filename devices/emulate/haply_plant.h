@@ -22,13 +22,15 @@ struct HaplyPlantSettings {
   DeadMan dead_man = DeadMan::kIdleAfter;
   double idle_after = 0.1;  // [s]
   double peak_force = 8;    // [N]
+  double grip_drift = 0;    // of the grip's yaw, about H's z [rad/s]
 };
 
 class HaplyPlant {
  public:
   explicit HaplyPlant(const HaplyPlantSettings& settings);
 
-  void command(const Vec3& f_H);  // scaled already
+  // Scaled already. `share` of a force gets through while its sign changed less than 0.1 s ago.
+  void command(const Vec3& f_H, double share = 1);
   void sessionEnded();
   void advance(double dt);
 
@@ -48,7 +50,9 @@ class HaplyPlant {
   HaplyPlantSettings settings_;
   SimArm arm_;
   Vec3 f_D_ = Vec3::Zero();
-  double since_command_ = 0;  // [s]
+  Vec3 asked_H_ = Vec3::Zero();                     // the last force that wasn't zero
+  double since_command_ = 0, since_reversal_ = 10;  // [s]
+  double grip_yaw_ = 0;                             // so far has it drifted [rad]
   bool idle_ = true;
 };
 

@@ -1,7 +1,9 @@
-// haply_server: the emulated service behind real sockets of this computer, in real time: WebSocket and HTTP on one port, events on another.
+// haply_server: the emulated service behind real sockets of this computer, in real time: WebSocket and HTTP on one
+// port, events on another.
 //
-// Its threads live as long as it does: one turns the devices, one per connection answers. `live` is called every millisecond of the devices'
-// time: there a simulated hand may hold the arms. Faults of the wire are done here, the others by the service.
+// Its threads live as long as it does: one turns the devices, one per connection answers, in real-time priority where
+// permitted: what else runs on this computer is no fault of a service. `live` is called every millisecond of the
+// devices' time: there a simulated hand may hold the arms. Faults of the wire are done here, the others by the service.
 #pragma once
 #include <chrono>
 #include <cstdint>

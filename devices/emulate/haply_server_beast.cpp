@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "pincer/devices/emulate/haply_server.h"
+#include "pincer/devices/hurry.h"
 #include "pincer/devices/usb/usb_bus.h"
 
 namespace pincer::devices::emulate {
@@ -120,6 +121,7 @@ struct HaplyServer::Parts {
       const std::lock_guard lock(one);
       sockets.push_back(socket.get());
       clients.emplace_back([this, socket, serve] {
+        hurryThisThread(kEmulatorPriority);
         ++connections;
         try {
           serve(*socket);
@@ -264,7 +266,10 @@ HaplyServer::HaplyServer(const HaplyServiceSettings& settings, std::uint16_t por
                     "--port, --events-port.",
                     port, events_port, error.code().message()));
   }
-  p.threads.emplace_back([&p] { p.turn(); });
+  p.threads.emplace_back([&p] {
+    hurryThisThread(kEmulatorPriority);
+    p.turn();
+  });
   p.threads.emplace_back([&p] { p.accept(p.states, [&p](tcp::socket& socket) { p.serveStates(socket); }); });
   p.threads.emplace_back([&p] { p.accept(p.events, [&p](tcp::socket& socket) { p.serveEvents(socket); }); });
 }

@@ -37,9 +37,9 @@ struct HaplyService::Texts {
           R"(,"device_info":{{"major_version":7,"minor_version":4,"id":"{}","device_type":4,"uuid":"..."}},)"
           R"("gravity_compensation":{{"enabled":true,"scaling_factor":1.0}},"streaming_mode":"USB","torque_scaling":{{"enabled":true}},)"
           R"("home_return":{{"enabled":false}},"preset":"{}","basis":{{"permutation":"XYZ"}},"mount":{{"position":{{"x":0,"y":0,"z":0}},)"
-          R"("rotation":{},"scale":{{"x":1,"y":1,"z":1}}}},"filters":{{"force_gate":{{"gain":0.3}},"damping":{{"scalar":{}}}}})",
-          plant.settings().id, service.fault_ == HaplyFault::kSettingsChanged ? "arm_front" : service.settings_.preset, kUpright,
-          service.settings_.damping);
+          R"("rotation":{},"scale":{{"x":1,"y":1,"z":1}}}},"filters":{{"force_gate":{{"gain":{}}},"damping":{{"scalar":{}}}}})",
+          plant.settings().id, service.fault_ == HaplyFault::kSettingsChanged ? "arm_front" : service.settings_.preset,
+          kUpright, service.settings_.gate_gain, service.settings_.damping);
     }
     text += '}';
   }
@@ -115,6 +115,7 @@ struct HaplyService::Texts {
     HaplyServiceSettings& now = service.settings_;
     if (!now.takes_configuration) return;
     if (wanted.contains("preset")) now.preset = wanted["preset"].value("preset", now.preset);
+    if (wanted.contains("force_gate")) now.gate_gain = wanted["force_gate"].value("gain", now.gate_gain);
     if (wanted.contains("damping")) now.damping = wanted["damping"].value("scalar", now.damping);
   }
   // Sums the forces of one message for a device, as the service does.
@@ -131,8 +132,10 @@ struct HaplyService::Texts {
     if (service.settings_.vector) take("vector");
     if (service.settings_.values) take("values");
     if (service.fault_ == HaplyFault::kDeafToForces) f_H.setZero();
+    const double share = std::min(1.0, service.settings_.gate_gain / service.settings_.gate_neutral);
     for (auto& plant : service.plants_) {
-      if (plant->settings().id == *id) plant->command(service.settings_.force_scale * f_H), session.commanded = true;
+      if (plant->settings().id == *id)
+        plant->command(service.settings_.force_scale * f_H, share), session.commanded = true;
     }
   }
 };

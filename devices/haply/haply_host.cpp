@@ -2,9 +2,7 @@
 
 #include <fmt/format.h>
 #include <poll.h>
-#include <sched.h>
 #include <sys/eventfd.h>
-#include <sys/prctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -12,21 +10,14 @@
 #include <stdexcept>
 
 #include "pincer/devices/haply/last_zero.h"
+#include "pincer/devices/hurry.h"
 #include "pincer/devices/usb/usb_bus.h"
 
 namespace pincer::devices::haply {
 namespace {
 
-constexpr int kPriority = 75;  // of SCHED_FIFO: below the servo's 80
 constexpr std::int64_t kLeaving = 100 * kMillisecond;
 constexpr std::int64_t kShortestPause = 250 * kMillisecond, kLongestPause = 2000 * kMillisecond;
-
-// As punctual as the system permits; without the permission it goes without.
-void hurryThisThread() {
-  const sched_param priority{kPriority};
-  ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &priority);
-  ::prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
-}
 
 DeviceState stateOf(const HaplySession& session) {
   switch (session.phase()) {
@@ -182,7 +173,7 @@ void HaplyHost::tell(const HaplySession& session, bool open) {
 }
 
 void HaplyHost::run(std::unique_ptr<HaplyPort> port) {
-  hurryThisThread();
+  hurryThisThread(kServicePriority);
   while (port) {
     live(*port);
     port.reset();

@@ -110,8 +110,11 @@ void HaplySession::judgeEcho(ArmState& arm, bool follows, std::int64_t now) {
     }
   } else {
     doubt(
-        fmt::format("Inverse3 {}: the service doesn't echo a force of {} N, in either spelling: it may be deaf to a zero, too. Switch the "
-                    "device off and on, look at its light, and see `pincer devices test --devices haply`.",
+        fmt::format("Inverse3 {}: the service doesn't echo a force of {} N, in either spelling: it may be deaf to a "
+                    "zero, too. Switch the "
+                    "device off and on, look at its light; its force gate may swallow what changes sign: --force-gate "
+                    "GAIN. See `pincer "
+                    "devices test --devices haply`.",
                     arm.id.view(), kEchoForce));
   }
 }

@@ -150,7 +150,9 @@ void HaplySession::checkPlace(ArmState& arm, const DeviceReport& report, std::in
     arm.f_when_still = f_H;
     arm.pushed_when_still = false;
   }
-  arm.pushed_when_still |= (f_H - arm.f_when_still).norm() > kFrozenForce;
+  const bool pushed = (f_H - arm.f_when_still).norm() > kFrozenForce;
+  if (pushed && !arm.pushed_when_still) arm.still_since = now;  // a rest before that is a rest
+  arm.pushed_when_still |= pushed;
   if (arm.pushed_when_still && now - arm.still_since > kFrozenAfter)
     doubt(
         fmt::format("Inverse3 {} tells the same place to the bit although its force changed: its encoders seem to be frozen. Switch it "

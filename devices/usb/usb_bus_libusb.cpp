@@ -1,8 +1,6 @@
 #include <fcntl.h>
 #include <libusb.h>
 #include <poll.h>
-#include <pthread.h>
-#include <sched.h>
 #include <sys/eventfd.h>
 #include <time.h>
 #include <unistd.h>
@@ -15,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "pincer/devices/hurry.h"
 #include "pincer/devices/usb/port_name.h"
 #include "pincer/devices/usb/usb_bus.h"
 #include "pincer/devices/usb/usb_endpoints.h"
@@ -129,8 +128,7 @@ class LibusbBus final : public UsbBus {
 
   void serveAll() {
     // Just below the servo's priority, where the system permits it: a command that waits for this thread waits for nothing else.
-    const sched_param priority{.sched_priority = 79};
-    pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority);
+    hurryThisThread(kUsbPriority);
     const bool told = watchPlugs();
     if (!told) lookForDevices();
     handleEvents();

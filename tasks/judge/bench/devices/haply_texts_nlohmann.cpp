@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <random>
 #include <string>
-#include <string_view>
 
+#include "pincer/devices/emulate/changed_json.h"
 #include "pincer/devices/emulate/haply_service.h"
 #include "pincer/devices/haply/haply_messages.h"
 #include "pincer/tasks/judge/bench/devices/haply_parts.h"
@@ -17,29 +17,7 @@ using devices::haply::DeviceReport;
 using devices::haply::ServiceMessage;
 
 constexpr std::int64_t kUsual = 20'000, kThorough = 10'000'000;
-
-std::string mutated(std::string text, std::mt19937_64& random) {
-  constexpr std::array<std::string_view, 14> kPieces{"{",   "}",    "[",   "]",       "\"", ",",     "9",
-                                                     "e99", "null", ":1,", "\\u0000", "-",  "1e400", "true"};
-  const auto below = [&](std::size_t n) { return static_cast<std::size_t>(random() % n); };
-  for (std::size_t left = 1 + below(7); left > 0 && !text.empty(); --left) {
-    const std::size_t at = below(text.size());
-    switch (below(4)) {
-      case 0:
-        text[at] = static_cast<char>(random());
-        break;
-      case 1:
-        text.insert(at, kPieces[below(kPieces.size())]);
-        break;
-      case 2:
-        text.insert(at, text.substr(below(text.size()), 1 + below(60)));
-        break;
-      default:
-        text.erase(at, 1 + below(40));
-    }
-  }
-  return text;
-}
+constexpr std::size_t kMostChanges = 7;
 
 bool isSound(const DeviceReport& device) {
   const auto within = [](const std::optional<Vec3>& v, double most) { return !v || (v->allFinite() && v->cwiseAbs().maxCoeff() <= most); };
@@ -60,7 +38,8 @@ std::vector<Record> haplyTexts(MeasureContext& context) {
   std::int64_t taken = 0, unsound = 0, no_json = 0, done = 0;
   for (; done < wanted && !(done % 1024 == 0 && context.interrupted()); ++done) {
     if (done % 1024 == 0) context.progress(static_cast<double>(done) / static_cast<double>(wanted));
-    const std::string text = mutated(seeds[static_cast<std::size_t>(done % 2)], random);
+    const std::string text =
+        devices::emulate::changedJson(seeds[static_cast<std::size_t>(done % 2)], kMostChanges, random);
     if (readService(text, message) != devices::haply::ReadError::kNone) {
       unsound += message.count != 0 ? 1 : 0;  // refused, and yet it tells something
       continue;

@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <deque>
 
 #include "pincer/devices/emulate/haply_service.h"
+#include "pincer/devices/haply/haply_frames.h"
 
 namespace pincer::devices::haply {
 namespace {
@@ -310,6 +312,72 @@ TEST(HaplySession, TakesWiredAndWirelessGrips) {
     ASSERT_EQ(wire.session.phase(), SessionPhase::kReady) << wire.session.complaint();
     ASSERT_TRUE(wire.session.reading(1).q_H);
     EXPECT_LT(wire.session.reading(1).q_H->angularDistance(wire.service.plant(1).grip_H()), 1e-6) << wired;
+  }
+}
+
+// An arm that had lain still to the bit for half a second counted as frozen the moment that it was pushed.
+TEST(HaplySession, AnArmThatRestedMayBePushed) {
+  Wire wire;
+  wire.run(0.6);
+  wire.arm();
+  wire.run(2);
+  for (const double f : {1.0, -1.0}) {
+    wire.push({0, 0, f});
+    wire.run(0.03);
+    EXPECT_NEAR(wire.force(), 1, 1e-6) << wire.session.complaint();
+  }
+}
+
+// No page tells which gain of the force gate lets all through. The one that is found may damp what changes sign: then
+// nobody may push until --force-gate gives another.
+TEST(HaplySession, PushesOnlyWhereTheForceGateLetsWhatChangesSignThrough) {
+  for (const double neutral : {0.3, 0.6}) {
+    for (const bool given : {false, true}) {
+      SessionOptions options = twoArms();
+      if (given) options.gate_gain = neutral;
+      Wire wire(options, {.gate_neutral = neutral});
+      wire.run(0.6);
+      ASSERT_EQ(wire.session.phase(), SessionPhase::kReady) << wire.session.complaint();
+      wire.session.arm(0, wire.now);
+      wire.run(0.6);
+      const bool passes = given || neutral == wire.service.settings().gate_gain;
+      EXPECT_EQ(wire.session.doubted(), !passes) << wire.session.complaint();
+      EXPECT_EQ(wire.session.complaint().find("--force-gate") != std::string::npos, !passes)
+          << wire.session.complaint();
+      for (const double f : {1.0, -1.0, 1.0}) {
+        wire.push({0, 0, f});
+        wire.run(0.03);
+        EXPECT_NEAR(wire.force(), passes ? 1 : 0, 1e-6) << wire.session.complaint();
+      }
+      EXPECT_EQ(wire.session.counts().attenuated, 0);
+    }
+  }
+}
+
+// No page tells if a grip's yaw drifts. Its drift, taken out at one turn of the finger, is gone at every other; aligned
+// anew, it wouldn't be.
+TEST(HaplySession, ADriftOfAGripsYawIsTakenOut) {
+  const Quat held(0.5, -0.5, 0.5, 0.5), tilted = Quat(0.8, 0.6, 0, 0) * held;  // q_DF
+  for (const double drift : {0.0, 0.1, -0.2}) {
+    Wire wire(twoArms(), {.arms = {{.grip_drift = drift}, {.id = "04BA", .grip = "1606"}}});
+    const auto told = [&](const Quat& q_DF, const HaplyFrame& frame) {
+      wire.service.plant(0).arm().setGimbal(q_DF);
+      wire.run(0.002);
+      return HaplyMap(frame).turn(*wire.session.reading(0).q_H);
+    };
+    wire.run(2);
+    const HaplyFrame aligned;  // before it drifted
+    EXPECT_NEAR(told(tilted, aligned).angularDistance(tilted), 2 * std::abs(drift), 2e-3);
+    const GripDrift found = gripDrift(told(held, aligned), held);
+    EXPECT_NEAR(found.yaw, 2 * drift, 2e-3);
+    EXPECT_LT(found.tilt, 1e-6);
+    HaplyFrame undrifted = aligned;
+    undrifted.grip_yaw = found.yaw;
+    EXPECT_LT(told(held, undrifted).angularDistance(held), 2e-3);
+    EXPECT_LT(told(tilted, undrifted).angularDistance(tilted), 2e-3);
+    const HaplyFrame anew{.q_align = told(held, aligned).conjugate() * held};
+    EXPECT_LT(told(held, anew).angularDistance(held), 2e-3);
+    EXPECT_GE(told(tilted, anew).angularDistance(tilted) + 2e-3, std::abs(drift)) << "aligned anew";
   }
 }
 

@@ -13,6 +13,7 @@
 #include <variant>
 #include <vector>
 
+#include "pincer/devices/emulate/changed_json.h"
 #include "pincer/tests/unit/devices/haply/haply_texts.h"
 
 namespace pincer::devices::haply {
@@ -81,30 +82,6 @@ bool isBeyondTheWalk(const std::string& text) {
   return deepest > 8 || longest > 18;
 }
 
-std::string mutated(std::string text, std::mt19937_64& random) {
-  constexpr std::array<std::string_view, 14> kPieces{"{",   "}",    "[",   "]",       "\"", ",",     "9",
-                                                     "e99", "null", ":1,", "\\u00e9", "-",  "1e400", "\\ud800"};
-  const auto below = [&](std::size_t n) { return static_cast<std::size_t>(random() % n); };
-  for (std::size_t left = 1 + below(3); left > 0; --left) {
-    const std::size_t at = below(text.size());
-    switch (below(4)) {
-      case 0:
-        text[at] = static_cast<char>(random());
-        break;
-      case 1:
-        text.insert(at, kPieces[below(kPieces.size())]);
-        break;
-      case 2:
-        text.insert(at, text.substr(below(text.size()), 1 + below(20)));
-        break;
-      default:
-        text.erase(at, 1 + below(6));
-    }
-    if (text.empty()) text = " ";
-  }
-  return text;
-}
-
 TEST(JsonWalk, TellsTheValuesThatAnotherLibraryFinds) {
   for (const std::string& text :
        {tests::kHaplyInventory, tests::kHaplySafetyEvent, tests::kHaplyForces,
@@ -139,7 +116,7 @@ TEST(JsonWalk, TakesMutatedTextsThatAnotherLibraryTakesAndNoOthers) {
                                          "[[[[[[[[1]]]]]]]]"};
   int sound = 0, refused = 0;
   for (std::size_t i = 0; i < 30'000; ++i) {
-    const std::string text = mutated(seeds[i % seeds.size()], random);
+    const std::string text = emulate::changedJson(seeds[i % seeds.size()], 3, random);
     const bool taken = isSound(text), wanted = nlohmann::json::accept(text);
     EXPECT_TRUE(taken == wanted || (wanted && isBeyondTheWalk(text))) << text;
     (taken ? sound : refused) += 1;
