@@ -182,6 +182,20 @@ bool hasManySides(const IslandScratch& s, const Island& island) {
   });
 }
 
+// Of a link that two blocks move, against what doesn't move: the inboard one takes the place of that.
+void fillInboardSide(const WorldModel& model, WorldScratch& scratch, int i, Island& island, IslandScratch& s, ContactSides& sides) {
+  const Contact& c = scratch.contacts[i];
+  const int rows = scratch.first_row[i + 1] - scratch.first_row[i];
+  const ContactEnds ends = s.ends[i];
+  for (const bool is_a : {true, false}) {
+    const int mover = parentOf(s, is_a ? ends.a : ends.b);
+    if (mover < 0) continue;
+    PINCER_ASSERT((is_a ? ends.b : ends.a) < 0);
+    const int number = numberOf(model, scratch, is_a ? c.a : c.b, mover, island, s);
+    fillSide(model, scratch, c, rows, is_a, mover, number, s.root_inertia, sides[is_a ? 1 : 0]);
+  }
+}
+
 // The island's contacts as the movers see them.
 void fillSides(const WorldModel& model, WorldScratch& scratch, Island& island, IslandScratch& s) {
   const int *const order = s.order.data() + island.place, *const from_row = scratch.first_row.data();
@@ -196,6 +210,7 @@ void fillSides(const WorldModel& model, WorldScratch& scratch, Island& island, I
     fillSide(model, scratch, c, rows, true, ends.a, numberOf(model, scratch, c.a, ends.a, island, s), s.root_inertia, sides[0]);
     fillSide(model, scratch, c, rows, false, ends.b, numberOf(model, scratch, c.b, ends.b, island, s), s.root_inertia, sides[1]);
     if (ends.a >= 0 && ends.a == ends.b) joinSides(rows, sides);
+    if (s.sides_per_contact > 2) fillInboardSide(model, scratch, i, island, s, sides);
     island.settling = std::max(island.settling, c.settling);
     island.calm = island.calm && island.contacts > kFewContacts && isCalm(model, c);
   }

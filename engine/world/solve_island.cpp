@@ -47,7 +47,7 @@ class IslandSolve {
       return;
     }
     is_loop_&& scratch_.h > 0 ? solveLoop() : solveOne();
-    if (mayPushTooMuch()) solveWithoutPushes();
+    if (pushesInVain()) solveWithoutPushes();
     if (scratch_.h > 0 && memory_.operations_left >= 0 && isWedged(problem_, island_.r, island_.result)) {
       fit(PushingBy::kWedged);
       std::fill(island_.r, island_.r + island_.rows, 0.0);  // or the squeeze would stay
@@ -102,13 +102,11 @@ class IslandSolve {
     solveAgain(giving);
   }
 
-  bool mayPushTooMuch() const {
-    return !island_.result.converged && !island_.result.yields && scratch_.h > 0 && memory_.operations_left >= 0 &&
-           island_.contacts <= kFewContacts;
-  }
+  // One contact that only stops what closes has an answer: it sticks, if nothing else. Several may contradict each
+  // other all the same, and overlap until something pushes them apart.
+  bool pushesInVain() const { return island_.contacts == 1 && scratch_.h > 0 && !island_.result.converged && memory_.operations_left >= 0; }
 
-  // A link that grazes another one over an edge is held there by friction whatever pushes it off. Contacts that only
-  // stop what closes have an answer.
+  // A link that grazes another one over an edge is held there by friction whatever pushes it off.
   void solveWithoutPushes() {
     dropPushes();
     std::fill(island_.r, island_.r + island_.rows, 0.0);

@@ -220,6 +220,36 @@ TEST(WorldTrees, TwoChainsOfSevenHingesHoldTogetherByContact) {
   EXPECT_LT(world.q(0), -1e-3);  // pushed by the ball
 }
 
+// An arm of seven hinges, two blocks of columns, falls onto the floor: both blocks stop it there.
+TEST(Trees, AnArmOfTwoBlocksFallsOntoTheFloorAndIsHeldByIt) {
+  WorldBuilder builder(tickOf(1e-3));
+  Material material;
+  material.mu_s = material.mu_d = 0.5;
+  builder.addBody({"floor", contact::HalfSpace{}, false, 0, material});
+  std::vector<BodyStart> starts = {{}};
+  for (int k = 0; k < 7; ++k) {
+    const int link = builder.addBody({"link", contact::Capsule{0.02, 0.04}, true, 0.3, material});
+    const Quat lying(Eigen::AngleAxisd(kPi / 2, Vec3::UnitY()));  // its own z along x
+    const Quat along_y(Eigen::AngleAxisd(-kPi / 2, Vec3::UnitX()));
+    starts.push_back({{lying, Vec3(0.05 + 0.1 * k, 0, 0.1)}, Vec3::Zero(), Vec3::Zero()});
+    const Quat q_LJ = lying.conjugate() * along_y;
+    const Pose before = k == 0 ? Pose{along_y, Vec3(0, 0, 0.1)} : Pose{q_LJ, Vec3(0, 0, 0.05)};
+    const JointModel joint{JointKind::kPivot, link, k == 0 ? -1 : link - 1, {q_LJ, Vec3(0, 0, -0.05)}, before, 0.01};
+    builder.addJoint(joint);
+  }
+  Driven world(builder, starts);
+  const double start = kineticEnergy(world.model, world.state) + potentialEnergy(world.model, world.state);
+  double last = start;
+  for (int n = 0; n < 1000; ++n) {
+    world.tick();
+    const double energy = kineticEnergy(world.model, world.state) + potentialEnergy(world.model, world.state);
+    EXPECT_LE(energy, last + 1e-4 * std::abs(start)) << n;  // second order in the tick
+    last = energy;
+  }
+  for (const Contact& c : world.scratch.contacts) EXPECT_GT(c.phi, -1e-6);
+  EXPECT_EQ(world.status, kStepOk);
+}
+
 // A trunk on a ball joint, and a leg of two bars that swings along its side, which it touches all the way: nothing moves it along the normal.
 Driven legAlongATrunk(const Quat& turn) {
   WorldBuilder builder(tickOf(1e-3));

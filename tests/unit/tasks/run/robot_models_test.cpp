@@ -56,8 +56,8 @@ TEST_P(RobotModels, StaySolvedAndFiniteWhateverTheirDrivesAreTold) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Menagerie, RobotModels,
-                         ::testing::Values("actuators", "ball_free", "compiler", "contacts", "delta", "equalities", "includes", "meshes",
-                                           "mobile_base", "sprung"));
+                         ::testing::Values("actuators", "arm_gripper", "ball_free", "compiler", "contacts", "delta", "equalities",
+                                           "floating_base", "humanoid", "includes", "meshes", "mobile_base", "sprung"));
 
 }  // namespace
 }  // namespace pincer::tasks
