@@ -185,9 +185,12 @@ void keepStruck(const WorldModel& model, WorldScratch& scratch) {
   std::erase_if(scratch.contacts, [&](const Contact& c) { return !isStruck(c.a) && !isStruck(c.b); });
 }
 
-// A hit that nothing else hangs together with, nearly always the case, is solved to round-off.
+// A hit that nothing else hangs together with, nearly always the case, is solved to round-off. One that friction jams has no answer: its bounded
+// impulse stays (squeeze.h), round-off would make it 1e12 times as large.
 void sharpenSingleImpact(WorldScratch& scratch) {
-  if (scratch.contacts.size() != 1 || scratch.islands.islands.empty() || scratch.islands.islands.front().has_many_sides) return;
+  if (!scratch.solve.converged || scratch.contacts.size() != 1 || scratch.islands.islands.empty() ||
+      scratch.islands.islands.front().has_many_sides)
+    return;
   const int rows = scratch.first_row[1];
   double W[kMaxContactRows * kMaxContactRows] = {};
   for (const ContactSide& side : scratch.islands.sides[0]) {
