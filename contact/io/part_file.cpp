@@ -123,8 +123,8 @@ void PartFile::replace() {
   placed();
 }
 
-// One step: a program that is killed leaves one name. A file system that doesn't know the step gets a second name for the file, which no old one
-// can be; then the first goes.
+// One step: a program that is killed leaves one name. A file system that doesn't know the step gets a second name for
+// the file, which no old one can be; then the first goes.
 void PartFile::placeNew() {
   if (::renameat2(AT_FDCWD, part_.c_str(), AT_FDCWD, path_.c_str(), RENAME_NOREPLACE) != 0) {
     const bool is_known = errno != EINVAL && errno != ENOSYS;

@@ -9,7 +9,6 @@
 #include "pincer/tests/campaign/session_checks.h"
 
 namespace pincer::campaign {
-namespace {}  // namespace
 
 void killSession(Case& c) {
   const fs::path session = c.folder / "out/session.db";

@@ -145,6 +145,8 @@ void addDevicesBench(CLI::App& bench, const std::shared_ptr<BenchArguments>& arg
       ->check(wholeWithin(1, 100000))
       ->capture_default_str();
   devices->add_option("--usb", arguments->devices.usb, "The program that measures USB (default: devices_bench beside this one)");
+  devices->add_flag("--long", arguments->measure.thorough,
+                    "Ten million changed messages instead of 20,000; all of --cycles in connections to Haply's service");
   devices->footer(kDevicesExample);
   devices->callback([arguments, &exit_code] {
     exit_code = runMeasurements(deviceMeasurements(arguments->devices), arguments->measure, "bench devices");

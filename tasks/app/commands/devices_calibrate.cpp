@@ -81,8 +81,8 @@ int calibrate(const CalibrateArguments& arguments) {
   if (arguments.touch) return calibrateByTouch(arguments);
   if (!arguments.calibrations.empty()) refuseUsage("--calibration goes with --touch; one arm's file is --load FILE");
   if (arguments.devices == "haply") return calibrateHaply(arguments);
-  if (arguments.here || !arguments.align.empty() || !arguments.grip.empty())
-    refuseUsage("--here, --align and --grip are of Inverse3: --devices haply");
+  if (arguments.here || !arguments.align.empty() || !arguments.undrift.empty() || !arguments.grip.empty())
+    refuseUsage("--here, --align, --undrift and --grip are of Inverse3: --devices haply");
   const std::vector<NamedValue> changes = changesOf(arguments);
   const auto usb = startUsb();
   DeviceLink& device = readyDevice(*usb, arguments.serial);
@@ -91,7 +91,7 @@ int calibrate(const CalibrateArguments& arguments) {
   requireNames(kept, changes);
   for (const auto& [name, value] : changes) {
     device.writeCalibration(name, value);
-    if (!waitUntil([&] { return device.calibration()[name] == value; }, kPatience))
+    if (!waitUntil([&, &name = name, &value = value] { return device.calibration()[name] == value; }, kPatience))
       throw DeviceError(fmt::format("{} didn't take {}. Unplug it, plug it in again.", arguments.serial, name));
   }
   kept = keptCalibration(device);
@@ -117,8 +117,15 @@ void addDevicesCalibrate(CLI::App& devices, int& exit_code) {
                     "Of two haply, INDEX,THUMB: where the second stands, from knobs held together at 12 places");
   command->add_option("--calibration", arguments->calibrations, "With --touch: files of the two arms as they are known so far")
       ->delimiter(',');
-  command->add_option("--align", arguments->align, "Of haply: the grip's turn of now becomes this finger's in the scene")
-      ->check(CLI::IsMember({"index", "thumb"}));
+  CLI::Option* align = command
+                           ->add_option("--align", arguments->align,
+                                        "Of haply: the grip's turn of now becomes this finger's in the scene")
+                           ->check(CLI::IsMember({"index", "thumb"}));
+  command
+      ->add_option("--undrift", arguments->undrift,
+                   "Of haply: this finger is held as in the scene; takes out how far the grip's yaw drifted")
+      ->check(CLI::IsMember({"index", "thumb"}))
+      ->excludes(align);
   command->add_option("--grip", arguments->grip, "Of haply: id of the VerseGrip that is the arm's handle");
   command->add_option("--service", arguments->service, "Where Haply's service is: HOST:PORT, or HOST:PORT:EVENTS")->capture_default_str();
   command->footer("\nExample:\n  pincer devices calibrate ARM1 --set base_x=0.012 --save ARM1.json");

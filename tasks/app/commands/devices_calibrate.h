@@ -9,8 +9,8 @@ namespace pincer::tasks {
 struct CalibrateArguments {
   std::string serial, save, load;
   std::vector<std::string> set;
-  std::string devices = "usb", service = "127.0.0.1:10001", grip, align;  // of haply but for the first
-  std::vector<std::string> calibrations;                                  // of both arms, for `touch`
+  std::string devices = "usb", service = "127.0.0.1:10001", grip, align, undrift;  // of haply but for the first
+  std::vector<std::string> calibrations;                                           // of both arms, for `touch`
   bool here = false, touch = false;
 };
 

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
+#include <numbers>
 
 #include "pincer/contact/error.h"
 #include "pincer/devices/haply/haply_host.h"
@@ -32,7 +33,7 @@ struct Stance {
 Stance stanceOf(const CalibrateArguments& arguments, const HaplyArmSettings& settings) {
   const auto place = devices::haply::servicePlaceOf(arguments.service);
   if (!place) refuseUsage(fmt::format("--service {}: it isn't HOST:PORT or HOST:PORT:EVENTS on this computer", arguments.service));
-  try {
+  return withDeviceErrors([&] {
     HaplyHost host({.service = *place, .arms = {settings}});
     host.waitReady(10);
     Stance stance;
@@ -49,13 +50,7 @@ Stance stanceOf(const CalibrateArguments& arguments, const HaplyArmSettings& set
     if (farthest > kStill)
       throw DeviceError(fmt::format("Inverse3 {} moved by {:.1f} mm meanwhile. Hold it still.", settings.id, 1e3 * farthest));
     return stance;
-  } catch (const DeviceError&) {
-    throw;
-  } catch (const InputError&) {
-    throw;
-  } catch (const std::runtime_error& error) {
-    throw DeviceError(error.what());
-  }
+  });
 }
 
 // The middle of the workspace becomes where the arm is now.
@@ -67,19 +62,40 @@ void putHere(const CalibrateArguments& arguments, DeviceCalibration& calibration
   calibration.values["centre_z"] = centre_H.z();
 }
 
-// The grip's turn of now becomes the finger's in the scene: pad towards the other finger, pointing away from the operator.
+// Of the finger in the scene: pad towards the other finger, pointing away from the operator.
+Quat turnOf(const std::string& finger) {
+  const SpherePickupOptions options;
+  const HandScene scene = makePickupScene(options, makePickupObject(options), PickupTrialSpec{});
+  return scene.q_DF[finger == "index" ? 0 : 1];
+}
+
+// The grip's turn of now becomes the finger's in the scene.
 void align(const CalibrateArguments& arguments, DeviceCalibration& calibration) {
-  if (arguments.grip.empty()) refuseUsage("--align needs the VerseGrip that is the arm's handle: --grip 1605");
   HaplyArmSettings settings = haplyArmOf(calibration, "");
   settings.grip = arguments.grip;
   settings.frame.q_align = Quat::Identity();
-  const SpherePickupOptions options;
-  const HandScene scene = makePickupScene(options, makePickupObject(options), PickupTrialSpec{});
-  const Quat q = (stanceOf(arguments, settings).q_DF.conjugate() * scene.q_DF[arguments.align == "index" ? 0 : 1]).normalized();
+  settings.frame.grip_yaw = calibration.values["grip_yaw"] = 0;
+  const Quat q = (stanceOf(arguments, settings).q_DF.conjugate() * turnOf(arguments.align)).normalized();
   calibration.values["align_w"] = q.w();
   calibration.values["align_x"] = q.x();
   calibration.values["align_y"] = q.y();
   calibration.values["align_z"] = q.z();
+}
+
+// The drift of an aligned grip's yaw is what its turn of now is off about the vertical.
+void takeOutDrift(const CalibrateArguments& arguments, DeviceCalibration& calibration) {
+  constexpr double kMostTilt = 0.2;  // of a hand that holds it as in the scene [rad]
+  constexpr double kDegree = std::numbers::pi / 180;
+  HaplyArmSettings settings = haplyArmOf(calibration, arguments.grip);
+  settings.frame.grip_yaw = 0;
+  const auto [yaw, tilt] = devices::haply::gripDrift(stanceOf(arguments, settings).q_DF, turnOf(arguments.undrift));
+  if (tilt > kMostTilt)
+    throw DeviceError(
+        fmt::format("VerseGrip {} is tilted by {:.0f} degrees besides its yaw, which no drift explains. Hold the "
+                    "finger as in the scene, "
+                    "level; if the grip sits in its handle otherwise than before: --align.",
+                    arguments.grip, tilt / kDegree));
+  calibration.values["grip_yaw"] = yaw;
 }
 
 }  // namespace
@@ -91,7 +107,10 @@ int calibrateHaply(const CalibrateArguments& arguments) {
   for (const auto& [name, value] : changesOf(arguments)) calibration.values[name] = value;
   haplyArmOf(calibration, "");  // names what is out of range
   if (arguments.here) putHere(arguments, calibration);
+  if (arguments.grip.empty() && !(arguments.align + arguments.undrift).empty())
+    refuseUsage("--align and --undrift need the VerseGrip that is the arm's handle: --grip 1605");
   if (!arguments.align.empty()) align(arguments, calibration);
+  if (!arguments.undrift.empty()) takeOutDrift(arguments, calibration);
   for (const auto& [name, value] : calibration.values) print("{:<20} {}\n", name, value);
   if (!arguments.save.empty()) writeCalibration(calibration, arguments.save);
   return kExitOk;

@@ -139,7 +139,8 @@ int touchWith(HaplyHost& host, const CalibrateArguments& arguments, const ArmBas
 }  // namespace
 
 int calibrateByTouch(const CalibrateArguments& arguments) {
-  if (arguments.devices != "haply" || arguments.here || !arguments.align.empty() || !arguments.set.empty() || !arguments.load.empty())
+  if (arguments.devices != "haply" || arguments.here || !arguments.align.empty() || !arguments.undrift.empty() ||
+      !arguments.set.empty() || !arguments.load.empty())
     refuseUsage(
         "--touch stands alone: pincer devices calibrate INDEX,THUMB --devices haply --touch --calibration A.json,B.json --save B.json");
   const std::vector<std::string> ids = idsIn(arguments.serial);
@@ -147,16 +148,10 @@ int calibrateByTouch(const CalibrateArguments& arguments) {
   DeviceCalibration second = calibrationOf(ids[1], arguments.calibrations);
   const auto place = devices::haply::servicePlaceOf(arguments.service);
   if (!place) refuseUsage(fmt::format("--service {}: it isn't HOST:PORT or HOST:PORT:EVENTS on this computer", arguments.service));
-  try {
+  return withDeviceErrors([&] {
     HaplyHost host({.service = *place, .arms = {haplyArmOf(first, ""), haplyArmOf(second, "")}});
     return touchWith(host, arguments, armBaseIn(first), second);
-  } catch (const DeviceError&) {
-    throw;
-  } catch (const InputError&) {
-    throw;
-  } catch (const std::runtime_error& error) {
-    throw DeviceError(error.what());
-  }
+  });
 }
 
 }  // namespace pincer::tasks

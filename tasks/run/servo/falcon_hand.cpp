@@ -98,15 +98,7 @@ class FalconHand final : public HandDevices {
 }  // namespace
 
 std::unique_ptr<HandDevices> openFalconHand(const DeviceOptions& options) {
-  try {
-    return std::make_unique<FalconHand>(options);
-  } catch (const DeviceError&) {
-    throw;
-  } catch (const InputError&) {
-    throw;
-  } catch (const std::runtime_error& error) {
-    throw DeviceError(error.what());
-  }
+  return withDeviceErrors([&] { return std::make_unique<FalconHand>(options); });
 }
 
 }  // namespace pincer::tasks

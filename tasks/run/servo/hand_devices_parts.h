@@ -2,11 +2,27 @@
 #pragma once
 #include <functional>
 #include <memory>
+#include <stdexcept>
 
+#include "pincer/contact/error.h"
 #include "pincer/devices/usb/usb_host.h"
 #include "pincer/tasks/run/servo/hand_devices.h"
 
 namespace pincer::tasks {
+
+// The result of `act`. Errors without a name of their own, of a driver or of the system below it, become DeviceError.
+template <class Act>
+auto withDeviceErrors(const Act& act) {
+  try {
+    return act();
+  } catch (const DeviceError&) {
+    throw;
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::runtime_error& error) {
+    throw DeviceError(error.what());
+  }
+}
 
 // The USB thread, started. Throws DeviceError where libusb can't.
 std::unique_ptr<devices::usb::UsbHost> startUsb();

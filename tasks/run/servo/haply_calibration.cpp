@@ -52,6 +52,7 @@ HaplyArmSettings haplyArmOf(const DeviceCalibration& calibration, const std::str
                             valueOf(calibration, "centre_z", centre.z()));
   arm.frame.mount_turn = valueOf(calibration, "mount_turn", 0);
   arm.frame.q_align = alignmentOf(calibration, grip);
+  arm.frame.grip_yaw = valueOf(calibration, "grip_yaw", 0);
   const double idle_after = valueOf(calibration, "idle_after", -1);
   const bool soon = idle_after >= 0 && idle_after <= kSoonIdle;
   arm.peak_force = soon ? forceOf(calibration, "peak_force", kPeak) : kCarefulPeak;

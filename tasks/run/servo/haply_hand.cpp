@@ -108,15 +108,7 @@ class HaplyHand final : public HandDevices {
 }  // namespace
 
 std::unique_ptr<HandDevices> openHaplyHand(const DeviceOptions& options) {
-  try {
-    return std::make_unique<HaplyHand>(options);
-  } catch (const DeviceError&) {
-    throw;
-  } catch (const InputError&) {
-    throw;
-  } catch (const std::runtime_error& error) {
-    throw DeviceError(error.what());
-  }
+  return withDeviceErrors([&] { return std::make_unique<HaplyHand>(options); });
 }
 
 }  // namespace pincer::tasks

@@ -69,13 +69,7 @@ class PressedHand final : public HandDevices {
 }  // namespace
 
 std::unique_ptr<HandDevices> openPressedHand(std::unique_ptr<HandDevices> hand, const DeviceOptions& options) {
-  try {
-    return std::make_unique<PressedHand>(std::move(hand), options);
-  } catch (const InputError&) {
-    throw;
-  } catch (const std::runtime_error& error) {
-    throw DeviceError(error.what());
-  }
+  return withDeviceErrors([&] { return std::make_unique<PressedHand>(std::move(hand), options); });
 }
 
 }  // namespace pincer::tasks

@@ -169,6 +169,7 @@ bool runByTheClock(const ServoOptions& options, ServoCycle& cycle, const std::at
     dog.feed();
     dog.offer(report);
   }
+  if (more && interrupted) cycle.cutForces();  // before the watchdog's thread is waited for, as in tickOrCut()
   report.watchdog_tripped = dog.expired();
   return more;
 }

@@ -132,11 +132,7 @@ DeviceCalibration keptCalibration(devices::usb::DeviceLink& device) {
 }
 
 std::unique_ptr<UsbHost> startUsb() {
-  try {
-    return std::make_unique<UsbHost>();
-  } catch (const std::runtime_error& error) {
-    throw DeviceError(error.what());
-  }
+  return withDeviceErrors([] { return std::make_unique<UsbHost>(); });
 }
 
 }  // namespace pincer::tasks

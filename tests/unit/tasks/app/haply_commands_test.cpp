@@ -80,6 +80,30 @@ TEST(HaplyCommands, CalibrateWritesWhereAnArmStandsToAFile) {
   EXPECT_EQ(runPincer({"devices", "calibrate", "049D", "--here"}).exit_code, 2);
 }
 
+TEST(HaplyCommands, CalibrateTakesOutTheDriftOfAGripAndRefusesAnotherTurn) {
+  const TemporaryDirectory folder;
+  HaplyServer server;
+  const std::string file = folder / "A.json";
+  const auto calibrate = [&](const char* option) {
+    return runPincer({"devices", "calibrate", "049D", "--devices", "haply", option, "index", "--grip", "1605", "--load",
+                      file, "--save", file, "--service", server.place()});
+  };
+  ASSERT_EQ(runPincer({"devices", "calibrate", "049D", "--devices", "haply", "--save", file}).exit_code, 0);
+  EXPECT_TRUE(contains(calibrate("--undrift").error, "--align")) << "never aligned";
+  ASSERT_EQ(calibrate("--align").exit_code, 0);
+  const auto turnGrip = [&](const Vec3& about_D) {  // from how it was aligned
+    server.with([&](HaplyService& service) { service.plant(0).arm().setGimbal(quatFromRotationVector(about_D)); });
+  };
+  turnGrip({0, 0.3, 0});  // D's y is up
+  ASSERT_EQ(calibrate("--undrift").exit_code, 0);
+  EXPECT_NEAR(tasks::readCalibration(file).values.at("grip_yaw"), 0.3, 1e-3);
+  turnGrip({0.5, 0, 0});
+  const AppResult tilted = calibrate("--undrift");
+  EXPECT_EQ(tilted.exit_code, 4);
+  EXPECT_TRUE(contains(tilted.error, "tilted by 29 degrees")) << tilted.error;
+  EXPECT_NEAR(tasks::readCalibration(file).values.at("grip_yaw"), 0.3, 1e-3) << "kept";
+}
+
 // The emulated hands hold both knobs, 30 mm apart, at one place after another, all within reach; the thumb's arm stands 20 mm and 8 degrees off.
 TEST(HaplyCommands, TouchFindsWhereTheSecondArmStands) {
   const TemporaryDirectory folder;

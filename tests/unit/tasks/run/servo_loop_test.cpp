@@ -217,26 +217,39 @@ TEST(ServoRealTime, CutsForcesAndPassesAnExceptionOn) {
   EXPECT_GE(cycle.cuts, 1);
 }
 
+// Tells how many threads there are when forces are cut first.
+class ThreadCount final : public ServoCycle {
+ public:
+  explicit ThreadCount(std::function<bool()> work) : work_(std::move(work)) {}
+  bool tick(double) override {
+    in_tick = threads();
+    return work_();
+  }
+  void cutForces() noexcept override {
+    if (at_first_cut == 0) at_first_cut = threads();
+  }
+  std::ptrdiff_t in_tick = 0, at_first_cut = 0;
+
+ private:
+  static std::ptrdiff_t threads() {
+    return std::distance(std::filesystem::directory_iterator("/proc/self/task"), std::filesystem::directory_iterator());
+  }
+  const std::function<bool()> work_;
+};
+
 // The forces of an arm lasted for milliseconds after the exception, until the watchdog's thread had ended.
 TEST(ServoRealTime, CutsForcesBeforeItWaitsForTheWatchdogsThread) {
-  class Counting final : public ServoCycle {
-   public:
-    bool tick(double) override {
-      in_tick = threads();
-      throw std::runtime_error("the cable is off");
-    }
-    void cutForces() noexcept override {
-      if (at_first_cut == 0) at_first_cut = threads();
-    }
-    std::ptrdiff_t in_tick = 0, at_first_cut = 0;
-
-   private:
-    static std::ptrdiff_t threads() {
-      return std::distance(std::filesystem::directory_iterator("/proc/self/task"), std::filesystem::directory_iterator());
-    }
-  };
-  Counting cycle;
+  ThreadCount cycle([]() -> bool { throw std::runtime_error("the cable is off"); });
   EXPECT_THROW(runServo(realTime(), cycle, kNeverStop), std::runtime_error);
+  EXPECT_GE(cycle.in_tick, 2);
+  EXPECT_EQ(cycle.at_first_cut, cycle.in_tick);
+}
+
+// Likewise after SIGTERM, until the force was 4 ms old.
+TEST(ServoRealTime, CutsForcesAtOnceWhenInterrupted) {
+  std::atomic<bool> interrupted{false};
+  ThreadCount cycle([&] { return interrupted = true; });
+  EXPECT_TRUE(runServo(realTime(), cycle, interrupted).interrupted);
   EXPECT_GE(cycle.in_tick, 2);
   EXPECT_EQ(cycle.at_first_cut, cycle.in_tick);
 }
