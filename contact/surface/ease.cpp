@@ -9,13 +9,20 @@ constexpr double kOnePlace = 1e-3;  // of r: contacts nearer than this are one
 }  // namespace
 
 void EasedContacts::moveOn(int slot, const ShellContact& contact) {
-  had_contacts_ = true;
   const SurfaceSlot& before = kept(slot);
   const bool continued = contact.converged && continues(before, contact);
-  if (continued && !isListed(contact)) return keep(slot, contact);
-  lost_.push_back(slot);
+  if (continued && !isListed(contact)) {
+    had_contacts_ = true;
+    return keep(slot, contact);
+  }
+  lose(slot);
   const bool is_behind = !(contact.h > 0 || heightBefore(before) <= 0);  // none slides to behind the surface
   if (contact.converged && !continued && !is_behind) slid_.push_back(contact);
+}
+
+void EasedContacts::lose(int slot) {
+  had_contacts_ = true;
+  lost_.push_back(slot);
 }
 
 void EasedContacts::settle() {

@@ -55,8 +55,9 @@ class EasedContacts {
 
   EasedContacts(const TouchingBall& ball, std::array<SurfaceSlot, kMaxSurfaceContacts>& slots) : ball_(ball), slots_(slots) {}
 
-  // What the slots' contacts have become. Each slot in use is told of once, then settle().
-  void moveOn(int slot, const ShellContact& contact);  // not converged: it is lost
+  // What the slots' contacts have become. Each slot in use is told of once, then settle(). Not converged is lost.
+  void moveOn(int slot, const ShellContact& contact);
+  void lose(int slot);
   void settle();
   // `contact`, but from the other side where the centre passed from in front of the plane across an edge's normal to
   // behind it: beside a fin the finger was caught between the edge and itself, or lost it.
@@ -71,6 +72,13 @@ class EasedContacts {
   bool isAlone() const { return lost_.empty() && list_.size() == 1 && !list_.front().fades; }
   bool follows() const {
     return isAny([](const FollowedContact&) { return true; });
+  }
+  // The normal of the contact that is followed in that slot; zero without one.
+  Vec3 normalIn(int slot) const {
+    for (const FollowedContact& f : list_) {
+      if (f.slot == slot && !f.fades) return f.contact.n;
+    }
+    return Vec3::Zero();
   }
   bool touches() const { return nearestHeight() < ball_.r; }
   double nearestHeight() const;  // [m]

@@ -47,8 +47,7 @@ class Lookout {
   void end();
 
  private:
-  static constexpr int kMaxTries = 16;  // places from which a further contact is looked for, per query; the others' turn comes in the next
-  using Normals = decltype(SurfaceLook::n);
+  static constexpr int kMaxTries = 16;  // places that a query looks from for further contacts; the others' turn comes in the next
 
   // Where a try has led.
   struct TriedPlace {
@@ -64,10 +63,12 @@ class Lookout {
   void lookOut();
   double wayFrom(const SurfaceLook& look) const { return (ball_.C - look.p_BC).norm() + std::max(0.0, ball_.reach - look.reach); }
   double goneAt(const SurfaceLook& look) const { return gone_ - wayFrom(look); }
-  Normals followedNormals() const;
-  bool isGood(const SurfaceLook& look) const { return isGoodFor(look, followedNormals(), contacts_.isAlone()); }
-  bool isGoodFor(const SurfaceLook& look, const Normals& followed, bool is_alone) const;
-  bool isHalfOver(const Normals& followed) const;
+  bool isGood(const SurfaceLook& look) const;
+  template <class NormalIn>
+  bool isGoodFor(const SurfaceLook& look, bool is_alone, const NormalIn& normalIn) const;
+  template <class NormalIn>
+  bool hasTurnedHalf(const NormalIn& normalIn) const;
+  bool isPastHalf() const;
   bool isEnding() const;
   bool lookAlone();
   void lookAhead();
@@ -87,7 +88,7 @@ class Lookout {
   double reachOfTry(bool has_turn) const;
   double wayTo(std::int32_t place, const PatchBounds& part) const;
   bool isKnown(std::int32_t triangle, const PatchBounds& part) const;
-  bool stands(const TriedPlace& place, std::int32_t triangle, const PatchBounds& part) const;
+  bool stands(const Foot& foot, const Vec3& S, const Vec3& n, std::int32_t triangle, const PatchBounds& part) const;
   void tryPlace(const Foot& foot);
   ShellContact followUntilKnown(const Foot& foot);
   bool isNew(const ShellContact& candidate) const;

@@ -19,49 +19,49 @@ bool Lookout::isNothingDue() {
   const auto isWhole = [&](const NearParts& near, const SurfaceLook& of) {
     return areOf(near, surface_.net.fingerprint(), of) && near.is_whole;
   };
-  return isWhole(parts.now, look) && parts.now.due > gone_ && (!isEnding() || isWhole(parts.ahead, tracker_.ahead));
+  return isWhole(parts.now, look) && parts.now.due > gone_ && (!isPastHalf() || isWhole(parts.ahead, tracker_.ahead));
 }
 
 bool Lookout::isQuietAround(int slot, const Vec3& n) const {
-  Normals followed = SurfaceLook().n;
-  followed[static_cast<std::size_t>(slot)] = n;
-  return isGoodFor(tracker_.look, followed, true) && !isHalfOver(followed);
-}
-
-Lookout::Normals Lookout::followedNormals() const {
-  Normals followed = SurfaceLook().n;
-  for (const FollowedContact& f : contacts_.list()) {
-    if (!f.fades) followed[static_cast<std::size_t>(f.slot)] = f.contact.n;
-  }
-  return followed;
+  const auto normalIn = [&](int other) -> Vec3 { return other == slot ? n : Vec3(Vec3::Zero()); };
+  return isGoodFor(tracker_.look, true, normalIn) && !hasTurnedHalf(normalIn);
 }
 
 // True if what the look found is still all that there can be: near enough, and what it left out still belongs to the
 // same contacts.
-bool Lookout::isGoodFor(const SurfaceLook& look, const Normals& followed, bool is_alone) const {
+template <class NormalIn>
+bool Lookout::isGoodFor(const SurfaceLook& look, bool is_alone, const NormalIn& normalIn) const {
   if (!(wayFrom(look) < look.horizon) || (look.is_alone && !is_alone)) return false;
   const double least = look.is_alone ? LoneContact::kCosBeta : kHalfApart;
-  for (std::size_t slot = 0; slot < followed.size(); ++slot) {
-    if (!isUnset(look.n[slot]) && !(followed[slot].dot(look.n[slot]) > least)) return false;
+  for (int slot = 0; slot < kMaxSurfaceContacts; ++slot) {
+    const Vec3& n = look.n[static_cast<std::size_t>(slot)];
+    if (!isUnset(n) && !(normalIn(slot).dot(n) > least)) return false;
   }
   return true;
 }
 
+bool Lookout::isGood(const SurfaceLook& look) const {
+  return isGoodFor(look, contacts_.isAlone(), [&](int slot) { return contacts_.normalIn(slot); });
+}
+
 // True if a contact's normal has turned by half of what it may until the look ends.
-bool Lookout::isHalfOver(const Normals& followed) const {
+template <class NormalIn>
+bool Lookout::hasTurnedHalf(const NormalIn& normalIn) const {
   constexpr double kQuarterApart = 0.999876;  // cosine of half of kHalfApart's angle
   const SurfaceLook& look = tracker_.look;
   if (look.is_alone) return false;
-  for (std::size_t slot = 0; slot < followed.size(); ++slot) {
-    if (!isUnset(look.n[slot]) && followed[slot].dot(look.n[slot]) < kQuarterApart) return true;
+  for (int slot = 0; slot < kMaxSurfaceContacts; ++slot) {
+    const Vec3& n = look.n[static_cast<std::size_t>(slot)];
+    if (!isUnset(n) && normalIn(slot).dot(n) < kQuarterApart) return true;
   }
   return false;
 }
 
+bool Lookout::isPastHalf() const { return wayFrom(tracker_.look) > 0.5 * tracker_.look.horizon; }
+
 // Time to work on the next one.
 bool Lookout::isEnding() const {
-  constexpr double kEnding = 0.5;  // of the horizon
-  return wayFrom(tracker_.look) > kEnding * tracker_.look.horizon || isHalfOver(followedNormals());
+  return isPastHalf() || hasTurnedHalf([&](int slot) { return contacts_.normalIn(slot); });
 }
 
 // A look that finds that nothing but the followed contact can matter for a while.

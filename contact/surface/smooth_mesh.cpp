@@ -6,11 +6,11 @@
 
 #include "pincer/contact/functions/invariants.h"
 #include "pincer/contact/mesh_report.h"
-#include "pincer/contact/surface/touch_surface.h"
 #include "pincer/contact/surface/convex_hull.h"
 #include "pincer/contact/surface/mesh_features.h"
 #include "pincer/contact/surface/surface_net.h"
 #include "pincer/contact/surface/surface_search.h"
+#include "pincer/contact/surface/touch_surface.h"
 
 namespace pincer::contact {
 

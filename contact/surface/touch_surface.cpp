@@ -9,7 +9,7 @@ namespace pincer::contact {
 namespace {
 
 constexpr double kTurn = 1.0 / 16;  // of r: the way within which each place is tried once
-constexpr double kLeap = 0.5;       // of r per query, 4 m/s of a finger of 8 mm at 1 kHz: the centre was put there, not led
+constexpr double kLeap = 0.5;       // of r per query (4 m/s for 8 mm at 1 kHz): the centre was put there, not led
 
 // The variants but `smooth` show what they do at edges: jump. After a leap there is nothing to be steady with.
 TouchingBall ballAt(const Vec3& C, double r, double margin, double turn, const SurfaceTracker& tracker) {
@@ -68,14 +68,15 @@ void followSlots(const FeltSurface& surface, const TouchingBall& ball, EasedCont
   for (int slot = 0; slot < kMaxSurfaceContacts; ++slot) {
     const SurfaceSlot& kept = contacts.kept(slot);
     if (!isOn(surface.net, kept)) continue;
-    ShellContact contact;
-    if (!kept.fades) {
-      contact = contacts.onItsSide(kept, followSlot(surface, ball.C, ball.r, ball.C - ball.C_last, kept));
-      cost.iterations += contact.cost.steps;
-      cost.longest_walk = std::max(cost.longest_walk, contact.cost.steps);
-      cost.crossings += contact.cost.crossings;
-      contact.converged = contact.converged && !isFarSide(surface, ball.C, ball.r, kept, contact);
+    if (kept.fades) {
+      contacts.lose(slot);
+      continue;
     }
+    ShellContact contact = contacts.onItsSide(kept, followSlot(surface, ball.C, ball.r, ball.C - ball.C_last, kept));
+    cost.iterations += contact.cost.steps;
+    cost.longest_walk = std::max(cost.longest_walk, contact.cost.steps);
+    cost.crossings += contact.cost.crossings;
+    contact.converged = contact.converged && !isFarSide(surface, ball.C, ball.r, kept, contact);
     contacts.moveOn(slot, contact);
   }
   contacts.settle();

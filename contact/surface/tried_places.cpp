@@ -8,8 +8,8 @@ namespace pincer::contact {
 namespace {
 
 constexpr double kBesideKnown = 0.966;  // cosine of 15 degrees: a normal that far from a patch's still belongs to it
-constexpr double kAround = 1.0 / 16;    // of r: what lies nearer to a contact than this differs by no more than kApart in its normal
-constexpr int kMostWalked = 32;         // steps and crossings of a query's tries; the last walk is ended whatever it takes
+constexpr double kAround = 1.0 / 16;    // of r: the normals of what lies nearer to a contact differ by no more than kApart
+constexpr int kMostWalked = 32;         // steps and crossings of a query's tries; the last walk is always ended
 
 // True if the place is on an edge or a vertex that this triangle has too.
 bool isOnFeatureOf(const SurfaceNet& net, const Foot& foot, std::int32_t triangle) {
@@ -74,7 +74,8 @@ double Lookout::reachOfTry(bool has_turn) const {
   const bool is_free = !contacts_.hasHistory() || !contacts_.follows() || has_turn;
   if (!contacts_.list().isFull()) return is_free ? ball_.reach : 0;
   const double highest = contacts_.heightToYield();
-  if (!(highest > 0)) return is_free && gone_ - tracker_.full_at > 0.5 * turn_ ? ball_.reach : 0;  // only to see whether it is left out
+  const bool is_asked_again = gone_ - tracker_.full_at > 0.5 * turn_;  // only to see whether a place is left out
+  if (!(highest > 0)) return is_free && is_asked_again ? ball_.reach : 0;
   return is_free ? highest : contacts_.touches() ? 0 : std::min(highest, contacts_.nearestHeight());
 }
 
@@ -99,18 +100,18 @@ double Lookout::wayTo(std::int32_t place, const PatchBounds& part) const {
 
 // True if a followed contact stands for this patch, or a place that a try has led to.
 [[gnu::flatten]] bool Lookout::isKnown(std::int32_t triangle, const PatchBounds& part) const {
-  const auto standsAt = [&](const TriedPlace& place) { return stands(place, triangle, part); };
-  return contacts_.isAny([&](const FollowedContact& f) {
-    return standsAt({f.contact.foot, ball_.placeOf(f.contact), f.contact.n});
-  }) || std::any_of(seen_.begin(), seen_.end(), standsAt);
+  const bool is_followed = contacts_.isAny(
+      [&](const FollowedContact& f) { return stands(f.contact.foot, ball_.placeOf(f.contact), f.contact.n, triangle, part); });
+  return is_followed || std::any_of(seen_.begin(), seen_.end(),
+                                    [&](const TriedPlace& place) { return stands(place.foot, place.S, place.n, triangle, part); });
 }
 
-// True if it is beside the patch, with a normal that the patch's could be. (Not any of its cone's: along a groove that
-// holds the other wall's.)
-bool Lookout::stands(const TriedPlace& place, std::int32_t triangle, const PatchBounds& part) const {
-  if (place.foot.triangle == triangle || isOnFeatureOf(surface_.net, place.foot, triangle)) return true;
+// True if the place is beside the patch, with a normal that the patch's could be. (Not any of its cone's: along a groove
+// that holds the other wall's.)
+bool Lookout::stands(const Foot& foot, const Vec3& S, const Vec3& n, std::int32_t triangle, const PatchBounds& part) const {
+  if (foot.triangle == triangle || isOnFeatureOf(surface_.net, foot, triangle)) return true;
   const double beside = std::max<double>(part.radius, kAround * ball_.r) + part.radius;
-  return (place.S - part.middle()).squaredNorm() < beside * beside && closestNormal(surface_.net, triangle, place.n) > kBesideKnown;
+  return (S - part.middle()).squaredNorm() < beside * beside && closestNormal(surface_.net, triangle, n) > kBesideKnown;
 }
 
 void Lookout::tryPlace(const Foot& foot) {

@@ -4,8 +4,8 @@
 
 #include "pincer/contact/generated_meshes.h"
 #include "pincer/contact/smooth_mesh.h"
-#include "pincer/contact/surface/surface_net.h"
 #include "pincer/contact/surface/follow.h"
+#include "pincer/contact/surface/surface_net.h"
 #include "pincer/tests/support/allocation_guard.h"
 #include "pincer/tests/support/constants.h"
 #include "pincer/tests/support/random_numbers.h"
